@@ -153,7 +153,7 @@ def test_what_cannot_be_done_is_told_in_one_line(fdvv: Run, arguments: tuple[str
 
 
 def test_an_answer_means_what_the_question_says(monkeypatch: pytest.MonkeyPatch) -> None:
-    from fdvv.cli import tune as _tune_view
+    from fdvv.cli.rendering import tune as _tune_view
 
     view = _tune_view.TuneView(True, True)
     pair, single = Question(0, (3, 1), 1, 9), Question(0, (3,), 1, 9)

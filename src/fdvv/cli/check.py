@@ -44,7 +44,7 @@ def check(files: tuple[str, ...], as_json: bool) -> None:
                 _print(one)
     for one in found:
         if not one.usable:
-            click.echo(f"fdvv: {ui.one_line(f'{one.path}: {one.problems[0]}')}", err=True)
+            ui.tell(f"fdvv: {ui.one_line(f'{one.path}: {one.problems[0]}')}")
     raise click.exceptions.Exit(max(one.status for one in found))
 
 
@@ -70,13 +70,13 @@ def _print(one: FileCheck) -> None:
         ui.print_wrapped(f"  note: {note}")
 
 
-def _row(stream: dict[str, Any]) -> list[str]:
+def _row(stream: dict[str, Any]) -> list[Any]:
     return [
         stream["name"],
         f"{stream['quantity']}, {stream['unit']}",
         stream["clock"],
         stream["kind"] if stream["axes"] == 1 else f"{stream['axes']} {stream['kind']}",
-        str(stream["samples"]),
+        stream["samples"],
         ui.number(stream["rate_Hz"], 1),
         ui.number(stream["gaps_percent"], 1),
         ui.number(stream["longest_step_s"], 4),

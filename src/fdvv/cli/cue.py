@@ -11,11 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 RATE_Hz = 22050
-
 LENGTH_s = 0.06
-
 LOUDNESS = 20000 / 32767
-
 TONES_Hz = {"cue contact": 880.0, "cue bottom": 440.0}
 """High at contact, low at the bottom."""
 
@@ -62,14 +59,10 @@ def _started(command: list[str], file: Path) -> subprocess.Popen[bytes]:
 
 
 BEATS = ("3", "2", "1")
-
 BEAT_s = 0.5
-
 DWELL_s = 0.05
 """At the stop, between down and up."""
-
 FRAME_s = 1 / 60
-
 WIDTH = 40
 
 

@@ -60,8 +60,8 @@ def _print(result: DemoResult) -> None:
         ["curve", "RMSE cN", "uniform knots", "bump kept"],
         [
             [
-                str(fit.curve.stroke), ui.number(fit.rmse_cN, 3), ui.number(uniform.rmse_cN, 3),
-                "no bump" if fit.bump_kept_ratio is None else f"{100 * fit.bump_kept_ratio:.1f} %",
+                fit.curve.stroke, ui.number(fit.rmse_cN, 3), ui.number(uniform.rmse_cN, 3),
+                ui.bump_kept(fit.bump_kept_ratio),
             ]
             for fit, uniform in zip(fits, result.switch.uniform, strict=True)
         ],
@@ -72,7 +72,7 @@ def _print(result: DemoResult) -> None:
         ["curve", *labels],
         [
             [
-                f"{row['stroke']} {row['velocity_mm_s']:g} mm/s",
+                ui.curve_name(row),
                 *(
                     f"{ui.number(row[k]['mean_error_cN'])} / {ui.number(row[k]['max_error_cN'], 1)}"
                     for k in labels

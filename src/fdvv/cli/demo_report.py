@@ -9,6 +9,7 @@ import numpy as np
 from fdvv import __version__
 from fdvv.button.figures import plot_fit, plot_scan
 from fdvv.cli.demo_run import DemoResult
+from fdvv.cli.ui import bump_kept
 from fdvv.rendering.figures import plot_convergence, plot_rendering
 from fdvv.report.model_figures import plot_model, plot_surface
 from fdvv.report.records import ErrorHistory, RenderedBand, RenderedCurve
@@ -50,7 +51,7 @@ def _switch(result: DemoResult) -> Section:
             f"{fit.rmse_cN:.3f}",
             f"{fit.max_cN:.2f}",
             f"{fit.curve.control_points_cN.size}",
-            "no bump" if fit.bump_kept_ratio is None else f"{100 * fit.bump_kept_ratio:.1f} %",
+            bump_kept(fit.bump_kept_ratio),
             f"{fit.time_s * 1e3:.1f}",
         )
         for fit in (*fitted.fits, *result.switch.uniform)
@@ -116,16 +117,8 @@ def _rendered(result: DemoResult) -> list[RenderedCurve]:
         for rendering in learned:
             low, middle, high = np.percentile(rendering.judged.curves[i].rendered_cN, [25, 50, 75], axis=0)
             bands.append(RenderedBand(rendering.label, middle, low, high))
-        curves.append(
-            RenderedCurve(
-                first.stroke,
-                first.velocity_mm_s,
-                first.displacement_mm,
-                first.target_cN,
-                tuple(bands),
-                simulated=True,
-            )
-        )
+        where = (first.stroke, first.velocity_mm_s, first.displacement_mm, first.target_cN)
+        curves.append(RenderedCurve(*where, tuple(bands), simulated=True))
     return curves
 
 

@@ -12,8 +12,6 @@ from fdvv.cli import ui
 if TYPE_CHECKING:
     from fdvv.formats.exchange.exported import Exported
 
-STROKES = ui.STROKE
-
 
 def _list(ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
     if not wanted or ctx.resilient_parsing:
@@ -30,7 +28,7 @@ def _list(ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
 @click.argument("source")
 @ui.option("--to", "form", metavar="FORMAT", help="Format of the file; by default its ending tells.")
 @ui.option("-o", "--output", type=ui.PATH, required=True, help="The file to write.")
-@ui.option("--stroke", type=STROKES, default="press", help="Whose vibration is written.")
+@ui.option("--stroke", type=ui.STROKE, default="press", help="Whose vibration is written.")
 @ui.option(
     "--velocity",
     "velocity_mm_s",
@@ -126,7 +124,7 @@ def _print(made: Exported, output: Path) -> None:
 @ui.option(
     "--into", metavar="BUTTON", help="The button that a vibration is given to; the model is a copy of it."
 )
-@ui.option("--stroke", type=STROKES, default="press", help="Whose vibration it becomes.")
+@ui.option("--stroke", type=ui.STROKE, default="press", help="Whose vibration it becomes.")
 @ui.option(
     "--velocity", "velocity_mm_s", type=ui.POSITIVE, help="At which speed (mm/s); every speed by default."
 )

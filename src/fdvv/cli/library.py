@@ -8,9 +8,8 @@ from typing import Any, get_args
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.options import check_executor, executor_options, kept_on_interrupt
+from fdvv.cli.options import Workers, executor_options
 
-FOLDER = ui.FOLDER
 COUNT = ui.option("-n", "--count", type=click.IntRange(1), default=10, help="Show so many.")
 CSV = ui.option("-o", "--output", type=ui.PATH, help="Write every hit into this .csv too.")
 FIGURES = ("travel_mm", "peak_cN", "drop_cN")
@@ -38,20 +37,13 @@ def list_(as_json: bool) -> None:
 
 
 @library.command()
-@click.argument("folders", nargs=-1, required=True, type=FOLDER)
+@click.argument("folders", nargs=-1, required=True, type=ui.FOLDER)
 @ui.option(
     "-o", "--output", type=ui.NEW_FOLDER, required=True, help="The library's folder, new or of these folders."
 )
 @executor_options
 @ui.json_option
-def build(
-    folders: tuple[Path, ...],
-    output: Path,
-    processes: int | None,
-    workers: int | None,
-    cluster: str | None,
-    as_json: bool,
-) -> None:
+def build(folders: tuple[Path, ...], output: Path, where: Workers, as_json: bool) -> None:
     """Read every measured file below folders into a library that can be searched.
 
     Files of any layout that fdvv reads, thousands of them: landmarks, type and curves of each go into one
@@ -59,15 +51,10 @@ def build(
     Whatever ended a build, the same command goes on; files that did not change are not read again.
     """
     from fdvv.library.build import build_library
-    from fdvv.parallel.open import open_executor
 
-    check_executor(processes, workers, cluster)
+    where.check()
     ui.check_folder(output)
-    with (
-        kept_on_interrupt(output),
-        open_executor(processes, workers, cluster) as executor,
-        ui.progress("files", 1) as tell,
-    ):
+    with where.at_work(output, "files", 1) as (executor, tell):
         found = build_library(folders, output, executor, tell)
     if as_json:
         ui.print_json(found.to_dict())
@@ -79,7 +66,7 @@ def build(
 
 
 @library.command()
-@click.argument("folder", metavar="LIBRARY", type=FOLDER)
+@click.argument("folder", metavar="LIBRARY", type=ui.FOLDER)
 @click.argument("words", nargs=-1)
 @ui.option("--sort", default="match", help="match, name, kind, date, or a figure's column.")
 @ui.option("--descending", is_flag=True, help="Largest first.")
@@ -112,7 +99,7 @@ def search(
 
 
 @library.command()
-@click.argument("folder", metavar="LIBRARY", type=FOLDER)
+@click.argument("folder", metavar="LIBRARY", type=ui.FOLDER)
 @click.argument("button")
 @ui.option(
     "--by",
@@ -141,7 +128,7 @@ def like(folder: Path, button: str, by: str, count: int, output: Path | None, as
 
 
 @library.command()
-@click.argument("folder", metavar="LIBRARY", type=FOLDER)
+@click.argument("folder", metavar="LIBRARY", type=ui.FOLDER)
 @ui.json_option
 def refused(folder: Path, as_json: bool) -> None:
     """List the files of a library's folders that could not be used, and why."""
@@ -168,18 +155,15 @@ def _print_hits(
     near = any(hit.distance_JND is not None for hit in hits)
     rows = [
         [
-            ui.one_line(hit.row.name, NAME), ui.one_line(hit.row.collection, PLACE), str(hit.row.kind),
-            *([ui.number(hit.distance_JND)] if near else []),
-            *(ui.number(getattr(hit.row, c)) for c in FIGURES),
-            hit.row.id,
+            ui.one_line(hit.row.name, NAME), ui.one_line(hit.row.collection, PLACE), hit.row.kind,
+            *([hit.distance_JND] if near else []), *(getattr(hit.row, c) for c in FIGURES), hit.row.id,
         ]
         for hit in hits[:count]
     ]  # fmt: skip
     ui.print_table(["button", "folder", "type", *(["JND"] if near else []), *FIGURES, "id"], rows, left=3)
     more = f", {len(hits) - count} more with -n" if len(hits) > count else ""
     click.echo(f"{len(hits)} found{more}")
-    if output:
-        click.echo(f"written to {output}")
+    ui.print_written(output)
 
 
 def _list_builtins(as_json: bool) -> None:
@@ -197,7 +181,7 @@ def _list_builtins(as_json: bool) -> None:
         return
     columns = ("travel_mm", "peak_cN", "snap_ratio", "bottom_out_cN")
     rows = [
-        [m.name, m.provenance.source.partition(",")[0], *(ui.number(k[c]) for c in columns)]
+        [m.name, m.provenance.source.partition(",")[0], *(k[c] for c in columns)]
         for m, k in zip(models, marks, strict=True)
     ]
     ui.print_table(["button", "source", *columns], rows, left=2)

@@ -1,28 +1,77 @@
-"""The options of commands that share their work out over processes."""
+"""Options that several commands share, and what is made of their values."""
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from fdvv.cli import ui
 
 if TYPE_CHECKING:
-    from fdvv.vibration.exciter import KnownExciter
-if TYPE_CHECKING:
     from fdvv.compensation.paper import PaperLaw
     from fdvv.compensation.rig_aware import RigAware
-if TYPE_CHECKING:
     from fdvv.device.contract import Device
     from fdvv.device.remote import Remote
+    from fdvv.parallel.executor import Executor
+    from fdvv.vibration.exciter import KnownExciter
 
 
-executor_options = ui.options(
+def packed(
+    name: str, record: Any, *several: Callable[[Any], Any]
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Join options whose values reach the command as one record.
+
+    name : the parameter of the command that gets the record. record : a NamedTuple with a field for each of
+        the options.
+    """
+
+    def add(command: Callable[..., Any]) -> Any:
+        @functools.wraps(command)
+        def call(**values: Any) -> Any:
+            values[name] = record(*(values.pop(field) for field in record._fields))
+            return command(**values)
+
+        return ui.options(*several)(call)
+
+    return add
+
+
+class Workers(NamedTuple):
+    """Where a command works: processes of this machine, dask workers, or the cluster of a scheduler."""
+
+    processes: int | None
+    workers: int | None
+    cluster: str | None
+
+    def check(self) -> None:
+        """Refuse two of the options at once."""
+        if sum(choice is not None for choice in self) > 1:
+            raise click.UsageError("--processes, --workers and --cluster exclude each other")
+
+    @contextmanager
+    def at_work(
+        self, folder: Path, label: str, total: int
+    ) -> Iterator[tuple[Executor, Callable[[int, int], None]]]:
+        """Open the executor and show progress; on Ctrl-C say that the folder keeps what is done."""
+        from fdvv.parallel.open import open_executor
+
+        with (
+            kept_on_interrupt(f"interrupted; what is done is kept in {folder}, the same command goes on"),
+            open_executor(*self) as executor,
+            ui.progress(label, total) as tell,
+        ):
+            yield executor, tell
+
+
+executor_options = packed(
+    "where",
+    Workers,
     ui.option(
         "--processes", type=click.IntRange(1, 1024), help="Of this machine; by default all processors."
     ),
@@ -31,21 +80,13 @@ executor_options = ui.options(
 )
 
 
-def check_executor(processes: int | None, workers: int | None, cluster: str | None) -> None:
-    """Refuse two of the options at once."""
-    if sum(choice is not None for choice in (processes, workers, cluster)) > 1:
-        raise click.UsageError("--processes, --workers and --cluster exclude each other")
-
-
 @contextmanager
-def kept_on_interrupt(folder: Path) -> Iterator[None]:
+def kept_on_interrupt(message: str) -> Iterator[None]:
     """Say what Ctrl-C leaves."""
     try:
         yield
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(
-            f"interrupted; what is done is kept in {folder}, the same command goes on"
-        ) from None
+        raise KeyboardInterrupt(message) from None
 
 
 exciter_option = ui.option(
@@ -123,7 +164,6 @@ class Paces(click.ParamType[tuple[float, ...]]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[float, ...]:
-        """Read the speeds, or refuse them."""
         if isinstance(value, tuple):
             return value
         try:
@@ -135,14 +175,7 @@ class Paces(click.ParamType[tuple[float, ...]]):
         return found
 
 
-Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-def device_option(command: Command) -> Command:
-    """Add the option that chooses a device."""
-    add = ui.option("--device", "spec", default="host", help="See fdvv device.")
-    return add(command)
-
+device_option = ui.option("--device", "spec", default="host", help="See fdvv device.")
 
 record_option = ui.option(
     "--record", "recording", type=ui.NEW_FILE,
@@ -163,13 +196,19 @@ def opened(
     from fdvv.device.recording import Recorder
     from fdvv.rendering.tuning import open_device
 
-    found = open_device(spec, rig, None, seed)
+    with ExitStack() as stack:
+        found = stack.enter_context(closing(open_device(spec, rig, None, seed)))
+        yield stack.enter_context(Recorder(found, recording)) if recording else found
+
+
+@contextmanager
+def closing(device: Device) -> Iterator[Device]:
+    """Close a device at the end, whatever happens; some have nothing to close."""
     try:
-        found = Recorder(found, recording) if recording else found
-        yield found
+        yield device
     finally:
-        if hasattr(found, "close"):
-            found.close()
+        if hasattr(device, "close"):
+            device.close()
 
 
 @contextmanager

@@ -8,6 +8,15 @@ import click
 
 from fdvv.cli import ui
 
+FIGURES = {
+    "asked_mm_s": "asked mm/s",
+    "achieved_mm_s": "reached mm/s",
+    "before_stop_cN": "before stop cN",
+    "largest_cN": "largest cN",
+    "closing_ms": "closing ms",
+}
+"""Of a press, each with the heading of its column."""
+
 
 @click.command()
 @ui.option(
@@ -48,16 +57,7 @@ def press(
     if output:
         found.write_csv(output)
     if as_json:
-        rows = [
-            {
-                "asked_mm_s": p.asked_mm_s,
-                "achieved_mm_s": p.achieved_mm_s,
-                "before_stop_cN": p.before_stop_cN,
-                "largest_cN": p.largest_cN,
-                "closing_ms": p.closing_ms,
-            }
-            for p in found.presses
-        ]
+        rows = [{key: getattr(p, key) for key in FIGURES} for p in found.presses]
         document = {"button": found.button, "travel_mm": found.travel_mm, "simulated": True}
         ui.print_json({**document, "quasi_static_peak_cN": found.quasi_static_peak_cN, "presses": rows})
         return
@@ -65,19 +65,6 @@ def press(
         f"{found.button} (simulated): travel {found.travel_mm:.2f} mm, "
         f"{found.quasi_static_peak_cN:.1f} cN before the stop at 0.5 mm/s"
     )
-    head = ["asked mm/s", "reached mm/s", "before stop cN", "largest cN", "closing ms"]
-    ui.print_table(
-        head,
-        [
-            [
-                ui.number(p.asked_mm_s),
-                ui.number(p.achieved_mm_s),
-                ui.number(p.before_stop_cN),
-                ui.number(p.largest_cN),
-                ui.number(p.closing_ms),
-            ]
-            for p in found.presses
-        ],
-    )
+    ui.print_table(list(FIGURES.values()), [[getattr(p, key) for key in FIGURES] for p in found.presses])
     if output:
         click.echo(f"written: {output}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -49,12 +50,8 @@ def list_(as_json: bool) -> None:
     found = programs()
     if as_json:
         entries = [
-            {
-                "name": p.name,
-                "summary": p.summary,
-                "details": p.details,
-                "parameters": {q.name: q.default for q in p.parameters},
-            }
+            {key: getattr(p, key) for key in ("name", "summary", "details")}
+            | {"parameters": {q.name: q.default for q in p.parameters}}
             for p in found
         ]
         ui.print_json({"programs": entries})
@@ -77,17 +74,15 @@ def show(program: str, as_json: bool) -> None:
     if path.is_file() and path.read_bytes()[:4] == b"FDVP":
         from fdvv.program.describe import describe
 
-        held = describe(path.read_bytes(), path)
-        parts: Any = held
-        title = f"{held.name}: image of {held.size_bytes} bytes"
+        parts: Any = describe(path.read_bytes(), path)
+        title = f"{parts.name}: image of {parts.size_bytes} bytes"
     else:
         from fdvv.program.library import open_program
 
-        opened = open_program(program)
-        parts = opened
-        title = f"{opened.name}: {opened.description}"
+        parts = open_program(program)
+        title = f"{parts.name}: {parts.description}"
     if as_json:
-        ui.print_json(_parts(parts))
+        ui.print_json(dataclasses.asdict(parts))
         return
     ui.print_wrapped(title)
     click.echo(f"  travel {parts.travel_mm:g} mm, starts in {parts.start!r}")
@@ -98,20 +93,14 @@ def show(program: str, as_json: bool) -> None:
             click.echo(f"{state.name}: {transition}")
 
 
-def _row(state: State) -> list[str]:
+def _row(state: State) -> list[object]:
     plays = [
         state.enter_signal or "",
         f"{state.repeat_signal}/{state.repeat_ms} ms" if state.repeat_ms else "",
     ]
     bias = ui.number(state.bias_cN) if not state.bias_ms else f"{state.bias_cN:g}…{state.bias_end_cN:g}"
     played = ", ".join(filter(None, plays)) or "–"
-    return [state.name, state.press, state.release, played, str(state.key), str(state.fade_ms), bias]
-
-
-def _parts(parts: Any) -> dict[str, Any]:
-    import dataclasses
-
-    return dataclasses.asdict(parts)
+    return [state.name, state.press, state.release, played, state.key, state.fade_ms, bias]
 
 
 @program.command()
@@ -180,16 +169,10 @@ def check(program: str, weight_cN: float | None, opposing_cN: float | None, as_j
 
 
 def _limits(weight_cN: float | None, opposing_cN: float | None) -> Limits:
-    from dataclasses import replace
-
     from fdvv.program.surface import Limits
 
-    limits = Limits()
-    return replace(
-        limits,
-        weight_cN=limits.weight_cN if weight_cN is None else weight_cN,
-        opposing_cN=limits.opposing_cN if opposing_cN is None else opposing_cN,
-    )
+    asked: dict[str, Any] = {"weight_cN": weight_cN, "opposing_cN": opposing_cN}
+    return Limits(**{name: value for name, value in asked.items() if value is not None})
 
 
 def _report(opened: Program, report: Report) -> dict[str, Any]:

@@ -12,9 +12,6 @@ from fdvv.cli import ui
 if TYPE_CHECKING:
     from fdvv.button.compare import Comparison
     from fdvv.model.landmarks import LandmarkError
-if TYPE_CHECKING:
-    from fdvv.model.landmarks import LandmarkError
-
 
 LABEL_WIDTH, LINE_NAME_WIDTH = 19, 28
 """Of the names of landmarks, and what the columns of LANDMARKS leave for the names of buttons."""
@@ -57,10 +54,9 @@ def compare(
         ui.save_figure(plot_comparison(models, velocity_mm_s=velocity_mm_s).figure, figure)
     if as_json:
         ui.print_json({**result.to_dict(), "refused": refused})
-    elif (
-        LABEL_WIDTH + sum(_width(*named) for named in zip(result.names, result.errors, strict=True))
-        <= ui.WIDTH
-    ):
+        return
+    widths = [_width(*named) for named in zip(result.names, result.errors, strict=True)]
+    if LABEL_WIDTH + sum(widths) <= ui.WIDTH:
         _print_columns(result)
     else:
         _print_lines(result)
@@ -72,29 +68,22 @@ def _width(name: str, errors: dict[str, LandmarkError]) -> int:
 
 def _print_columns(result: Comparison) -> None:
     marks = [m.to_dict() for m in result.landmarks]
-    rows = [[key, *(_mark(m, e, key) for m, e in zip(marks, result.errors, strict=True))] for key in marks[0]]
+    rows = [
+        [key, *(ui.with_spread(m[key], _error(e, key), 3) for m, e in zip(marks, result.errors, strict=True))]
+        for key in marks[0]
+    ]
     ui.print_table(["landmark", *result.names], rows)
     if any(result.errors):
         click.echo("±: standard error over presses")
     click.echo("")
     ui.print_table(
         [f"force less {result.names[0]}", "stroke", "rms cN", "mean cN", "max cN", "at mm"],
-        [
-            [
-                d.name,
-                str(d.stroke),
-                ui.number(d.rms_cN),
-                ui.number(d.mean_cN),
-                ui.number(d.max_cN),
-                ui.number(d.max_mm),
-            ]
-            for d in result.differences
-        ],
+        [[d.name, d.stroke, d.rms_cN, d.mean_cN, d.max_cN, d.max_mm] for d in result.differences],
     )
 
 
-def _mark(marks: dict[str, float | None], errors: dict[str, LandmarkError], key: str) -> str:
-    return ui.with_spread(marks[key], errors[key].error if key in errors else None, 3)
+def _error(errors: dict[str, LandmarkError], key: str) -> float | None:
+    return errors[key].error if key in errors else None
 
 
 def _print_lines(result: Comparison) -> None:
@@ -103,8 +92,8 @@ def _print_lines(result: Comparison) -> None:
     rows = [
         [
             ui.one_line(name, LINE_NAME_WIDTH),
-            *(ui.number(marks.to_dict()[key]) for key in LANDMARKS),
-            ui.number(rms.get(i)),
+            *(marks.to_dict()[key] for key in LANDMARKS),
+            rms.get(i),
         ]
         for i, (name, marks) in enumerate(zip(result.names, result.landmarks, strict=True))
     ]
@@ -179,7 +168,7 @@ def _print_landmarks(marks: dict[str, float | None], errors: dict[str, LandmarkE
     rows = []
     for name, value in marks.items():
         error = errors.get(name)
-        uncertainty = [f"± {error.error:.3f}", str(error.presses)] if error else ["", ""]
+        uncertainty = [f"± {error.error:.3f}", error.presses] if error else ["", ""]
         rows.append([name, ui.number(value, 3), *uncertainty])
     ui.print_table(["landmark", "value", "standard error", "presses"], rows)
 
@@ -220,12 +209,8 @@ def _show_folder(folder: Path, velocity_mm_s: float | None, as_json: bool) -> No
     if as_json:
         ui.print_json({"results": [{"file": f, "landmarks": m} for f, m in found], "refused": refused})
     elif found:
-        rows = [
-            [ui.one_line(Path(f).name, NAME_WIDTH), *(ui.number(m[key], 2) for key in TABLE)]
-            for f, m in found
-        ]
+        rows = [[ui.one_line(Path(f).name, NAME_WIDTH), *(m[key] for key in TABLE)] for f, m in found]
         ui.print_table(["button", *TABLE], rows)
     ui.print_warnings([f"refused: {r['reason']}" for r in refused])
     if not found:
-        click.echo(f"fdvv: {folder}: no button of it can be shown; the reasons are above", err=True)
-        raise click.exceptions.Exit(2)
+        raise ui.failed(f"{folder}: no button of it can be shown; the reasons are above", 2)

@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.options import check_executor, executor_options, kept_on_interrupt
+from fdvv.cli.options import Workers, executor_options
 
 
 @click.command()
@@ -20,15 +20,7 @@ from fdvv.cli.options import check_executor, executor_options, kept_on_interrupt
 @ui.option("--preview", is_flag=True, help="Only count the cells and time a few of them.")
 @executor_options
 @ui.json_option
-def sweep(
-    plan: Path,
-    output: Path | None,
-    preview: bool,
-    processes: int | None,
-    workers: int | None,
-    cluster: str | None,
-    as_json: bool,
-) -> None:
+def sweep(plan: Path, output: Path | None, preview: bool, where: Workers, as_json: bool) -> None:
     """Try every combination of rigs, fingers, buttons and methods; simulated.
 
     PLAN is a *.toml file of lists and ranges (docs/reference/sweep-files.md). Every combination is a row of a
@@ -37,26 +29,21 @@ def sweep(
     """
     from fdvv.sweep.plan import read_sweep_plan
 
-    check_executor(processes, workers, cluster)
+    where.check()
     asked = read_sweep_plan(plan)
     if preview:
-        _preview(asked, plan, output, processes or workers, as_json)
+        _preview(asked, plan, output, where.processes or where.workers, as_json)
         return
     if output is None:
         raise click.UsageError("a sweep needs --output FOLDER, or --preview")
     ui.check_folder(output)
-    _run(asked, plan, output, (processes, workers, cluster), as_json)
+    _run(asked, plan, output, where, as_json)
 
 
-def _run(asked: Any, plan: Path, output: Path, where: tuple[Any, Any, Any], as_json: bool) -> None:
-    from fdvv.parallel.open import open_executor
+def _run(asked: Any, plan: Path, output: Path, where: Workers, as_json: bool) -> None:
     from fdvv.sweep.sweep import run_sweep, sweep_summary
 
-    with (
-        kept_on_interrupt(output),
-        open_executor(*where) as executor,
-        ui.progress("cells", asked.count) as tell,
-    ):
+    with where.at_work(output, "cells", asked.count) as (executor, tell):
         result = run_sweep(asked, output, executor, tell, plan.parent)
     document = {**result.to_dict(), "summary": sweep_summary(result)}
     if as_json:
@@ -66,7 +53,7 @@ def _run(asked: Any, plan: Path, output: Path, where: tuple[Any, Any, Any], as_j
     for part in document["summary"]:
         figure, factor = part["figure"], part["factor"]
         rows = [
-            [str(row["value"]), str(row["cells"]), *(ui.number(row[k], 3) for k in ("median", "low", "high"))]
+            [str(row["value"]), row["cells"], *(ui.number(row[k], 3) for k in ("median", "low", "high"))]
             for row in part["rows"]
         ]
         ui.print_table([f"{figure} by {factor}", "cells", "median", "5 %", "95 %"], rows)

@@ -8,12 +8,16 @@ import json
 import math
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+
+if TYPE_CHECKING:
+    from rich.live import Live
+    from rich.table import Table
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -60,6 +64,16 @@ def number(value: float | None, digits: int = 2) -> str:
     return "–" if value is None else f"{value:.{digits}f}"
 
 
+def bump_kept(ratio: float | None) -> str:
+    """Write how much of a curve's bump a fit kept."""
+    return "no bump" if ratio is None else f"{100 * ratio:.1f} %"
+
+
+def curve_name(curve: dict[str, Any]) -> str:
+    """Name a curve of a report by its stroke and speed."""
+    return f"{curve['stroke']} {curve['velocity_mm_s']:g} mm/s"
+
+
 def with_spread(value: float | None, spread: float | None, digits: int = 2) -> str:
     """Write a number with its standard deviation or error, where there is one."""
     return number(value, digits) if spread is None else f"{number(value, digits)} ± {spread:.{digits}f}"
@@ -71,15 +85,22 @@ def one_line(text: str, width: int | None = None) -> str:
     return plain if width is None or len(plain) <= width else plain[: width - 1] + "…"
 
 
-def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> None:
-    """Print aligned columns: the first ``left`` ones to the left, the others to the right."""
-    table = [[one_line(cell) for cell in row] for row in (columns, *rows)]
-    widths = [max(len(row[i]) for row in table) for i in range(len(columns))]
+def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]], left: int = 1) -> None:
+    """Print aligned columns: the first ``left`` ones to the left, the others to the right.
+
+    A cell that is a float or None is written by ``number``, any other by ``str``.
+    """
+    table = [[one_line(_cell(cell)) for cell in row] for row in (columns, *rows)]
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     for row in table:
         cells = [
             c.ljust(w) if i < left else c.rjust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True))
         ]
         click.echo("  ".join(cells).rstrip())
+
+
+def _cell(value: object) -> str:
+    return number(value) if value is None or isinstance(value, float) else str(value)
 
 
 def print_spreads(report: dict[str, Any]) -> None:
@@ -95,9 +116,7 @@ def print_spreads(report: dict[str, Any]) -> None:
                 c["stroke"],
                 number(c["velocity_mm_s"], 1),
                 with_spread(c["achieved_mm_s"], c["achieved_spread_mm_s"], 1),
-                str(c["presses"]),
-                number(c["median_spread_cN"]),
-                number(c["largest_spread_cN"]),
+                *(c[key] for key in ("presses", "median_spread_cN", "largest_spread_cN")),
             ]
             for c in spread
         ],
@@ -120,17 +139,40 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun if count == 1 else plural}"
 
 
-def print_warnings(warnings: Sequence[str]) -> None:
+def print_written(*paths: Path | None) -> None:
+    """Tell which files were written; None stands for one that was not asked for."""
+    for path in paths:
+        if path:
+            click.echo(f"written to {path}")
+
+
+def tell(text: str) -> None:
+    """Print a line to standard error."""
+    click.echo(text, err=True)
+
+
+def notice(text: str, quiet: bool) -> None:
+    """Tell what a person should know; where only a document is wanted, warnings alone."""
+    if not quiet or text.startswith("warning: "):
+        tell(one_line(text))
+
+
+def print_warnings(warnings: Iterable[str]) -> None:
     """Print warnings to standard error."""
     for warning in warnings:
-        click.echo(f"warning: {one_line(warning)}", err=True)
+        tell(f"warning: {one_line(warning)}")
+
+
+def failed(reason: str, status: int = 1) -> click.exceptions.Exit:
+    """Print why a command has failed; raise what is returned."""
+    click.echo(f"fdvv: {reason}", err=True)
+    return click.exceptions.Exit(status)
 
 
 class Finite(click.FloatRange):
     """A range of numbers without nan and infinity."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Read the number, or refuse it."""
         found = float(super().convert(value, param, ctx))
         if not math.isfinite(found):
             self.fail(f"{value} is not a finite number.", param, ctx)
@@ -180,34 +222,47 @@ def check_folder(folder: Path) -> None:
 
 
 @contextmanager
-def progress(label: str, total: int) -> Iterator[Callable[[int, int], None]]:
-    """Show a progress bar on standard error if it is a terminal; yield what sets (done, total)."""
+def live() -> Iterator[Live | None]:
+    """Give a part of the terminal that is redrawn in place; None where standard error is no terminal."""
     if not sys.stderr.isatty():
-        yield lambda _done, _total: None
+        yield None
         return
     from rich.console import Console
-    from rich.progress import Progress
+    from rich.live import Live
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(label, total=total)
-        yield lambda done, whole: bar.update(task, completed=done, total=whole)
+    with Live(console=Console(stderr=True), auto_refresh=False, transient=True) as found:
+        yield found
+
+
+def rich_table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
+    """Lay out rows for ``live``, the first column to the left."""
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False)
+    for i, name in enumerate(columns):
+        table.add_column(name, justify="right" if i else "left")
+    for row in rows:
+        table.add_row(*row)
+    return table
 
 
 @contextmanager
-def stages() -> Iterator[Callable[[str, int, int], None]]:
+def progress(label: str, total: int) -> Iterator[Callable[[int, int], None]]:
+    """Show a progress bar on standard error if it is a terminal; yield what sets (done, total)."""
+    with stages(tell=lambda _label: None) as move:
+        move(label, 0, total)
+        yield functools.partial(move, label)
+
+
+@contextmanager
+def stages(tell: Callable[[str], None] = tell) -> Iterator[Callable[[str, int, int], None]]:
     """Show a progress bar for each named stage; yield what sets (label, done, total).
 
-    Where standard error is not a terminal, each stage is one line.
+    Where standard error is not a terminal, each label is told once, as a line.
     """
     if not sys.stderr.isatty():
-        shown: set[str] = set()
-
-        def show(label: str, _done: int, _total: int) -> None:
-            if label not in shown:
-                shown.add(label)
-                click.echo(label, err=True)
-
-        yield show
+        told = functools.cache(tell)
+        yield lambda label, _done, _total: told(label)
         return
     from rich.console import Console
     from rich.progress import Progress, TaskID

@@ -58,11 +58,8 @@ def vibration(
     if wav:
         made = vibration_wav(_chosen(model, button, stroke, velocity_mm_s), known, board)
         made.save(wav)
-        document["wav"] = {
-            "path": str(wav),
-            "full_scale": made.full_scale,
-            "unit": "count" if board else "m/s2",
-        }
+        unit = "count" if board else "m/s2"
+        document["wav"] = {"path": str(wav), "full_scale": made.full_scale, "unit": unit}
     if as_json:
         ui.print_json(document)
         return
@@ -104,22 +101,16 @@ def _about(found: Vibration, exciter: KnownExciter | None) -> dict[str, Any]:
 
 def _print(document: dict[str, Any]) -> None:
     known = "expected" in document["vibrations"][0]
-    head = [
-        "vibration",
-        "onset mm",
-        "ms",
-        "Hz",
-        "m/s2",
-        *(["played", "likeness", "strength"] if known else []),
-    ]
+    head = ["vibration", "onset mm", "ms", "Hz", "m/s2"]
+    head += ["played", "likeness", "strength"] if known else []
     rows = []
     for v in document["vibrations"]:
         speed = "any speed" if v["velocity_mm_s"] is None else f"{v['velocity_mm_s']:g} mm/s"
         figures = (v["onset_mm"], 1e3 * v["duration_s"], v["frequency_Hz"], v["amplitude_m_s2"])
-        row = [f"{v['stroke']}, {speed}", *(ui.number(figure) for figure in figures)]
+        row: list[Any] = [f"{v['stroke']}, {speed}", *figures]
         if known:
             e = v["expected"]
-            row += [e["way"], ui.number(e["likeness"]), ui.number(e["strength_ratio"])]
+            row += [e["way"], e["likeness"], e["strength_ratio"]]
         rows.append(row)
     click.echo(document["name"])
     ui.print_table(head, rows)

@@ -76,7 +76,7 @@ def capture(
     from fdvv.bench.capture import CaptureGuide, capture_session
     from fdvv.bench.plan import CapturePlan
     from fdvv.device.bench import open_bench
-    from fdvv.model.file import MODEL_SUFFIX
+    from fdvv.model.file import MODEL_SUFFIX, save_model
     from fdvv.recording.file import RECORDING_SUFFIX
 
     ui.check_output(recording, RECORDING_SUFFIX)
@@ -94,41 +94,33 @@ def capture(
             result = capture_session(device, recording, name, plan, guide)
     finally:
         device.close()
-    warnings = _write_model(result.path, output) if output else ()
+    warnings: tuple[str, ...] = ()
+    if output:
+        from fdvv.bench.model import process_recording
+
+        model = process_recording(result.path)
+        save_model(model.model, output)
+        warnings = model.warnings
     _print(result, output, as_json)
     ui.print_warnings(warnings)
-
-
-def _write_model(recording: Path, output: Path) -> tuple[str, ...]:
-    from fdvv.bench.model import process_recording
-    from fdvv.model.file import save_model
-
-    found = process_recording(recording)
-    save_model(found.model, output)
-    return found.warnings
 
 
 def _print(result: CaptureResult, output: Path | None, as_json: bool) -> None:
     found = result.recording
     if as_json:
-        velocities = [_row(pace) for pace in result.velocities]
-        model = {"model": str(output)} if output else {}
-        document = {"recording": str(result.path), "button": found.name, "device": result.device}
-        ui.print_json(
-            {
-                **document,
-                "simulated": found.simulated,
-                "takes": len(found.takes),
-                "paces": velocities,
-                **model,
-            }
-        )
+        document: dict[str, Any] = {
+            "recording": str(result.path),
+            "button": found.name,
+            "device": result.device,
+        }
+        document |= {"simulated": found.simulated, "takes": len(found.takes)}
+        document["paces"] = [_row(pace) for pace in result.velocities]
+        ui.print_json(document | ({"model": str(output)} if output else {}))
         return
     click.echo(f"{found.name} on {result.device}{ui.simulated(found.simulated)}, {len(found.takes)} takes")
     ui.print_table(COLUMNS, [cells(pace) for pace in result.velocities])
     click.echo(f"recorded in {result.path}")
-    if output:
-        click.echo(f"written to {output}")
+    ui.print_written(output)
 
 
 def _row(progress: VelocityProgress) -> dict[str, Any]:

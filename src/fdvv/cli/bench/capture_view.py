@@ -6,8 +6,8 @@ import math
 import statistics
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Protocol
+from contextlib import contextmanager, nullcontext
+from typing import TYPE_CHECKING
 
 import click
 
@@ -24,37 +24,14 @@ Beep = Callable[[str], None]
 Show = Callable[[float], None]
 
 
-class CaptureView(Protocol):
-    """What shows a capture."""
-
-    def cue(self, ask: TakeRequest) -> Show:
-        """Say what is wanted; give what shows the pace."""
-        ...
-
-    def done(self, event: TakeDone) -> None:
-        """Report a take."""
-        ...
-
-    def notice(self, text: str) -> None:
-        """Report what a person should know."""
-        ...
-
-
 @contextmanager
-def capture_view(paced: bool, quiet: bool, player: str | None) -> Iterator[CaptureView]:
+def capture_view(paced: bool, quiet: bool, player: str | None) -> Iterator[CaptureLines | CaptureTable]:
     """Show a capture on standard error, in place if it is a terminal.
 
     paced : someone follows the cue; quiet : tell only what a person at a bench must know.
     """
-    with beeper(player, _bell) as beep:
-        if quiet or not sys.stderr.isatty():
-            yield CaptureLines(paced, quiet, beep)
-            return
-        from rich.console import Console
-        from rich.live import Live
-
-        with Live(console=Console(stderr=True), auto_refresh=False, transient=True) as live:
-            yield CaptureTable(paced, live, beep)
+    with beeper(player, _bell) as beep, nullcontext() if quiet else ui.live() as live:
+        yield CaptureLines(paced, quiet, beep) if live is None else CaptureTable(paced, live, beep)
 
 
 def _bell() -> None:
@@ -73,7 +50,6 @@ class Beeps:
         self._beep = beep
 
     def __call__(self, t_s: float) -> None:
-        """Beep if it is due."""
         while self._left and t_s >= self._left[0][0]:
             self._beep(self._left.pop(0)[1])
 
@@ -88,18 +64,15 @@ class CaptureLines:
         """Ask a person; only beeps show the pace."""
         if not self._paced:
             return lambda _t_s: None
-        click.echo(asked(ask), err=True)
+        ui.tell(asked(ask))
         return Beeps(ask, self._beep)
 
     def done(self, event: TakeDone) -> None:
-        """Report a take."""
         if self._paced or not self._quiet:
-            click.echo(take_line(event), err=True)
+            ui.tell(take_line(event))
 
     def notice(self, text: str) -> None:
-        """Report it; where only a document is wanted, warnings alone."""
-        if not self._quiet or text.startswith("warning: "):
-            click.echo(ui.one_line(text), err=True)
+        ui.notice(text, self._quiet)
 
 
 class CaptureTable:
@@ -198,12 +171,7 @@ def cells(progress: VelocityProgress) -> list[str]:
 def picture(rows: tuple[VelocityProgress, ...], lines: tuple[str, ...]) -> RenderableType:
     """Lay out the rows and the lines below them."""
     from rich.console import Group
-    from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=None, pad_edge=False)
-    for i, name in enumerate(COLUMNS):
-        table.add_column(name, justify="right" if i else "left")
-    for row in rows:
-        table.add_row(*cells(row))
-    return Group(*([table] if rows else []), *(Text(line, no_wrap=True) for line in lines if line))
+    table = [ui.rich_table(COLUMNS, map(cells, rows))] if rows else []
+    return Group(*table, *(Text(line, no_wrap=True) for line in lines if line))

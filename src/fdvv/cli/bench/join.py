@@ -64,7 +64,7 @@ def join(
     take = recording.takes[0]
     ui.print_table(
         ["stream", "quantity", "clock", "samples", "rate Hz"],
-        [[s.name, str(s.quantity), s.clock, str(s.t_s.size), f"{s.rate_Hz:.1f}"] for s in take.streams],
+        [[s.name, s.quantity, s.clock, s.t_s.size, f"{s.rate_Hz:.1f}"] for s in take.streams],
         left=3,
     )
     click.echo(f"written to {output}")

@@ -72,21 +72,17 @@ def process(
         from fdvv.report.report import write_report
 
         write_report(report, capture_html(found))
-    if as_json:
-        ui.print_json(capture_report(found))
-    else:
-        _print(found)
-        for path in (output, report):
-            if path:
-                click.echo(f"written to {path}")
-
-
-def _print(found: RecordedModel) -> None:
-    said = " (simulated)" if found.model.provenance.simulated else ""
-    ui.print_wrapped(f"{found.model.name}{said}: {found.model.provenance.method}")
-    from fdvv.bench.model import capture_report
-
     document = capture_report(found)
+    if as_json:
+        ui.print_json(document)
+    else:
+        _print(found, document)
+        ui.print_written(output, report)
+
+
+def _print(found: RecordedModel, document: dict[str, Any]) -> None:
+    said = ui.simulated(found.model.provenance.simulated)
+    ui.print_wrapped(f"{found.model.name}{said}: {found.model.provenance.method}")
     ui.print_table(
         ["curve", "asked mm/s", "achieved mm/s", "presses", "spread cN", "most", "RMSE cN", "bump kept"],
         [
@@ -94,11 +90,9 @@ def _print(found: RecordedModel) -> None:
                 c["stroke"],
                 ui.number(c["velocity_mm_s"], 1),
                 ui.with_spread(c["achieved_mm_s"], c["achieved_spread_mm_s"], 1),
-                "–" if c["presses"] is None else str(c["presses"]),
-                ui.number(c["median_spread_cN"]),
-                ui.number(c["largest_spread_cN"]),
+                *(c[key] for key in ("presses", "median_spread_cN", "largest_spread_cN")),
                 ui.number(c["rmse_cN"], 3),
-                "no bump" if c["bump_kept_ratio"] is None else f"{100 * c['bump_kept_ratio']:.1f} %",
+                ui.bump_kept(c["bump_kept_ratio"]),
             ]
             for c in document["curves"]
         ],
@@ -112,7 +106,7 @@ def _print(found: RecordedModel) -> None:
     if left:
         ui.print_table(
             ["left out", "mm/s", "why"],
-            [[f"take {p['take']}", ui.number(p["velocity_mm_s"], 0), ui.one_line(p["reason"])] for p in left],
+            [[f"take {p['take']}", ui.number(p["velocity_mm_s"], 0), p["reason"]] for p in left],
             left=3,
         )
     ui.print_warnings(found.warnings)
@@ -133,7 +127,7 @@ def _print_vibrations(vibrations: list[dict[str, Any]]) -> None:
                     1e3 * v["duration_s"], v["duration_spread_s"] and 1e3 * v["duration_spread_s"], 1
                 ),
                 ui.with_spread(v["amplitude_m_s2"], v["amplitude_spread_m_s2"]),
-                "scaled" if v["presses"] is None else str(v["presses"]),
+                "scaled" if v["presses"] is None else v["presses"],
             ]
             for v in vibrations
         ],

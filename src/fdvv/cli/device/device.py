@@ -6,9 +6,9 @@ import json
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, Any
 
 import click
 
@@ -18,9 +18,6 @@ from fdvv.cli.device.strip import strip
 from fdvv.cli.options import device_option, opened, remote
 from fdvv.device.remote import Remote, watch
 from fdvv.device.telemetry import TickColumns
-
-if TYPE_CHECKING:
-    from fdvv.device.remote import Remote
 
 
 def follow(device: Remote, duration_s: float, every: int, output: Path | None) -> dict[str, Any]:
@@ -96,13 +93,8 @@ def device() -> None:
     """
 
 
-device.add_command(upload)
-
-device.add_command(press)
-
-device.add_command(exciter)
-
-device.add_command(strip)
+for command in (upload, press, exciter, strip):
+    device.add_command(command)
 
 
 @device.command("list")
@@ -122,7 +114,7 @@ def list_(as_json: bool) -> None:
     if as_json:
         ui.print_json({"devices": rows})
         return
-    ui.print_table(["device", "what it is"], [[row["device"], row["about"]] for row in rows], left=2)
+    ui.print_table(["device", "what it is"], [list(row.values()) for row in rows], left=2)
     ui.print_warnings(note)
 
 
@@ -131,12 +123,8 @@ def list_(as_json: bool) -> None:
 @ui.json_option
 def info(spec: str, as_json: bool) -> None:
     """Show what a device is: limits, firmware, mode, latched fault, counters."""
-    import dataclasses
-
-    from fdvv.device.remote import Remote
-
     with opened(spec) as found:
-        document: dict[str, Any] = dataclasses.asdict(found.info())
+        document: dict[str, Any] = asdict(found.info())
         if isinstance(found, Remote):
             document |= _firmware(found)
     if as_json:
@@ -148,8 +136,6 @@ def info(spec: str, as_json: bool) -> None:
 
 
 def _firmware(found: Remote) -> dict[str, Any]:
-    import dataclasses
-
     from fdvv.protocol.tables import Mode
 
     hello, client = found.client.hello, found.client
@@ -160,7 +146,7 @@ def _firmware(found: Remote) -> dict[str, Any]:
         "serial": hello.serial,
         "mode": Mode(client.ping().mode).name.lower(),
         "fault": str(found.fault()),
-        "counters": dataclasses.asdict(client.counters()),
+        "counters": asdict(client.counters()),
     }
 
 
@@ -188,13 +174,10 @@ def selftest(spec: str, as_json: bool) -> None:
     if as_json:
         ui.print_json({"parts": parts, "simulated": simulated})
     else:
-        ui.print_table(
-            ["part", "verdict", "value"], [[str(v) for v in row.values()] for row in parts], left=2
-        )
+        ui.print_table(["part", "verdict", "value"], [list(row.values()) for row in parts], left=2)
     failed = [str(row["part"]) for row in parts if row["verdict"] == "failed"]
     if failed:
-        click.echo(f"fdvv: {spec}: failed: {', '.join(failed)}", err=True)
-        raise click.exceptions.Exit(1)
+        raise ui.failed(f"{spec}: failed: {', '.join(failed)}")
 
 
 @device.command()
@@ -215,8 +198,6 @@ def monitor(spec: str, duration_s: float, every: int, output: Path | None, as_js
     A live line on the terminal; records into a file if asked. Ticks that did not arrive are counted, never
     made up. Nothing is rendered that was not before.
     """
-    pass
-
     ui.check_output(output, ".csv", ".jsonl")
     with remote(spec) as found:
         summary = follow(found, duration_s, every, output)
@@ -225,5 +206,4 @@ def monitor(spec: str, duration_s: float, every: int, output: Path | None, as_js
         return
     source = f"{summary['device']}{ui.simulated(summary['simulated'])}"
     click.echo(f"{source}: {summary['records']} records, {summary['missing_ticks']} ticks missing")
-    if output:
-        click.echo(f"written to {output}")
+    ui.print_written(output)

@@ -51,7 +51,7 @@ def exciter(
     ui.check_output(output, EXCITER_SUFFIX)
     known = load_rig(rig_known) if rig_known else None
     with opened(spec, rig=rig, seed=seed) as found, ui.progress("tones", 14) as advance:
-        result = identify_exciter(found, known, tone_s, advance, lambda text: click.echo(text, err=True))
+        result = identify_exciter(found, known, tone_s, advance, ui.tell)
         name = found.info().name
     if output:
         save_exciter(result, output)
@@ -63,13 +63,9 @@ def exciter(
         f"{100 * result.residual_ratio:.0f} % rms off the fit"
     )
     units = {"gain_m_s2_V": "gain, m/s2/V", "resonance_Hz": "resonance, Hz", "quality": "quality"}
-    rows = [
-        [label, ui.number(getattr(result, key)), f"{100 * result.error[key]:.0f} %"]
-        for key, label in units.items()
-    ]
+    rows = [[label, getattr(result, key), f"{100 * result.error[key]:.0f} %"] for key, label in units.items()]
     ui.print_table(["of the exciter on its cap", "found", "standard error"], rows)
-    if output:
-        click.echo(f"written to {output}")
+    ui.print_written(output)
 
 
 @click.command()
@@ -97,7 +93,7 @@ def upload(
     known = opened_exciter(exciter)
     image = program_image(button, velocities_mm_s, known)
     with opened(spec, recording) as found:
-        _upload(_programs(found, spec), image, known)
+        _upload(found, spec, image, known)
         name = found.info().name
     travel_mm = travel_mm_of(image)
     document = {"device": name, "bytes": len(image), "states": head_of(image).states, "travel_mm": travel_mm}
@@ -107,20 +103,16 @@ def upload(
     click.echo(f"{name}: {len(image)} bytes, checked and active, travel {travel_mm:.3f} mm")
 
 
-def _upload(found: Any, image: bytes, exciter: KnownExciter | None) -> None:
-    from fdvv.rendering.exciter import prepare_exciter
-
-    if exciter:
-        prepare_exciter(found, exciter)
-    found.upload_program(image)
-
-
-def _programs(found: Any, spec: str) -> Any:
+def _upload(found: Any, spec: str, image: bytes, exciter: KnownExciter | None) -> None:
+    """Make an image the program of a device. InputError if it runs none."""
     from fdvv.errors import InputError
+    from fdvv.rendering.exciter import prepare_exciter
 
     if not hasattr(found, "upload_program"):
         raise InputError("--device", spec, "it runs tables of force only", "use host or serial:PORT")
-    return found
+    if exciter:
+        prepare_exciter(found, exciter)
+    found.upload_program(image)
 
 
 @click.command()
@@ -153,21 +145,23 @@ def press(
     image = program_image(button, velocities_mm_s, known)
     rows = []
     with opened(spec, recording) as found:
-        _upload(_programs(found, spec), image, known)
+        _upload(found, spec, image, known)
         info = found.info()
         for count in range(presses):
             if not info.simulated:
-                click.echo(f"press {count + 1} of {presses}: press fully and let go", err=True)
+                ui.tell(f"press {count + 1} of {presses}: press fully and let go")
             rows.append(_summary(found.press(speed_mm_s)))
     if as_json:
         ui.print_json({"device": info.name, "simulated": info.simulated, "presses": rows})
         return
-    click.echo(f"{info.name}{' (simulated)' if info.simulated else ''}, asked at {speed_mm_s:g} mm/s")
+    click.echo(f"{info.name}{ui.simulated(info.simulated)}, asked at {speed_mm_s:g} mm/s")
     ui.print_table(
         ["press", "duration s", "deepest mm", "largest cN", "ticks"],
-        [[str(i + 1), *(ui.number(float(v), 3) for v in list(row.values())[:3]), str(row["ticks"])]
-         for i, row in enumerate(rows)],
-    )  # fmt: skip
+        [
+            [i, *(ui.number(v, 3) for v in list(row.values())[:3]), row["ticks"]]
+            for i, row in enumerate(rows, 1)
+        ],
+    )
 
 
 def _summary(found: Any) -> dict[str, Any]:

@@ -15,9 +15,6 @@ if TYPE_CHECKING:
     from fdvv.optimize.run.strip import StripCheck
     from fdvv.optimize.tasks import TaskPress
 
-LEDS = ("each", "together")
-VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0)
-
 
 @click.command()
 @ui.option("--strip", "spec", required=True, help="serial:PORT of the strip's board, or host (simulated).")
@@ -28,7 +25,7 @@ VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0)
 @ui.option("--seed", type=ui.COUNT, default=0, help="Of the start delays.")
 @ui.option(
     "--led",
-    type=click.Choice(LEDS),
+    type=click.Choice(["each", "together"]),
     default="each",
     help="When a pixel shows what it is sent: each at once (APA102) or all after the frame (SK9822).",
 )
@@ -65,10 +62,7 @@ def strip(
     else:
         _show(found)
     if not found.edges:
-        click.echo(
-            f"fdvv: {spec}: the key line never rose; check its wire and that the rig renders", err=True
-        )
-        raise click.exceptions.Exit(1)
+        raise ui.failed(f"{spec}: the key line never rose; check its wire and that the rig renders")
 
 
 @contextmanager
@@ -81,7 +75,7 @@ def _rendered(device: str | None, button: str) -> Iterator[Callable[[], None] | 
         yield None
         return
     with remote(device) as found:
-        found.upload_program(program_image(button, VELOCITIES_mm_s))
+        found.upload_program(program_image(button, ui.SPEEDS_mm_s))
         with rendering(found) as feed:
             yield feed
 
@@ -109,12 +103,12 @@ def _document(found: StripCheck) -> dict[str, Any]:
 
 
 def _show(found: StripCheck) -> None:
-    rows = [
+    rows: list[list[object]] = [
         ["firmware", found.firmware],
         ["last reset by the watchdog", "yes" if found.was_reset else "no"],
-        ["edges of the key line", str(found.edges)],
-        ["damaged requests", str(found.bad_frames)],
-        ["mean asynchrony, ms", ui.number(found.asynchrony_ms)],
+        ["edges of the key line", found.edges],
+        ["damaged requests", found.bad_frames],
+        ["mean asynchrony, ms", found.asynchrony_ms],
     ]
-    click.echo(f"{found.name}{' (simulated)' if found.simulated else ''}")
-    ui.print_table(["what", "value"], rows, left=1)
+    click.echo(f"{found.name}{ui.simulated(found.simulated)}")
+    ui.print_table(["what", "value"], rows)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,13 +10,11 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.optimize.options import engine_option, rig_option
+from fdvv.cli.options import kept_on_interrupt
 
 if TYPE_CHECKING:
     from fdvv.optimize.experiment.experiment import ExperimentResult, Stage
     from fdvv.optimize.experiment.winner import RenderedWinner
-
-P_COLUMNS = ("p", "holm_p", "bonferroni_p")
-REPORT, MODEL, RESULT = "report.html", "winner.fdvv.json", "result.json"
 
 
 @click.command()
@@ -70,7 +66,8 @@ def experiment(
     begun_s = time.perf_counter()
     prior = experiment_prior(priors, asked["seed"])
     setup = ExperimentSetup(engine=engine[0], options=engine[1], prior=prior, **asked)
-    with ui.stages() as stage, _kept(folder), open_executor(processes) as executor:
+    kept = f"stopped; every finished trial is in {folder}, the same command goes on"
+    with ui.stages() as stage, kept_on_interrupt(kept), open_executor(processes) as executor:
         result = run_experiment(folder, setup, executor, stage)
         rendered = _rendered(result, folder, stage) if winner else None
         stage("report", 0, 1)
@@ -80,16 +77,6 @@ def experiment(
         ui.print_json(document)
     else:
         _print(document, folder, time.perf_counter() - begun_s)
-
-
-@contextmanager
-def _kept(folder: Path) -> Iterator[None]:
-    """Say on Ctrl-C how to go on."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        message = f"stopped; every finished trial is in {folder}, the same command goes on"
-        raise KeyboardInterrupt(message) from None
 
 
 def _rendered(result: ExperimentResult, folder: Path, stage: Stage) -> RenderedWinner | None:
@@ -103,7 +90,7 @@ def _rendered(result: ExperimentResult, folder: Path, stage: Stage) -> RenderedW
     except DeviceError as error:
         ui.print_warnings([str(error)])
         return None
-    save_model(found.captured.model, folder / MODEL)
+    save_model(found.captured.model, folder / "winner.fdvv.json")
     stage("winner", 1, 1)
     return found
 
@@ -129,7 +116,7 @@ def _print(document: dict[str, Any], folder: Path, time_s: float) -> None:
         if one["first"] == "optimal"
     ]
     ui.print_table(["optimal minus", "ms", "p", "Holm", "Bonferroni"], rows)
-    click.echo(f"simulated; kept in {folder} ({REPORT}, {RESULT}), {time_s:.0f} s")
+    click.echo(f"simulated; kept in {folder} (report.html, result.json), {time_s:.0f} s")
 
 
 def effect_line(effect: dict[str, Any]) -> str:

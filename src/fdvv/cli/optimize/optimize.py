@@ -10,7 +10,7 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.optimize.experiment import experiment
 from fdvv.cli.optimize.options import Play, engine_option, level_option, on_strip, rig_option, strip_options
-from fdvv.cli.optimize.population import add_population
+from fdvv.cli.optimize.population import population
 
 if TYPE_CHECKING:
     from fdvv.optimize.problem import Trial
@@ -101,8 +101,7 @@ def replay(folder: Path, as_json: bool) -> None:
         click.echo(f"{engine} suggests {ui.counted(suggested, 'trial')} again, each the same")
     if different:
         numbers = ", ".join(map(str, different))
-        click.echo(f"fdvv: {folder}: {engine} now suggests otherwise at trial {numbers}", err=True)
-        raise click.exceptions.Exit(1)
+        raise ui.failed(f"{folder}: {engine} now suggests otherwise at trial {numbers}")
 
 
 @optimize.command()
@@ -127,7 +126,7 @@ def report(folder: Path, output: Path | None, as_json: bool) -> None:
 
 
 optimize.add_command(experiment)
-add_population(optimize)
+optimize.add_command(population)
 
 
 def _asked(
@@ -182,8 +181,7 @@ def _print(session: Optimization, document: dict[str, Any]) -> None:
         f"{ui.counted(len(trials), 'trial')}"
     )
     rows = [
-        [str(t["number"]), t["state"], ui.number(t["score"], 1), ui.number(t["error"], 1)]
-        for t in trials[-LAST:]
+        [t["number"], t["state"], ui.number(t["score"], 1), ui.number(t["error"], 1)] for t in trials[-LAST:]
     ]
     name = session.problem.objectives[0].name
     ui.print_table(["trial", "state", name, "error"], rows, left=2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -17,18 +17,14 @@ if TYPE_CHECKING:
     from fdvv.optimize.run.session import Optimization
 
 
-Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-def strip_options(command: Command) -> Command:
-    """Add the options that choose strip and rig."""
-    strip = ui.option(
-        "--strip", metavar="DEVICE",
+strip_options = ui.options(
+    ui.option(
+        "--strip",
+        metavar="DEVICE",
         help="LED strip that a person plays on: serial:PORT, or host (simulated).",
-    )  # fmt: skip
-    device = ui.option("--device", default="host", help="With --strip: the rig that renders designs.")
-    return strip(device(command))
-
+    ),
+    ui.option("--device", default="host", help="With --strip: the rig that renders designs."),
+)
 
 Play = Callable[["Optimization"], "Iterator[Trial]"]
 
@@ -61,7 +57,6 @@ class EngineType(click.ParamType[tuple[str, dict[str, Any]]]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[str, dict[str, Any]]:
-        """Read name and options, or refuse them."""
         if isinstance(value, tuple):
             return value
         name, _, text = str(value).partition(":")

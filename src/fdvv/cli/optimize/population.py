@@ -8,12 +8,7 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.options import check_executor, executor_options, kept_on_interrupt
-
-
-def add_population(group: click.Group) -> None:
-    """Add the command to `fdvv optimize`."""
-    group.add_command(population)
+from fdvv.cli.options import Workers, executor_options
 
 
 @click.command()
@@ -34,20 +29,7 @@ def add_population(group: click.Group) -> None:
 @executor_options
 @ui.json_option
 def population(
-    folder: Path,
-    people: int,
-    level: str,
-    engine: str,
-    budget: int,
-    grid: int | None,
-    seed: int,
-    shifts: tuple[str, ...],
-    rig: str,
-    prior: Path | None,
-    processes: int | None,
-    workers: int | None,
-    cluster: str | None,
-    as_json: bool,
+    folder: Path, grid: int | None, prior: Path | None, where: Workers, as_json: bool, **asked: Any
 ) -> None:
     """Optimise a button for every one of many simulated people, or score a grid of designs by all.
 
@@ -56,24 +38,17 @@ def population(
     """
     from fdvv.optimize.population.population import run_population
     from fdvv.optimize.run.begin import read_grid
-    from fdvv.parallel.open import open_executor
 
-    check_executor(processes, workers, cluster)
-    plan = _plan(people, level, engine, budget, grid, seed, shifts, rig)
+    where.check()
+    plan = _plan(grid=grid, **asked)
     trials = read_grid(prior).prior() if prior else ()
-    with (
-        kept_on_interrupt(folder),
-        open_executor(processes, workers, cluster) as executor,
-        ui.progress("people" if grid is None else "grid", plan.chunks) as tell,
-    ):
+    label = "people" if grid is None else "grid"
+    with where.at_work(folder, label, plan.chunks) as (executor, tell):
         result = run_population(folder, plan, executor, trials, tell)
     _show(result.summary(), folder, as_json)
 
 
-def _plan(
-    people: int, level: str, engine: str, budget: int, grid: int | None, seed: int,
-    shifts: tuple[str, ...], rig: str,
-) -> Any:  # fmt: skip
+def _plan(grid: int | None, level: str, engine: str, shifts: tuple[str, ...], **asked: Any) -> Any:
     from fdvv.optimize.engines.registry import engine_of
     from fdvv.optimize.paper_space import paper_model, paper_space
     from fdvv.optimize.people.simulate import simulate_task
@@ -83,17 +58,15 @@ def _plan(
     engine_of(engine)
     found = PopulationPlan(
         kind="optimize" if grid is None else "grid",
-        people=people,
-        seed=seed,
         shifts=dict(_shift(text) for text in shifts),
         level="easy" if level == "easy" else "hard",
-        rig=rig,
         engine=engine,
-        budget=budget,
         designs=grid or 1,
+        **asked,
     )
+    # one round by one person refuses a rig or a shift that cannot be, before hundreds are begun
     middle = paper_model(paper_space().of_unit([[0.5] * 8])[0])
-    simulate_task(TemporalPointing(level, rounds=1), middle, found.user(0), seed, rig=rig)
+    simulate_task(TemporalPointing(level, rounds=1), middle, found.user(0), found.seed, rig=found.rig)
     return found
 
 

@@ -9,7 +9,7 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import law_of, method_options
-from fdvv.cli.rendering.session import beside, guided, open_session, session_options
+from fdvv.cli.rendering.session import Pressing, beside, session_options
 
 
 @click.command()
@@ -19,18 +19,7 @@ from fdvv.cli.rendering.session import beside, guided, open_session, session_opt
 @ui.option("-o", "--output", type=ui.PATH, help="The *.actuation.json to write.")
 @ui.json_option
 def compensate(
-    button: str,
-    device: str,
-    rig: Path | None,
-    finger: Path | None,
-    seed: int,
-    velocities_mm_s: tuple[float, ...],
-    folder: Path | None,
-    pace_ratio: float,
-    save_rig: Path | None,
-    output: Path | None,
-    as_json: bool,
-    **asked: Any,
+    button: str, pressing: Pressing, save_rig: Path | None, output: Path | None, as_json: bool, **asked: Any
 ) -> None:
     """Learn the actuation that makes a rig feel like a model.
 
@@ -54,18 +43,16 @@ def compensate(
     from fdvv.rendering.compensate import compensate as learn
 
     model = open_button(button)
-    default = beside(output, button, "session")
-    session = open_session(folder, device, (seed, rig, finger), pace_ratio, default)
-    with guided(session, device, as_json) as (found, view, guide):
-        result = learn(found, model, velocities_mm_s, law, view.done, session, guide)
+    session = pressing.session(beside(output, button, "session"))
+    with pressing.guided(session, as_json) as (found, view, guide):
+        result = learn(found, model, pressing.velocities_mm_s, law, view.done, session, guide)
     if output:
         save_actuation(result, output)
     if save_rig and result.learned_rig:
         keep(result.learned_rig, save_rig)
     _print({**result.to_dict(), **_receipt(result)}, as_json)
-    for path in (output, save_rig):
-        if path and not as_json:
-            click.echo(f"written to {path}")
+    if not as_json:
+        ui.print_written(output, save_rig)
 
 
 @click.command()
@@ -83,13 +70,7 @@ def compensate(
 def probe(
     button: str,
     actuation: Path | None,
-    device: str,
-    rig: Path | None,
-    finger: Path | None,
-    seed: int,
-    velocities_mm_s: tuple[float, ...],
-    folder: Path | None,
-    pace_ratio: float,
+    pressing: Pressing,
     presses: int,
     bound_cN: float | None,
     as_json: bool,
@@ -111,21 +92,17 @@ def probe(
     method = learned.method if learned else "not compensated"
     if learned and learned.model_name != model.name:
         ui.print_warnings([f"{actuation} was learned for {learned.model_name}, not for {model.name}"])
-    default = beside(actuation, button, "probe-session")
-    session = open_session(folder, device, (seed, rig, finger), pace_ratio, default)
-    with guided(session, device, as_json) as (found, view, guide):
-        surface = learned.surface if learned else uncompensated(found, model, velocities_mm_s)
+    session, speeds = pressing.session(beside(actuation, button, "probe-session")), pressing.velocities_mm_s
+    with pressing.guided(session, as_json) as (found, view, guide):
+        surface = learned.surface if learned else uncompensated(found, model, speeds)
         tuning = learned.outcome.tuning if learned else Tuning()
-        result = judge(
-            found, model, surface, velocities_mm_s, presses, view.done, method, session, guide, tuning
-        )
+        result = judge(found, model, surface, speeds, presses, view.done, method, session, guide, tuning)
     document = {**result.to_dict(), **_receipt(result)}
     _print(document, as_json)
     worst = max(document["curves"], key=lambda c: c["mean_error_cN"])
     if bound_cN is not None and worst["mean_error_cN"] > bound_cN:
         reason = f"mean error of {worst['mean_error_cN']:.2f} cN exceeds the bound of {bound_cN:g} cN"
-        click.echo(f"fdvv: {_curve_name(worst)}: {reason}", err=True)
-        raise click.exceptions.Exit(1)
+        raise ui.failed(f"{ui.curve_name(worst)}: {reason}")
 
 
 def _receipt(result: Any) -> dict[str, Any]:
@@ -143,13 +120,10 @@ def _print(document: dict[str, Any], as_json: bool) -> None:
         ["curve", "first cN", "last cN", "mean cN", "max cN"],
         [
             [
-                _curve_name(c),
-                *(
-                    ui.number(e)
-                    for e in ((c["error_cN"][0], c["error_cN"][-1]) if c["error_cN"] else (None, None))
-                ),
-                ui.number(c["mean_error_cN"]),
-                ui.number(c["max_error_cN"]),
+                ui.curve_name(c),
+                *((c["error_cN"][0], c["error_cN"][-1]) if c["error_cN"] else (None, None)),
+                c["mean_error_cN"],
+                c["max_error_cN"],
             ]
             for c in document["curves"]
         ],
@@ -159,7 +133,3 @@ def _print(document: dict[str, Any], as_json: bool) -> None:
     if document["skipped"]:
         count, last = ui.counted(len(document["skipped"]), "press"), document["skipped"][-1]
         ui.print_warnings([f"{count} skipped; the last: {last}"])
-
-
-def _curve_name(curve: dict[str, Any]) -> str:
-    return f"{curve['stroke']} {curve['velocity_mm_s']:g} mm/s"

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.rendering.session import beside, guided, open_session, session_options
+from fdvv.cli.options import closing
+from fdvv.cli.rendering.session import Pressing, beside, session_options
 
 if TYPE_CHECKING:
-    from fdvv.device.contract import Device
     from fdvv.model.model import FDVVModel
     from fdvv.rendering.probe import ProbeResult
     from fdvv.rendering.session import Session
@@ -38,13 +36,7 @@ COLUMNS = ["curve", "largest cN", "bump kept", "margin", "expected cN", "measure
 def feasible(
     button: str,
     rig_known: Path | None,
-    device: str,
-    rig: Path | None,
-    finger: Path | None,
-    seed: int,
-    velocities_mm_s: tuple[float, ...],
-    folder: Path | None,
-    pace_ratio: float,
+    pressing: Pressing,
     actuation: Path | None,
     presses: int,
     figure: Path | None,
@@ -65,13 +57,11 @@ def feasible(
     from fdvv.rendering.feasibility import feasibility
 
     model, known = open_button(button), load_rig(rig_known)
-    session = open_session(
-        folder, device, (seed, rig, finger), pace_ratio, beside(actuation, button, "feasible")
-    )
-    measured = _measure(session, device, model, actuation, velocities_mm_s, presses, as_json)
-    with _opened(session, device) as found:
+    session = pressing.session(beside(actuation, button, "feasible"))
+    measured = _measure(session, pressing, model, actuation, presses, as_json) if actuation else None
+    with closing(session.open_device(pressing.device)) as found:
         settings, info = found.settings(), found.info()
-    report = feasibility(model, known, settings, velocities_mm_s, measured, info)
+    report = feasibility(model, known, settings, pressing.velocities_mm_s, measured, info)
     if figure:
         from fdvv.rendering.feasibility import feasible_curves
         from fdvv.rendering.figures import plot_feasibility
@@ -83,62 +73,41 @@ def feasible(
         _print(report.to_dict())
 
 
-@contextmanager
-def _opened(session: Session, device: str) -> Iterator[Device]:
-    found = session.open_device(device)
-    try:
-        yield found
-    finally:
-        if hasattr(found, "close"):
-            found.close()
-
-
 def _measure(
-    session: Session,
-    device: str,
-    model: FDVVModel,
-    actuation: Path | None,
-    velocities_mm_s: tuple[float, ...],
-    presses: int,
-    as_json: bool,
-) -> ProbeResult | None:
-    """Probe a learned table on the device; None if there is none."""
-    if actuation is None:
-        return None
+    session: Session, pressing: Pressing, model: FDVVModel, actuation: Path, presses: int, as_json: bool
+) -> ProbeResult:
+    """Probe a learned table on the device."""
     from fdvv.rendering.actuation_file import load_actuation
     from fdvv.rendering.probe import probe
 
     learned = load_actuation(actuation)
-    with guided(session, device, as_json) as (found, view, guide):
+    with pressing.guided(session, as_json) as (found, view, guide):
         return probe(
-            *(found, model, learned.surface, velocities_mm_s, presses, view.done, learned.method),
+            *(found, model, learned.surface, pressing.velocities_mm_s, presses, view.done, learned.method),
             *(session, guide, learned.outcome.tuning),
         )
 
 
 def _print(document: dict[str, Any]) -> None:
-    simulated = " (simulated)" if document["simulated"] else ""
     presses = document["rig_presses"]
     known = f"rig known from {ui.counted(presses, 'press')}" if presses else "rig known from its file alone"
-    ui.print_wrapped(f"{document['model']} on {document['device']}{simulated}, {known}")
+    ui.print_wrapped(
+        f"{document['model']} on {document['device']}{ui.simulated(document['simulated'])}, {known}"
+    )
     ui.print_table(COLUMNS, [_row(c) for c in document["curves"]])
     for curve in document["curves"]:
         for reason in curve["reasons"]:
-            ui.print_wrapped(f"{_name(curve)}: {reason}")
+            ui.print_wrapped(f"{ui.curve_name(curve)}: {reason}")
     for dose in document["thermal"]:
         ui.print_wrapped(_warmth(dose))
     click.echo("margin: stiffness that the loop bears under a finger, over the curve's steepest rise")
     click.echo("expected cN: mean error after compensation, an estimate; all but measured is computed")
 
 
-def _name(curve: dict[str, Any]) -> str:
-    return f"{curve['stroke']} {curve['velocity_mm_s']:g} mm/s"
-
-
 def _row(curve: dict[str, Any]) -> list[str]:
     kept, measured = curve["bump_kept_ratio"], curve["measured"]
     return [
-        _name(curve),
+        ui.curve_name(curve),
         ui.number(curve["largest_command_cN"], 0),
         "–" if kept is None else f"{100 * kept:.0f} %",
         ui.number(min(curve["stability"]["margin"], 99.0), 1),

@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 import math
-import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
 from fdvv.cli import ui
 from fdvv.cli.cue import show_cue
+from fdvv.cli.options import closing, packed
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.live import Live
 
-    from fdvv.rendering.session_run import PressDone, PressRequest, VelocityProgress
-if TYPE_CHECKING:
     from fdvv.device.contract import Device
     from fdvv.rendering.session import Session
-    from fdvv.rendering.session_run import Guide
+    from fdvv.rendering.session_run import Guide, PressDone, PressRequest, VelocityProgress
 
 
 REDRAW_s = 0.1
@@ -38,36 +36,14 @@ KEPT = {"compensate": "best", "probe": "median"}
 """What the mean and the largest error of a curve are of."""
 
 
-class View(Protocol):
-    """What shows a session."""
-
-    def ask(self, ask: PressRequest) -> None:
-        """Ask for a press."""
-        ...
-
-    def done(self, event: PressDone) -> None:
-        """Report a press."""
-        ...
-
-    def notice(self, text: str) -> None:
-        """Report what a person should know."""
-        ...
-
-
 @contextmanager
-def session_view(person: bool, quiet: bool) -> Iterator[View]:
+def session_view(person: bool, quiet: bool) -> Iterator[LineView | TableView]:
     """Show a session on standard error, in place if it is a terminal.
 
     person : someone presses and is shown the pace; quiet : tell only what a person at a device must know.
     """
-    if quiet or not sys.stderr.isatty():
-        yield LineView(person, quiet)
-        return
-    from rich.console import Console
-    from rich.live import Live
-
-    with Live(console=Console(stderr=True), auto_refresh=False, transient=True) as live:
-        yield TableView(person, live)
+    with nullcontext() if quiet else ui.live() as live:
+        yield LineView(person, quiet) if live is None else TableView(person, live)
 
 
 class LineView:
@@ -79,19 +55,17 @@ class LineView:
     def ask(self, ask: PressRequest) -> None:
         """Ask a person for a press."""
         if self._person:
-            click.echo(asked(ask), err=True)
+            ui.tell(asked(ask))
 
     def done(self, event: PressDone) -> None:
         """Report a press, if it is due."""
         step = max(1, event.presses_total // LINES)
         due = self._person or event.skipped or event.presses_done % step == 0
         if due and (self._person or not self._quiet):
-            click.echo(press_line(event), err=True)
+            ui.tell(press_line(event))
 
     def notice(self, text: str) -> None:
-        """Report it; where only a document is wanted, warnings alone."""
-        if not self._quiet or text.startswith("warning: "):
-            click.echo(ui.one_line(text), err=True)
+        ui.notice(text, self._quiet)
 
 
 class TableView:
@@ -145,19 +119,13 @@ def press_line(event: PressDone) -> str:
 def picture(rows: tuple[VelocityProgress, ...], kept: str, lines: tuple[str, ...]) -> RenderableType:
     """Lay out the rows and the lines below them."""
     from rich.console import Group
-    from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    table.add_column("velocity")
     figures = [
         name for stroke in ("press", "release") for name in (f"{stroke}: last", f"{kept} mean", "max cN")
     ]
-    for name in ("presses", *figures):
-        table.add_column(name, justify="right")
-    for row in rows:
-        table.add_row(*cells(row))
-    return Group(table, *(Text(line) for line in lines))
+    table = ui.rich_table(["velocity", "presses", *figures], map(cells, rows))
+    return Group(table, *map(Text, lines))
 
 
 def cells(row: VelocityProgress) -> list[str]:
@@ -171,7 +139,44 @@ def cells(row: VelocityProgress) -> list[str]:
     return found
 
 
-session_options = ui.options(
+class Pressing(NamedTuple):
+    """The device that presses, the speeds, and where the presses are kept."""
+
+    device: str
+    rig: Path | None
+    finger: Path | None
+    seed: int
+    velocities_mm_s: tuple[float, ...]
+    folder: Path | None
+    pace_ratio: float
+
+    def session(self, default: Path) -> Session:
+        """Choose where presses are kept; default is the folder for a person's. InputError if it cannot be."""
+        from fdvv.compensation.presses import AcceptanceLimits
+        from fdvv.device.open import pressed_by_person
+        from fdvv.rendering.session import Session
+
+        folder = self.folder or (default if pressed_by_person(self.device) else None)
+        if folder:
+            ui.check_folder(folder)
+        return Session(folder, self.seed, self.rig, self.finger, AcceptanceLimits(pace_ratio=self.pace_ratio))
+
+    @contextmanager
+    def guided(self, session: Session, as_json: bool) -> Iterator[tuple[Device, LineView | TableView, Guide]]:
+        """Open the device, show the session, and let the device go at the end, whatever happens."""
+        from fdvv.device.open import pressed_by_person
+        from fdvv.rendering.session_run import Guide
+
+        with (
+            closing(session.open_device(self.device)) as found,
+            session_view(pressed_by_person(self.device), as_json) as view,
+        ):
+            yield found, view, Guide(view.ask, view.notice)
+
+
+session_options = packed(
+    "pressing",
+    Pressing,
     ui.option("--device", default="twin", help="'twin' is simulated; see fdvv device."),
     ui.option("--rig", type=ui.FILE, help="TOML file of the twin's rig (docs/reference/rig.md)."),
     ui.option("--finger", type=ui.FILE, help="TOML file of the twin's finger."),
@@ -190,45 +195,6 @@ session_options = ui.options(
         help="Part by which a press may miss its speed and still be used.",
     ),
 )  # fmt: skip
-"""The device, the speeds, and where the presses are kept."""
-
-
-def open_session(
-    folder: Path | None,
-    device: str,
-    parts: tuple[int, Path | None, Path | None],
-    pace_ratio: float,
-    default: Path,
-) -> Session:
-    """Choose where presses are kept. Raises InputError where that cannot be.
-
-    parts : seed, rig and finger of a simulated device; default : the folder for a person's presses.
-    """
-    from fdvv.compensation.presses import AcceptanceLimits
-    from fdvv.device.open import pressed_by_person
-    from fdvv.rendering.session import Session
-
-    if folder is None and pressed_by_person(device):
-        folder = default
-    if folder:
-        ui.check_folder(folder)
-    seed, rig, finger = parts
-    return Session(folder, seed, rig, finger, AcceptanceLimits(pace_ratio=pace_ratio))
-
-
-@contextmanager
-def guided(session: Session, device: str, as_json: bool) -> Iterator[tuple[Device, View, Guide]]:
-    """Open the device, show the session, and let the device go at the end, whatever happens."""
-    from fdvv.device.open import pressed_by_person
-    from fdvv.rendering.session_run import Guide
-
-    found = session.open_device(device)
-    try:
-        with session_view(pressed_by_person(device), as_json) as view:
-            yield found, view, Guide(view.ask, view.notice)
-    finally:
-        if hasattr(found, "close"):
-            found.close()
 
 
 def beside(result: Path | None, button: str, what: str) -> Path:
@@ -266,9 +232,9 @@ def print_receipt(found: dict[str, Any]) -> None:
         ["curve", "presses", "first cN", "last cN", "best cN", "mean cN", "max cN"],
         [
             [
-                f"{c['stroke']} {c['velocity_mm_s']:g} mm/s",
-                str(c["presses"]),
-                *(ui.number(c[f"{name}_cN"]) for name in ("first", "last", "best", "mean", "max")),
+                ui.curve_name(c),
+                c["presses"],
+                *(c[f"{k}_cN"] for k in ("first", "last", "best", "mean", "max")),
             ]
             for c in found["curves"]
         ],

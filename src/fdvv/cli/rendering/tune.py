@@ -10,16 +10,12 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.cue import show_cue
-from fdvv.cli.options import exciter_option, opened_exciter
-from fdvv.cli.rendering.session import beside, open_session, session_options
+from fdvv.cli.options import closing, exciter_option, opened_exciter
+from fdvv.cli.rendering.session import Pressing, beside, session_options
 
 if TYPE_CHECKING:
     from fdvv.rendering.session_run import Guide, PressRequest
     from fdvv.vibration.tune import Preferred, Question
-if TYPE_CHECKING:
-    from fdvv.vibration.tune import Rating
-    from fdvv.vibration.tune_compare import Comparing
-
 
 RATE = "how close to the real button, 1 (not at all) to 7 (the same); r presses again"
 
@@ -43,27 +39,22 @@ class TuneView:
         """Return the callbacks of the session."""
         from fdvv.rendering.session_run import Guide
 
-        return Guide(self._ask, self._notice)
+        return Guide(self._ask, lambda text: ui.notice(text, self._as_json))
 
     def _ask(self, ask: PressRequest) -> None:
         if not self._person:
             return
         self._press = self._press + 1 if ask.number == self._asked else 1
         self._asked = ask.number
-        click.echo(
+        ui.tell(
             f"question {ask.number} of {ask.total} at most, press {self._press}: {ask.velocity_mm_s:g} mm/s, "
-            "down to the stop and let go",
-            err=True,
+            "down to the stop and let go"
         )
         if sys.stderr.isatty():
             show_cue(
                 ask.travel_mm / ask.velocity_mm_s, lambda cue: click.echo(f"\r{cue}", err=True, nl=False)
             )
             click.echo("", err=True)
-
-    def _notice(self, text: str) -> None:
-        if not self._as_json or text.startswith("warning: "):
-            click.echo(ui.one_line(text), err=True)
 
     def answer(self, question: Question) -> int | Preferred | None:
         """Ask until the answer is one; None to press again."""
@@ -122,13 +113,7 @@ def _prompt(text: str, choices: list[str]) -> str:
 def tune(
     button: str,
     actuation: Path | None,
-    device: str,
-    rig: Path | None,
-    finger: Path | None,
-    seed: int,
-    velocities_mm_s: tuple[float, ...],
-    folder: Path | None,
-    pace_ratio: float,
+    pressing: Pressing,
     compare: bool,
     comparisons: int | None,
     repeats: int,
@@ -154,34 +139,31 @@ def tune(
     from fdvv.rendering.tune_vibration import TuneSetup
     from fdvv.rendering.tune_vibration import tune_vibration as ask
     from fdvv.vibration.templates import TemplateGrid
+    from fdvv.vibration.tune import Rating
+    from fdvv.vibration.tune_compare import Comparing
 
     ui.check_output(output, MODEL_SUFFIX)
-    _check_observer(device, simulated)
+    _check_observer(pressing.device, simulated)
     model, known = open_button(button), opened_exciter(exciter)
     learned = load_actuation(actuation) if actuation else None
     grid = TemplateGrid(frequency_ratios, gain_ratios)
     setup = TuneSetup(
         learned.surface if learned else None, known, grid, "simulated observer" if simulated else "person"
     )
-    default = beside(output, button, "tune-session")
-    session = open_session(folder, device, (seed, rig, finger), pace_ratio, default)
+    session, speeds = pressing.session(beside(output, button, "tune-session")), pressing.velocities_mm_s
     view = TuneView(not simulated, as_json)
     answer = view.answer
     if simulated:
-        candidates = candidates_for(model, sorted(velocities_mm_s), grid, known)
-        answer = simulated_observer(candidates, seed).answer
-    method = _method(compare, comparisons, repeats, seed)
-    found = session.open_device(device)
-    try:
-        result = ask(found, model, velocities_mm_s, method, answer, setup, session, view.guide)
-    finally:
-        if hasattr(found, "close"):
-            found.close()
+        candidates = candidates_for(model, sorted(speeds), grid, known)
+        answer = simulated_observer(candidates, pressing.seed).answer
+    method = Comparing(comparisons, seed=pressing.seed) if compare else Rating(repeats, pressing.seed)
+    with closing(session.open_device(pressing.device)) as found:
+        result = ask(found, model, speeds, method, answer, setup, session, view.guide)
     if output:
         save_model(result.model, output)
     _print({**result.to_dict(), "receipt": result.receipt.to_dict()}, as_json)
-    if output and not as_json:
-        click.echo(f"written to {output}")
+    if not as_json:
+        ui.print_written(output)
 
 
 def _check_observer(device: str, simulated: bool) -> None:
@@ -194,13 +176,6 @@ def _check_observer(device: str, simulated: bool) -> None:
     if not simulated and not pressed_by_person(device):
         reason = "nobody can feel a simulated device"
         raise InputError("--device", device, reason, "use serial:PORT, or add --simulated-observer")
-
-
-def _method(compare: bool, comparisons: int | None, repeats: int, seed: int) -> Rating | Comparing:
-    from fdvv.vibration.tune import Rating
-    from fdvv.vibration.tune_compare import Comparing
-
-    return Comparing(comparisons, seed=seed) if compare else Rating(repeats, seed)
 
 
 def _print(document: dict[str, Any], as_json: bool) -> None:
@@ -217,7 +192,7 @@ def _print(document: dict[str, Any], as_json: bool) -> None:
         ui.print_table(["vibration", "Hz", "m/s2", "score", "error", "spectrum", "ST-SIM"], _rows(found))
 
 
-def _rows(found: dict[str, Any]) -> list[list[str]]:
+def _rows(found: dict[str, Any]) -> list[list[Any]]:
     rows = []
     for i, candidate in enumerate(found["candidates"]):
         mode = max(candidate["vibration"]["modes"], key=lambda m: abs(m["amplitude_m_s2"]))
@@ -226,5 +201,5 @@ def _rows(found: dict[str, Any]) -> list[list[str]]:
         scores = candidate["objective"]
         figures = (mode["frequency_Hz"], mode["amplitude_m_s2"], candidate["score"], candidate["error"])
         alike = (scores["spectral_similarity"], scores["st_sim"])
-        rows.append([name + mark, *(ui.number(v) for v in (*figures, *alike))])
+        rows.append([name + mark, *figures, *alike])
     return rows

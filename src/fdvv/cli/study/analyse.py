@@ -154,9 +154,9 @@ def _print(found: StudyAnalysis) -> None:
     if found.tests:
         rows = [
             [
-                one.button, one.rating, str(one.test.n), ui.number(one.test.z),
+                one.button, one.rating, one.test.n, one.test.z,
                 *(_p(p) for p in (one.test.p_asymptotic, one.test.p_exact, one.p_holm)),
-                ui.number(one.test.effect),
+                one.test.effect,
             ]
             for one in found.tests
         ]  # fmt: skip

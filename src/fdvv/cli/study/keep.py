@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
     from fdvv.study.admin.study import Study
     from fdvv.study.plan.answers import Answers
 
-Command = TypeVar("Command", bound=Callable[..., Any])
 folder_argument = click.argument("folder", type=ui.FOLDER)
 passphrase_option = ui.option(
     "--passphrase-file",
@@ -51,9 +49,8 @@ def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
     click.echo(
         "write it into the preregistration: fdvv study verify --fingerprint holds the study against it"
     )
-    click.echo(
-        f"keeper: {folder / 'keeper.json'}, opened by your passphrase only; move it to where you keep keys"
-    )
+    keeper = folder / "keeper.json"
+    click.echo(f"keeper: {keeper}, opened by your passphrase only; move it to where you keep keys")
 
 
 @click.command()
@@ -92,8 +89,7 @@ def verify(
             click.echo(f"fingerprint: {study.fingerprint}")
             click.echo(f"the record ends in: {study.record_end}")
     if problems:
-        click.echo(f"fdvv: {folder}: {ui.counted(len(problems), 'problem')}", err=True)
-        raise click.exceptions.Exit(1)
+        raise ui.failed(f"{folder}: {ui.counted(len(problems), 'problem')}")
 
 
 @click.command()
@@ -116,7 +112,7 @@ def status(folder: Path, as_json: bool) -> None:
     for act in document["unsealed"]:
         click.echo(f"unsealed {act['when']} by {act['who']}: {act['why']}")
     rows = [
-        [p["person"], p["language"], p["state"], f"{p['answered']} of {p['trials']}", str(p["resumed"])]
+        [p["person"], p["language"], p["state"], f"{p['answered']} of {p['trials']}", p["resumed"]]
         for p in document["people"]
     ]
     if rows:
@@ -152,11 +148,11 @@ def unseal(
     if as_json:
         ui.print_json(document)
         return
-    simulated = " (simulated)" if answers.simulated else ""
-    click.echo(f"{ui.counted(document['rows'], 'trial')}{simulated}, {document['counted']} count")
+    trials = ui.counted(document["rows"], "trial")
+    click.echo(f"{trials}{ui.simulated(answers.simulated)}, {document['counted']} count")
     for reason, rows in document["excluded"].items():
         click.echo(f"  {rows} left out: {reason}")
-    click.echo(f"written to {document['unsealed']}")
+    ui.print_written(folder / "unsealed")
 
 
 @click.command()

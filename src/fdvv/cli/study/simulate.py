@@ -11,15 +11,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fdvv.cli import ui
+from fdvv.cli.options import kept_on_interrupt
 
-if TYPE_CHECKING:
-    from fdvv.stats.effect_size import Estimate
-    from fdvv.study.simulation.people import ProxySettings
-    from fdvv.study.simulation.study_power import StudyPower
 if TYPE_CHECKING:
     from fdvv.study.admin.study import Study
+    from fdvv.study.simulation.people import ProxySettings
     from fdvv.study.simulation.sessions import SimulatedStudy
-
+    from fdvv.study.simulation.study_power import StudyPower
 
 MOST_PEOPLE = 500
 
@@ -32,7 +30,6 @@ class PeopleRange(click.ParamType[tuple[int, ...]]):
     def convert(
         self, value: object, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[int, ...]:
-        """Read it as the numbers that are meant."""
         if isinstance(value, tuple):
             return value
         found = re.fullmatch(r"(\d{1,4})(?:-(\d{1,4}))?", str(value).strip())
@@ -142,7 +139,7 @@ def _show_items(report: dict[str, Any], more: str, less: str) -> None:
     ui.print_table(
         ["simulated", "JND", "force", "speed", "vibration", *(headings[key] for key in shares)],
         [
-            [one["item"], *(ui.number(one[key]) for key in keys), *(_percent(one[key]) for key in shares)]
+            [one["item"], *(one[key] for key in keys), *(_percent(one[key]) for key in shares)]
             for one in report["items"]
         ],
     )
@@ -154,12 +151,12 @@ def _show_rows(found: StudyPower) -> None:
         columns,
         [
             [
-                str(row.people),
-                ui.number(row.power.value),
-                _interval(row.power),
+                row.people,
+                row.power.value,
+                f"{ui.number(row.power.low)} to {ui.number(row.power.high)}",
                 ui.number(row.false_nothing.value, 3),
                 ui.number(row.false_split.value, 3),
-                ui.number(row.detectable_JND),
+                row.detectable_JND,
                 _percent(row.detectable_share),
             ]
             for row in found.table.rows
@@ -169,10 +166,6 @@ def _show_rows(found: StudyPower) -> None:
         "false: claims where nobody feels a difference, or as many people lean each way. found: the smallest "
         "difference, alike on all buttons, with a power of 0.8."
     )
-
-
-def _interval(of: Estimate) -> str:
-    return f"{ui.number(of.low)} to {ui.number(of.high)}"
 
 
 def _percent(share: float | None) -> str:
@@ -200,13 +193,9 @@ def simulate(
 
     settings = proxy_settings(changes)
     study = Study.open(folder)
-    try:
-        with ui.progress("simulated people", 1) as tell:
-            found = simulate_study(study, people, seed, not fast, settings, tell)
-    except KeyboardInterrupt:
-        raise KeyboardInterrupt(
-            f"interrupted; who was done is kept in {folder}, the same command goes on"
-        ) from None
+    kept = f"interrupted; who was done is kept in {folder}, the same command goes on"
+    with kept_on_interrupt(kept), ui.progress("simulated people", 1) as tell:
+        found = simulate_study(study, people, seed, not fast, settings, tell)
     if as_json:
         ui.print_json({**asdict(found), "study": study.plan.name, "fingerprint": study.fingerprint})
         return
@@ -219,9 +208,7 @@ def _show(found: SimulatedStudy, study: Study) -> None:
     )
     if found.sessions:
         click.echo("")
-        rows = [
-            [one.person, str(one.trials), str(one.breaks), f"{one.minutes:.0f}"] for one in found.sessions
-        ]
+        rows = [[one.person, one.trials, one.breaks, f"{one.minutes:.0f}"] for one in found.sessions]
         ui.print_table(["simulated", "trials", "breaks", "minutes"], rows)
         click.echo("")
     if not found.pressed:
