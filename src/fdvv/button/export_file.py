@@ -133,14 +133,16 @@ def export_button(
         if form.name in ("mjcf", "smartknob") and not model.of(Stroke.PRESS):
             raise InputError(spec, "curves", "it has no press curve", "give it one with fdvv assign")
         return _BUTTONS[form.name](model, chosen)
-    return export_vibration(_vibration(spec, model, chosen), form.name, model.name)
+    vibration = vibration_of(spec, model, chosen.stroke, chosen.velocity_mm_s or 0.0)
+    return export_vibration(vibration, form.name, model.name)
 
 
-def _vibration(spec: str, model: FDVVModel, settings: ExportSettings) -> Vibration:
-    found = model.vibration(settings.stroke, settings.velocity_mm_s or 0.0)
+def vibration_of(spec: str, model: FDVVModel, stroke: Stroke | str, velocity_mm_s: float) -> Vibration:
+    """Return a model's vibration of a stroke, the nearest to a velocity. InputError if there is none."""
+    found = model.vibration(stroke, velocity_mm_s)
     if found is None:
         remedy = "choose the other --stroke" if model.vibrations else "import or tune one first"
-        raise InputError(spec, "vibrations", f"it has none of the {settings.stroke}", remedy)
+        raise InputError(spec, "vibrations", f"it has none of the {stroke}", remedy)
     return found
 
 

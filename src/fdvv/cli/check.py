@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from fdvv.cli import ui
+from fdvv.cli.check_file import check_file
+from fdvv.errors import InputError
+from fdvv.recording.check import FileCheck, unusable
 
-if TYPE_CHECKING:
-    from fdvv.recording.check import FileCheck
-
+EMPTY: tuple[Any, ...] = (None, "", [], {})
+"""Facts that tell nothing; 0 and no do."""
 LISTED = 10
 """Of the problems of a file."""
 
@@ -26,10 +28,6 @@ def check(files: tuple[str, ...], as_json: bool) -> None:
     session, a recording of a device or of a bench. A log that fdvv reads is checked as well. Exit status: 0
     all are whole; 1 all can be read, but there are problems; 2 one cannot be used.
     """
-    from fdvv.cli.check_file import check_file
-    from fdvv.errors import InputError
-    from fdvv.recording.check import unusable
-
     found = []
     for file in files:
         try:
@@ -58,7 +56,7 @@ def _print(one: FileCheck) -> None:
     facts = dict(one.facts)
     streams = facts.pop("streams", [])
     facts["bench"] = {name: value for name, value in facts.get("bench", {}).items() if value}
-    plain = ", ".join(f"{name} {_short(value)}" for name, value in facts.items() if _is_informative(value))
+    plain = ", ".join(f"{name} {_short(value)}" for name, value in facts.items() if value not in EMPTY)
     ui.print_wrapped(f"  {plain}")
     if streams:
         ui.print_table(
@@ -81,10 +79,6 @@ def _row(stream: dict[str, Any]) -> list[Any]:
         ui.number(stream["gaps_percent"], 1),
         ui.number(stream["longest_step_s"], 4),
     ]
-
-
-def _is_informative(value: Any) -> bool:
-    return value is not None and value != "" and value != [] and value != {}
 
 
 def _short(value: Any) -> str:

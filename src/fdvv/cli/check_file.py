@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 from fdvv.compensation.identification.rig_file import load_rig
 from fdvv.errors import BuildError, FdvvError, InputError
@@ -68,9 +67,7 @@ def _model(path: Path) -> FileCheck:
         "version": 1,
         "name": model.name,
         "simulated": model.provenance.simulated,
-        "travel_mm": model.travel_mm,
-        "actuation_mm": model.actuation_mm,
-        "reset_mm": model.reset_mm,
+        **{name: getattr(model, name) for name in ("travel_mm", "actuation_mm", "reset_mm")},
         "curves": [{"stroke": str(c.stroke), "velocity_mm_s": c.velocity_mm_s} for c in model.curves],
         "vibrations": len(model.vibrations),
     }
@@ -84,9 +81,7 @@ def _program(path: Path) -> FileCheck:
         "name": program.name,
         "travel_mm": program.travel_mm,
         "states": [state.name for state in program.states],
-        "surfaces": len(program.surfaces),
-        "signals": len(program.signals),
-        "vibrations": len(program.vibrations),
+        **{name: len(getattr(program, name)) for name in ("surfaces", "signals", "vibrations")},
     }
     report = check_program(program)
     remedy = "change it; fdvv program check tells more"
@@ -96,18 +91,14 @@ def _program(path: Path) -> FileCheck:
 
 def _image(path: Path) -> FileCheck:
     held = describe(path.read_bytes(), path)
-    facts = {
-        "name": held.name,
-        "size_bytes": held.size_bytes,
-        "travel_mm": held.travel_mm,
-        "states": len(held.states),
-    }
-    return FileCheck(path, AN_IMAGE, facts)
+    facts = {name: getattr(held, name) for name in ("name", "size_bytes", "travel_mm")}
+    return FileCheck(path, AN_IMAGE, {**facts, "states": len(held.states)})
 
 
 def _rig(path: Path) -> FileCheck:
-    rig = load_rig(path)
-    return FileCheck(path, A_RIG, {"version": 1, **_plain(asdict(rig))})
+    rig = asdict(load_rig(path))
+    facts = {name: list(value) if isinstance(value, tuple) else value for name, value in rig.items()}
+    return FileCheck(path, A_RIG, {"version": 1, **facts})
 
 
 def _actuation(path: Path) -> FileCheck:
@@ -132,10 +123,6 @@ def _journal(path: Path) -> FileCheck:
     return check_recording(path)
 
 
-def _in_session(path: Path) -> FileCheck:
-    return check_session(path.parent)
-
-
 def _log(path: Path) -> FileCheck:
     try:
         found = read_log(path)
@@ -150,10 +137,6 @@ def _log(path: Path) -> FileCheck:
     return FileCheck(path, f"a log ({form})", facts, (), found.warnings)
 
 
-def _plain(record: dict[str, Any]) -> dict[str, Any]:
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in record.items()}
-
-
 A_MODEL, A_PROGRAM, AN_IMAGE = "an FDVV model", "a program", "a program's image"
 A_RIG, AN_ACTUATION = "a known rig", "an actuation"
 KINDS: tuple[tuple[bytes, str, Callable[[Path], FileCheck]], ...] = (
@@ -163,8 +146,8 @@ KINDS: tuple[tuple[bytes, str, Callable[[Path], FileCheck]], ...] = (
     (b'"fdvv-program"', A_PROGRAM, _program),
     (b'"fdvv-rig"', A_RIG, _rig),
     (b'"fdvv-actuation"', AN_ACTUATION, _actuation),
-    (b'"fdvv-session"', A_SESSION, _in_session),
-    (b'"fdvv-receipt"', A_SESSION, _in_session),
+    (b'"fdvv-session"', A_SESSION, lambda path: check_session(path.parent)),
+    (b'"fdvv-receipt"', A_SESSION, lambda path: check_session(path.parent)),
     (IMAGE, AN_IMAGE, _image),
 )
 """What stands within the first bytes of each kind, and who looks at it."""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from fdvv.cli import ui
-
-if TYPE_CHECKING:
-    from fdvv.cli.demo_run import DemoResult
+from fdvv.cli.demo_report import demo_report
+from fdvv.cli.demo_run import DemoResult
+from fdvv.cli.demo_run import demo as run
+from fdvv.io.files import write_atomic
+from fdvv.model.file import MODEL_SUFFIX, save_model
+from fdvv.rendering.tuning import open_device
 
 
 @click.command()
@@ -33,12 +35,6 @@ def demo(
     fresh presses, prints the table and writes OUTPUT/report.html. Rendering figures are simulated.
     """
     ui.check_folder(output)
-    from fdvv.cli.demo_report import demo_report
-    from fdvv.cli.demo_run import demo as run
-    from fdvv.io.files import write_atomic
-    from fdvv.model.file import MODEL_SUFFIX, save_model
-    from fdvv.rendering.tuning import open_device
-
     with ui.stages() as stage:
         result = run(lambda chosen: open_device("twin", rig, finger, chosen), switch, seed, stage)
     save_model(result.switch.adaptive.model, output / f"switch{MODEL_SUFFIX}")
@@ -59,13 +55,11 @@ def _print(result: DemoResult) -> None:
     ui.print_table(
         ["curve", "RMSE cN", "uniform knots", "bump kept"],
         [
-            [
-                fit.curve.stroke, ui.number(fit.rmse_cN, 3), ui.number(uniform.rmse_cN, 3),
-                ui.bump_kept(fit.bump_kept_ratio),
-            ]
+            [fit.curve.stroke, fit.rmse_cN, uniform.rmse_cN, ui.bump_kept(fit.bump_kept_ratio)]
             for fit, uniform in zip(fits, result.switch.uniform, strict=True)
         ],
-    )  # fmt: skip
+        digits={"RMSE cN": 3, "uniform knots": 3},
+    )
     click.echo(f"\n{result.button.name} on the simulated rig: error in cN, mean / max, on fresh presses")
     labels = [r.label for r in result.renderings]
     ui.print_table(

@@ -66,14 +66,14 @@ class DemoResult:
 
     def rows(self) -> list[dict[str, Any]]:
         """Return one row per stroke and velocity: mean and maximum error of each rendering, in cN."""
-        tables = [(r.label, [c.to_dict() for c in r.judged.curves]) for r in self.renderings]
-        rows = []
-        for i, first in enumerate(tables[0][1]):
-            row: dict[str, Any] = {"stroke": first["stroke"], "velocity_mm_s": first["velocity_mm_s"]}
-            for label, curves in tables:
-                row[label] = {key: curves[i][key] for key in ("mean_error_cN", "max_error_cN")}
-            rows.append(row)
-        return rows
+        labels = [r.label for r in self.renderings]
+        tables = [[c.to_dict() for c in r.judged.curves] for r in self.renderings]
+        errors = ("mean_error_cN", "max_error_cN")
+        return [
+            {key: curves[0][key] for key in ("stroke", "velocity_mm_s")}
+            | {k: {key: curve[key] for key in errors} for k, curve in zip(labels, curves, strict=True)}
+            for curves in zip(*tables, strict=True)
+        ]
 
     def to_dict(self) -> dict[str, Any]:
         """Return the report of ``fdvv demo --json``."""
@@ -141,18 +141,13 @@ def _fit_switch(path: Path, stage: Stage) -> SwitchFit:
 def _render(
     open_device: Callable[[int], Device], button: FDVVModel, seed: int, stage: Stage
 ) -> tuple[Rendering, ...]:
-    learned: list[tuple[str, CompensationResult | None]] = [("uncompensated", None)]
+    learned: dict[str, CompensationResult | None] = {"uncompensated": None}
     for label, target in (("FD only", fd_only(button)), ("FDVV", button)):
-        device = open_device(seed)
-        learned.append(
-            (
-                label,
-                compensate(device, target, VELOCITIES_mm_s, progress=_on_press(stage, f"learning {label}")),
-            )
-        )
+        tell = _on_press(stage, f"learning {label}")
+        learned[label] = compensate(open_device(seed), target, VELOCITIES_mm_s, progress=tell)
     return tuple(
         Rendering(label, result, _judge(open_device(seed + 1000), button, label, result, stage))
-        for label, result in learned
+        for label, result in learned.items()
     )
 
 
@@ -160,16 +155,9 @@ def _judge(
     device: Device, button: FDVVModel, label: str, learned: CompensationResult | None, stage: Stage
 ) -> ProbeResult:
     surface = learned.surface if learned else uncompensated(device, button, VELOCITIES_mm_s)
-    return probe(
-        device,
-        button,
-        surface,
-        VELOCITIES_mm_s,
-        PROBE_PRESSES,
-        _on_press(stage, f"probing {label}"),
-        label,
-        tuning=learned.outcome.tuning if learned else Tuning(),
-    )
+    tuning = learned.outcome.tuning if learned else Tuning()
+    tell = _on_press(stage, f"probing {label}")
+    return probe(device, button, surface, VELOCITIES_mm_s, PROBE_PRESSES, tell, label, tuning=tuning)
 
 
 def _on_press(stage: Stage, label: str) -> Callable[[PressDone], None]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from fdvv.button.fit import FitSettings, FolderFit, ModelFit, fit_file, fit_files, measured_files, summarise
 from fdvv.cli import ui
-
-if TYPE_CHECKING:
-    from fdvv.button.fit import FitSettings, FolderFit, ModelFit
+from fdvv.model.file import MODEL_SUFFIX, save_model
+from fdvv.model.fit import FitMethod
 
 
 def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) -> int | None:
@@ -27,12 +27,7 @@ def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) ->
 
 @click.command()
 @click.argument("path", type=ui.EXISTING)
-@ui.option(
-    "--method",
-    type=click.Choice(["adaptive", "uniform"]),
-    default="adaptive",
-    help="Knots where needed, or the paper's equal spans.",
-)
+@ui.choice_option("--method", ("adaptive", "uniform"), help="Knots where needed, or the paper's equal spans.")
 @ui.option(
     "--control-points", callback=_control_points, default="15", help="Per curve; 'auto' lets BIC* choose."
 )
@@ -49,24 +44,14 @@ def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) ->
 )
 @ui.json_option
 def fit(
-    path: Path,
-    method: str,
-    control_points: int | None,
-    degree: int | None,
-    smoothing_mm: float,
-    output: Path | None,
-    max_rmse_cN: float | None,
-    as_json: bool,
+    path: Path, method: str, output: Path | None, max_rmse_cN: float | None, as_json: bool, **asked: Any
 ) -> None:
     """Fit measured force curves: one file, or every file of a folder.
 
     PATH is a file in any known format (docs/reference/force-files.md) or a folder of them. The report
     tells the error against the raw curve, how much of the bump is kept, and what was repaired.
     """
-    from fdvv.button.fit import FitSettings
-    from fdvv.model.fit import FitMethod
-
-    settings = FitSettings(FitMethod(method), control_points, degree, smoothing_mm)
+    settings = FitSettings(FitMethod(method), **asked)
     worst, where = (_folder if path.is_dir() else _file)(path, settings, output, as_json)
     if max_rmse_cN is not None and worst > max_rmse_cN:
         reason = f"RMSE of {worst:.3f} cN exceeds the bound of {max_rmse_cN:g} cN"
@@ -74,9 +59,6 @@ def fit(
 
 
 def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> tuple[float, str]:
-    from fdvv.button.fit import fit_file
-    from fdvv.model.file import MODEL_SUFFIX, save_model
-
     ui.check_output(output, MODEL_SUFFIX)
     if output and output.exists() and output.samefile(path):
         raise click.UsageError(f"{output} is the measurement itself; give the model another name")
@@ -99,22 +81,17 @@ def _print_fit(found: ModelFit) -> None:
         [
             [
                 f"{f.curve.stroke}" + (f" {f.curve.velocity_mm_s:g} mm/s" if f.curve.velocity_mm_s else ""),
-                ui.number(f.rmse_cN, 3),
-                f.max_cN,
-                f.curve.control_points_cN.size,
-                ui.bump_kept(f.bump_kept_ratio),
-                ui.number(f.time_s * 1e3, 1),
+                *(f.rmse_cN, f.max_cN, f.curve.control_points_cN.size),
+                *(ui.bump_kept(f.bump_kept_ratio), 1e3 * f.time_s),
             ]
             for f in found.fits
         ],
+        digits={"RMSE cN": 3, "ms": 1},
     )
     ui.print_warnings(found.warnings)
 
 
 def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> tuple[float, str]:
-    from fdvv.button.fit import fit_files, measured_files, summarise
-    from fdvv.model.file import MODEL_SUFFIX, save_model
-
     if output:
         ui.check_folder(output)
     results = []
@@ -143,7 +120,7 @@ def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: boo
 def _print_folder(results: list[FolderFit], summary: dict[str, Any]) -> None:
     for result in results:
         if not result.fit:
-            click.echo(f"refused: {ui.one_line(result.reason)}", err=True)
+            ui.tell(f"refused: {ui.one_line(result.reason)}")
             continue
         ui.print_warnings([f"{result.file.name}: {w}" for w in result.fit.warnings])
     click.echo(f"{ui.counted(summary['files'], 'file')}, {summary['refused']} refused")
@@ -152,10 +129,8 @@ def _print_folder(results: list[FolderFit], summary: dict[str, Any]) -> None:
         [
             [
                 stroke,
-                ui.number(s["rmse_cN"]["median"], 3),
-                ui.number(s["rmse_cN"]["p90"], 3),
-                ui.number(1e3 * s["time_s"]["median"], 1),
-                ui.number(1e3 * s["time_s"]["p90"], 1),
+                *(ui.number(value, 3) for value in s["rmse_cN"].values()),
+                *(ui.number(1e3 * value, 1) for value in s["time_s"].values()),
             ]
             for stroke, s in summary["strokes"].items()
         ],

@@ -9,6 +9,11 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import Workers, executor_options
+from fdvv.library.build import build_library
+from fdvv.library.library import By as LikeBy
+from fdvv.library.library import Library, library_query, write_hits
+from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.landmarks import landmarks
 
 COUNT = ui.option("-n", "--count", type=click.IntRange(1), default=10, help="Show so many.")
 CSV = ui.option("-o", "--output", type=ui.PATH, help="Write every hit into this .csv too.")
@@ -50,8 +55,6 @@ def build(folders: tuple[Path, ...], output: Path, where: Workers, as_json: bool
     Parquet file (docs/reference/library-files.md); a file that cannot be used is kept with its reason.
     Whatever ended a build, the same command goes on; files that did not change are not read again.
     """
-    from fdvv.library.build import build_library
-
     where.check()
     ui.check_folder(output)
     with where.at_work(output, "files", 1) as (executor, tell):
@@ -87,8 +90,6 @@ def search(
     WORDS must all match name, folder or what the maker states; a condition is a column with a bound, quoted
     for the shell: 'peak_cN>=50' 'travel_mm=3..3.5' kind=tactile,dome. Without words all are found.
     """
-    from fdvv.library.library import Library, library_query
-
     ui.check_output(output, ".csv")
     query = library_query(" ".join(words), sort, descending)
     opened = Library(folder)
@@ -101,12 +102,7 @@ def search(
 @library.command()
 @click.argument("folder", metavar="LIBRARY", type=ui.FOLDER)
 @click.argument("button")
-@ui.option(
-    "--by",
-    type=click.Choice(["all", "curve", "landmarks"]),
-    default="all",
-    help="Compare force and shape, landmarks, or all.",
-)
+@ui.choice_option("--by", ("all", "curve", "landmarks"), help="Compare force and shape, landmarks, or all.")
 @COUNT
 @CSV
 @ui.json_option
@@ -116,9 +112,6 @@ def like(folder: Path, button: str, by: str, count: int, output: Path | None, as
     BUTTON is a built-in, a *.fdvv.json file, a measured file, or the id of one of the library. Distances are
     in just noticeable differences (docs/explanation/library.md); they are an estimate, not tried on people.
     """
-    from fdvv.library.library import By as LikeBy
-    from fdvv.library.library import Library
-
     ui.check_output(output, ".csv")
     assert by in get_args(LikeBy)
     opened = Library(folder)
@@ -132,8 +125,6 @@ def like(folder: Path, button: str, by: str, count: int, output: Path | None, as
 @ui.json_option
 def refused(folder: Path, as_json: bool) -> None:
     """List the files of a library's folders that could not be used, and why."""
-    from fdvv.library.library import Library
-
     found = list(Library(folder).refused())
     if as_json:
         ui.print_json({"refused": [{"place": place, "reason": reason} for place, reason in found]})
@@ -146,8 +137,6 @@ def _print_hits(
     hits: list[Any], count: int, output: Path | None, as_json: bool, document: dict[str, Any]
 ) -> None:
     if output:
-        from fdvv.library.library import write_hits
-
         write_hits(output, hits)
     if as_json:
         ui.print_json({**document, "hits": [hit.to_dict() for hit in hits[:count]]})
@@ -167,9 +156,6 @@ def _print_hits(
 
 
 def _list_builtins(as_json: bool) -> None:
-    from fdvv.model.file import builtin_names, load_builtin
-    from fdvv.model.landmarks import landmarks
-
     models = [load_builtin(name) for name in builtin_names()]
     marks = [landmarks(model).to_dict() for model in models]
     if as_json:

@@ -16,47 +16,39 @@ from fdvv import __version__
 from fdvv.errors import BuildError, DeviceError, FdvvError, WorkerError
 
 COMMANDS = {
-    "assign": ("fdvv.cli.models", "Assign a curve, or a segment of one, to press or release of a model."),
-    "capture": ("fdvv.cli.bench.capture", "Record a button: a guided session of presses at several paces."),
-    "check": ("fdvv.cli.check", "Check files: what each is, whether it is whole, and what it holds."),
-    "compare": ("fdvv.cli.show", "Compare buttons: landmarks side by side and force differences."),
-    "compensate": (
-        "fdvv.cli.rendering.compensate",
-        "Learn the actuation that makes a rig feel like a model.",
-    ),
-    "demo": ("fdvv.cli.demo", "Run the whole chain on the simulated rig and write a report."),
+    "assign": ("models", "Assign a curve, or a segment of one, to press or release of a model."),
+    "capture": ("bench.capture", "Record a button: a guided session of presses at several paces."),
+    "check": ("check", "Check files: what each is, whether it is whole, and what it holds."),
+    "compare": ("show", "Compare buttons: landmarks side by side and force differences."),
+    "compensate": ("rendering.compensate", "Learn the actuation that makes a rig feel like a model."),
+    "demo": ("demo", "Run the whole chain on the simulated rig and write a report."),
     "device": (
-        "fdvv.cli.device.device",
+        "device.device",
         "Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.",
     ),
-    "export": ("fdvv.cli.exchange", "Write a button, its vibration or a recording for another program."),
+    "export": ("exchange", "Write a button, its vibration or a recording for another program."),
     "feasible": (
-        "fdvv.cli.rendering.feasible",
+        "rendering.feasible",
         "Check whether a rig can render a button, and why not, before any upload.",
     ),
-    "fit": ("fdvv.cli.fit", "Fit measured force curves: one file, or every file of a folder."),
-    "import": ("fdvv.cli.exchange", "Read a file of another program into a model."),
-    "join": ("fdvv.cli.bench.join", "Join logs of instruments that ran at once into a recording."),
-    "library": (
-        "fdvv.cli.library",
-        "List the built-in buttons; build and search libraries of measured ones.",
-    ),
-    "merge": ("fdvv.cli.models", "Merge force curves at several velocities into one FDVV model."),
-    "optimize": ("fdvv.cli.optimize.optimize", "Find the button that makes a person perform best."),
-    "press": ("fdvv.cli.press", "Press a real button; simulated."),
-    "probe": ("fdvv.cli.rendering.compensate", "Measure on fresh presses how well a rig renders a model."),
-    "process": (
-        "fdvv.cli.bench.process",
-        "Turn recorded presses into a model, with its spread over presses.",
-    ),
-    "program": ("fdvv.cli.program", "Work with programs: list, show, make, check, compile."),
-    "show": ("fdvv.cli.show", "Show landmarks and curves of a button."),
-    "studio": ("fdvv.cli.studio", "See, edit, press and tune buttons in the browser."),
-    "study": ("fdvv.cli.study.study", "Compare buttons blind, with people, and analyse what they said."),
-    "sweep": ("fdvv.cli.sweep", "Try every combination of rigs, fingers, buttons and methods; simulated."),
-    "tune": ("fdvv.cli.rendering.tune", "Tune the vibration of a button's press with a person."),
-    "vibration": ("fdvv.cli.vibration", "Show a button's vibrations, and write one as a sound."),
+    "fit": ("fit", "Fit measured force curves: one file, or every file of a folder."),
+    "import": ("exchange", "Read a file of another program into a model."),
+    "join": ("bench.join", "Join logs of instruments that ran at once into a recording."),
+    "library": ("library", "List the built-in buttons; build and search libraries of measured ones."),
+    "merge": ("models", "Merge force curves at several velocities into one FDVV model."),
+    "optimize": ("optimize.optimize", "Find the button that makes a person perform best."),
+    "press": ("press", "Press a real button; simulated."),
+    "probe": ("rendering.compensate", "Measure on fresh presses how well a rig renders a model."),
+    "process": ("bench.process", "Turn recorded presses into a model, with its spread over presses."),
+    "program": ("program", "Work with programs: list, show, make, check, compile."),
+    "show": ("show", "Show landmarks and curves of a button."),
+    "studio": ("studio", "See, edit, press and tune buttons in the browser."),
+    "study": ("study.study", "Compare buttons blind, with people, and analyse what they said."),
+    "sweep": ("sweep", "Try every combination of rigs, fingers, buttons and methods; simulated."),
+    "tune": ("rendering.tune", "Tune the vibration of a button's press with a person."),
+    "vibration": ("vibration", "Show a button's vibrations, and write one as a sound."),
 }
+"""By name: the module below fdvv.cli that defines a command, and the first line of its help."""
 
 EXTRA_HELP = {
     "hardware": "Build a rig: what to print and to buy, how to wire it, and which part is wrong.",
@@ -76,7 +68,7 @@ class LazyGroup(click.Group):
         if cmd_name in COMMANDS:
             # a function cannot be called import
             name = f"{cmd_name}_" if keyword.iskeyword(cmd_name) else cmd_name
-            found = getattr(importlib.import_module(COMMANDS[cmd_name][0]), name)
+            found = getattr(importlib.import_module(f"fdvv.cli.{COMMANDS[cmd_name][0]}"), name)
         else:
             # lists every installed distribution: not worth its time for a command of ours
             from fdvv import extras

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from fdvv.cli import ui
+from fdvv.errors import InputError
 
 if TYPE_CHECKING:
     from fdvv.compensation.paper import PaperLaw
@@ -148,8 +149,6 @@ def law_of(
 
 
 def _refuse(options: dict[str, object], other: str) -> None:
-    from fdvv.errors import InputError
-
     for name, value in options.items():
         if value:
             reason = f"belongs to the method {other}"
@@ -182,10 +181,9 @@ record_option = ui.option(
     help="Append the session to this file, for --device replay:FILE.",
 )  # fmt: skip
 
-velocity_option = ui.option(
-    "--velocity", "velocities_mm_s", type=ui.SPEED, multiple=True,
-    default=ui.SPEEDS_mm_s, help="Rows of a model's table, mm/s; repeatable.",
-)  # fmt: skip
+velocity_option = ui.speeds_option(
+    "--velocity", "velocities_mm_s", help="Rows of a model's table, mm/s; repeatable."
+)
 
 
 @contextmanager
@@ -215,7 +213,6 @@ def closing(device: Device) -> Iterator[Device]:
 def remote(spec: str) -> Iterator[Remote]:
     """Open a device that has the firmware in it; InputError if it has not."""
     from fdvv.device.remote import Remote
-    from fdvv.errors import InputError
 
     with opened(spec) as found:
         if not isinstance(found, Remote):

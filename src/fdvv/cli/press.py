@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
 from fdvv.cli import ui
+from fdvv.live.simulated_press import press_button
 
 FIGURES = {
     "asked_mm_s": "asked mm/s",
@@ -23,37 +25,20 @@ FIGURES = {
     "--button", required=True, help="A shipped real button, or a TOML file (docs/reference/button.md)."
 )
 @ui.option("--finger", type=ui.FILE, help="TOML file of the person (docs/reference/rig.md).")
-@ui.option(
-    "--speed",
-    "speeds_mm_s",
-    type=ui.SPEED,
-    multiple=True,
-    default=ui.SPEEDS_mm_s,
-    help="Mean speed of the press, mm/s; repeatable.",
-)
+@ui.speeds_option("--speed", "speeds_mm_s", help="Mean speed of the press, mm/s; repeatable.")
 @ui.option("--presses", type=click.IntRange(1, 1000), default=3, help="Of each speed.")
 @ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the presses.")
 @ui.option("-o", "--output", type=ui.PATH, help="The *.csv of every press to write.")
 @ui.json_option
-def press(
-    button: str,
-    finger: Path | None,
-    speeds_mm_s: tuple[float, ...],
-    presses: int,
-    seed: int,
-    output: Path | None,
-    as_json: bool,
-) -> None:
+def press(output: Path | None, as_json: bool, **asked: Any) -> None:
     """Press a real button; simulated.
 
     Finger, switch or dome, leaf and plate are those of the twin (docs/explanation/real-buttons.md). Forces
     are those on the cap, before the stop and over the whole press; the circuit's closing counts from the
     cap's first 0.05 mm.
     """
-    from fdvv.live.simulated_press import press_button
-
     ui.check_output(output, ".csv")
-    found = press_button(button, finger, speeds_mm_s, presses, seed)
+    found = press_button(**asked)
     if output:
         found.write_csv(output)
     if as_json:

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from fdvv.button.open import open_button
 from fdvv.cli import ui
-
-if TYPE_CHECKING:
-    from fdvv.program.check import Report
-    from fdvv.program.program import Program, State
-    from fdvv.program.surface import Limits
+from fdvv.errors import InputError
+from fdvv.io.files import write_atomic
+from fdvv.program.check import Report, check_program, require_accepted
+from fdvv.program.compile import compile_program
+from fdvv.program.describe import describe
+from fdvv.program.file import save_program
+from fdvv.program.library import make as make_shipped
+from fdvv.program.library import open_program, programs
+from fdvv.program.program import Program, State
+from fdvv.program.surface import Limits
 
 SUFFIX = ".fdvv-program.json"
 IMAGE_SUFFIX = ".fdvv-image"
@@ -45,8 +51,6 @@ def program() -> None:
 @ui.json_option
 def list_(as_json: bool) -> None:
     """List the shipped programs and their parameters."""
-    from fdvv.program.library import programs
-
     found = programs()
     if as_json:
         entries = [
@@ -72,13 +76,9 @@ def show(program: str, as_json: bool) -> None:
     """
     path = Path(program)
     if path.is_file() and path.read_bytes()[:4] == b"FDVP":
-        from fdvv.program.describe import describe
-
         parts: Any = describe(path.read_bytes(), path)
         title = f"{parts.name}: image of {parts.size_bytes} bytes"
     else:
-        from fdvv.program.library import open_program
-
         parts = open_program(program)
         title = f"{parts.name}: {parts.description}"
     if as_json:
@@ -113,10 +113,6 @@ def make(name: str, base: str | None, given: tuple[str, ...], output: Path) -> N
 
     NAME is one of fdvv program list, as in: make rapid-trigger --set press_mm=0.1 -o r.fdvv-program.json
     """
-    from fdvv.button.open import open_button
-    from fdvv.program.file import save_program
-    from fdvv.program.library import make as make_shipped
-
     ui.check_output(output, SUFFIX)
     model = None if base is None else open_button(base)
     made = make_shipped(name, model, **dict(map(_parameter, given)))
@@ -125,8 +121,6 @@ def make(name: str, base: str | None, given: tuple[str, ...], output: Path) -> N
 
 
 def _parameter(text: str) -> tuple[str, float]:
-    from fdvv.errors import InputError
-
     name, equals, value = text.partition("=")
     try:
         if not equals:
@@ -148,9 +142,6 @@ def check(program: str, weight_cN: float | None, opposing_cN: float | None, as_j
 
     Exit status 1 if it is refused. What is proven is in docs/explanation/programs.md.
     """
-    from fdvv.program.check import check_program
-    from fdvv.program.library import open_program
-
     opened = open_program(program)
     report = check_program(opened, _limits(weight_cN, opposing_cN))
     if as_json:
@@ -169,8 +160,6 @@ def check(program: str, weight_cN: float | None, opposing_cN: float | None, as_j
 
 
 def _limits(weight_cN: float | None, opposing_cN: float | None) -> Limits:
-    from fdvv.program.surface import Limits
-
     asked: dict[str, Any] = {"weight_cN": weight_cN, "opposing_cN": opposing_cN}
     return Limits(**{name: value for name, value in asked.items() if value is not None})
 
@@ -203,11 +192,6 @@ def compile_(
 
     Columns of a surface are evenly spaced in an image; the output says what that and rounding cost.
     """
-    from fdvv.io.files import write_atomic
-    from fdvv.program.check import require_accepted
-    from fdvv.program.compile import compile_program
-    from fdvv.program.library import open_program
-
     ui.check_output(output, IMAGE_SUFFIX)
     opened = open_program(program)
     limits = _limits(weight_cN, opposing_cN)

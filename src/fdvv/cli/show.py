@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
+from fdvv.button.compare import Comparison, spread_reports
+from fdvv.button.compare import compare as compare_models
+from fdvv.button.open import button_files, open_button, open_files, open_models
 from fdvv.cli import ui
+from fdvv.errors import InputError
+from fdvv.io.documents import ACTUATION, own_kind
+from fdvv.model.curve import Stroke
+from fdvv.model.landmarks import LandmarkError, landmark_errors, landmarks
 
-if TYPE_CHECKING:
-    from fdvv.button.compare import Comparison
-    from fdvv.model.landmarks import LandmarkError
-
-LABEL_WIDTH, LINE_NAME_WIDTH = 19, 28
-"""Of the names of landmarks, and what the columns of LANDMARKS leave for the names of buttons."""
+LABEL_WIDTH, NAME_WIDTH = 19, 28
+"""Of the names of landmarks, and what the columns of LANDMARKS or TABLE leave for the names of buttons."""
 
 LANDMARKS = ("travel_mm", "peak_cN", "peak_mm", "snap_ratio", "bottom_out_cN", "work_mJ")
+TABLE = ("travel_mm", "actuation_mm", "peak_cN", "peak_mm", "snap_ratio", "bottom_out_cN")
 
 
 @click.command()
 @click.argument("buttons", nargs=-1, required=True)
-@ui.option(
-    "--velocity", "velocity_mm_s", type=ui.POSITIVE, help="Compare at this speed, mm/s; default: the slowest."
-)
+@ui.velocity_option(help="Compare at this speed, mm/s; default: the slowest.")
 @ui.option("--figure", type=ui.PATH, help="Draw the overlay: .svg, .png or .pdf.")
 @ui.json_option
 def compare(
@@ -35,10 +37,6 @@ def compare(
     The first is the reference; displacement counts from each button's contact.
     """
     ui.check_output(figure, *ui.FIGURES)
-    from fdvv.button.compare import compare as compare_models
-    from fdvv.button.open import open_models
-    from fdvv.model.curve import Stroke
-
     refused: list[str] = []
     with ui.progress("opening", len(buttons)) as advance:
         opened = open_models(buttons, refused, advance)
@@ -69,10 +67,10 @@ def _width(name: str, errors: dict[str, LandmarkError]) -> int:
 def _print_columns(result: Comparison) -> None:
     marks = [m.to_dict() for m in result.landmarks]
     rows = [
-        [key, *(ui.with_spread(m[key], _error(e, key), 3) for m, e in zip(marks, result.errors, strict=True))]
+        [key, *((m[key], _error(e, key)) for m, e in zip(marks, result.errors, strict=True))]
         for key in marks[0]
     ]
-    ui.print_table(["landmark", *result.names], rows)
+    ui.print_table(["landmark", *result.names], rows, digits=dict.fromkeys(result.names, 3))
     if any(result.errors):
         click.echo("±: standard error over presses")
     click.echo("")
@@ -90,30 +88,15 @@ def _print_lines(result: Comparison) -> None:
     click.echo(f"rms cN: force of the press less that of {ui.one_line(result.names[0])}")
     rms = {d.index: d.rms_cN for d in result.differences if d.stroke == "press"}
     rows = [
-        [
-            ui.one_line(name, LINE_NAME_WIDTH),
-            *(marks.to_dict()[key] for key in LANDMARKS),
-            rms.get(i),
-        ]
+        [ui.one_line(name, NAME_WIDTH), *(marks.to_dict()[key] for key in LANDMARKS), rms.get(i)]
         for i, (name, marks) in enumerate(zip(result.names, result.landmarks, strict=True))
     ]
     ui.print_table(["button", *LANDMARKS, "rms cN"], rows)
 
 
-TABLE = ("travel_mm", "actuation_mm", "peak_cN", "peak_mm", "snap_ratio", "bottom_out_cN")
-
-NAME_WIDTH = 28
-"""What the columns of TABLE leave of the width of a line."""
-
-
 @click.command()
 @click.argument("button")
-@ui.option(
-    "--velocity",
-    "velocity_mm_s",
-    type=ui.POSITIVE,
-    help="Landmarks of the press nearest to this (mm/s); default: slowest.",
-)
+@ui.velocity_option(help="Landmarks of the press nearest to this (mm/s); default: slowest.")
 @ui.option("--figure", type=ui.PATH, help="Draw the curves into this .svg, .png or .pdf.")
 @ui.json_option
 def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json: bool) -> None:
@@ -131,11 +114,6 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
             raise click.UsageError(f"--figure draws one button, and {button} is a folder")
         _show_folder(Path(button), velocity_mm_s, as_json)
         return
-    from fdvv.button.compare import spread_reports
-    from fdvv.button.open import open_button
-    from fdvv.errors import InputError
-    from fdvv.model.landmarks import landmark_errors, landmarks
-
     model = open_button(button)
     if not model.of("press"):
         raise InputError(
@@ -158,27 +136,42 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
         if model.of(stroke):
             click.echo(f"  {stroke} at {speeds + ' mm/s' if speeds else 'one unknown speed'}")
     _print_landmarks(marks, errors)
-    ui.print_spreads(spread_reports(model))
+    _print_spreads(spread_reports(model))
 
 
 def _print_landmarks(marks: dict[str, float | None], errors: dict[str, LandmarkError]) -> None:
     if not errors:
-        ui.print_table(["landmark", "value"], [[name, ui.number(value, 3)] for name, value in marks.items()])
+        ui.print_table(["landmark", "value"], marks.items(), digits={"value": 3})
         return
-    rows = []
-    for name, value in marks.items():
-        error = errors.get(name)
-        uncertainty = [f"± {error.error:.3f}", error.presses] if error else ["", ""]
-        rows.append([name, ui.number(value, 3), *uncertainty])
-    ui.print_table(["landmark", "value", "standard error", "presses"], rows)
+    known = {name: [f"± {error.error:.3f}", error.presses] for name, error in errors.items()}
+    rows = [[name, value, *known.get(name, ["", ""])] for name, value in marks.items()]
+    ui.print_table(["landmark", "value", "standard error", "presses"], rows, digits={"value": 3})
+
+
+def _print_spreads(report: dict[str, Any]) -> None:
+    """Print how the presses behind a model's curves differ; nothing where none has a spread."""
+    spread = [c for c in report["curves"] if c["presses"] is not None]
+    if not spread:
+        return
+    click.echo("")
+    ui.print_table(
+        ["measured curve", "mm/s", "achieved mm/s", "presses", "median spread cN", "largest"],
+        [
+            [
+                *(c["stroke"], c["velocity_mm_s"], (c["achieved_mm_s"], c["achieved_spread_mm_s"])),
+                *(c["presses"], c["median_spread_cN"], c["largest_spread_cN"]),
+            ]
+            for c in spread
+        ],
+        digits={"mm/s": 1, "achieved mm/s": 1},
+    )
 
 
 def _show_receipt(button: str, as_json: bool) -> bool:
-    from fdvv.io.documents import ACTUATION, own_kind
-
     path = Path(button)
     if not button or not (path.is_dir() or button.endswith(".actuation.json") or own_kind(path) == ACTUATION):
         return False
+    # most that is shown is no session: only a receipt is worth loading all that renders
     from fdvv.cli.rendering.session import print_receipt
     from fdvv.rendering.actuation_file import open_run_summary
 
@@ -193,9 +186,6 @@ def _show_receipt(button: str, as_json: bool) -> bool:
 
 
 def _show_folder(folder: Path, velocity_mm_s: float | None, as_json: bool) -> None:
-    from fdvv.button.open import button_files, open_files
-    from fdvv.model.landmarks import landmarks
-
     found, refused = [], []
     files = button_files(folder)
     with ui.progress("opening", len(files)) as advance:

@@ -10,6 +10,8 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import Workers, executor_options
+from fdvv.sweep.plan import read_sweep_plan
+from fdvv.sweep.sweep import preview_sweep, run_sweep, sweep_summary
 
 
 @click.command()
@@ -27,8 +29,6 @@ def sweep(plan: Path, output: Path | None, preview: bool, where: Workers, as_jso
     Parquet file with a column for each factor and figure; one that fails is a row with its reason. Whatever
     ended a sweep, the same command goes on. The result is the same however many processes work on it.
     """
-    from fdvv.sweep.plan import read_sweep_plan
-
     where.check()
     asked = read_sweep_plan(plan)
     if preview:
@@ -41,8 +41,6 @@ def sweep(plan: Path, output: Path | None, preview: bool, where: Workers, as_jso
 
 
 def _run(asked: Any, plan: Path, output: Path, where: Workers, as_json: bool) -> None:
-    from fdvv.sweep.sweep import run_sweep, sweep_summary
-
     with where.at_work(output, "cells", asked.count) as (executor, tell):
         result = run_sweep(asked, output, executor, tell, plan.parent)
     document = {**result.to_dict(), "summary": sweep_summary(result)}
@@ -63,8 +61,6 @@ def _run(asked: Any, plan: Path, output: Path, where: Workers, as_json: bool) ->
 
 
 def _preview(asked: Any, plan: Path, output: Path | None, processes: int | None, as_json: bool) -> None:
-    from fdvv.sweep.sweep import preview_sweep
-
     found = preview_sweep(asked, output, plan.parent)
     count = processes or len(os.sched_getaffinity(0))
     ui.print_warnings([f"a cell that was tried failed: {reason}" for reason in found.failed])

@@ -8,12 +8,14 @@ import json
 import math
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+
+from fdvv.errors import InputError
 
 if TYPE_CHECKING:
     from rich.live import Live
@@ -39,6 +41,11 @@ def options(*several: Callable[[Command], Command]) -> Callable[[Command], Comma
         return command
 
     return add
+
+
+def choice_option(name: str, choices: Sequence[str], help: str) -> Callable[[Command], Command]:
+    """Make an option of a few words; the first is its default."""
+    return option(name, type=click.Choice(choices), default=choices[0], help=help)
 
 
 json_option = click.option(
@@ -85,12 +92,17 @@ def one_line(text: str, width: int | None = None) -> str:
     return plain if width is None or len(plain) <= width else plain[: width - 1] + "…"
 
 
-def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]], left: int = 1) -> None:
+def print_table(
+    columns: Sequence[str], rows: Iterable[Sequence[object]], left: int = 1, digits: Mapping[str, int] = {}
+) -> None:
     """Print aligned columns: the first ``left`` ones to the left, the others to the right.
 
-    A cell that is a float or None is written by ``number``, any other by ``str``.
+    A float or None is written by ``number``, with the column's digits or 2; a pair is a number and its
+    spread; any other cell is written by ``str``.
     """
-    table = [[one_line(_cell(cell)) for cell in row] for row in (columns, *rows)]
+    places = [digits.get(column, 2) for column in columns]
+    texts = [[_cell(cell, n) for cell, n in zip(row, places, strict=True)] for row in rows]
+    table = [[one_line(cell) for cell in row] for row in (columns, *texts)]
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     for row in table:
         cells = [
@@ -99,28 +111,11 @@ def print_table(columns: Sequence[str], rows: Iterable[Sequence[object]], left: 
         click.echo("  ".join(cells).rstrip())
 
 
-def _cell(value: object) -> str:
-    return number(value) if value is None or isinstance(value, float) else str(value)
-
-
-def print_spreads(report: dict[str, Any]) -> None:
-    """Print how the presses behind a model's curves differ; nothing where none has a spread."""
-    spread = [c for c in report["curves"] if c["presses"] is not None]
-    if not spread:
-        return
-    click.echo("")
-    print_table(
-        ["measured curve", "mm/s", "achieved mm/s", "presses", "median spread cN", "largest"],
-        [
-            [
-                c["stroke"],
-                number(c["velocity_mm_s"], 1),
-                with_spread(c["achieved_mm_s"], c["achieved_spread_mm_s"], 1),
-                *(c[key] for key in ("presses", "median_spread_cN", "largest_spread_cN")),
-            ]
-            for c in spread
-        ],
-    )
+def _cell(value: object, digits: int) -> str:
+    if isinstance(value, tuple):
+        middle, spread = value
+        return with_spread(middle, spread, digits)
+    return number(value, digits) if value is None or isinstance(value, float) else str(value)
 
 
 def print_wrapped(text: str) -> None:
@@ -179,6 +174,11 @@ class Finite(click.FloatRange):
         return found
 
 
+def above_0(most: float | None = None) -> Finite:
+    """Make a range of positive numbers."""
+    return Finite(min=0, max=most, min_open=True)
+
+
 PATH = click.Path(path_type=Path)
 EXISTING = click.Path(path_type=Path, exists=True)
 FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
@@ -186,18 +186,18 @@ FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
 NEW_FILE = click.Path(path_type=Path, dir_okay=False)
 NEW_FOLDER = click.Path(path_type=Path, file_okay=False)
 COUNT = click.IntRange(min=0)
-POSITIVE = Finite(min=0, min_open=True)
+POSITIVE = above_0()
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 SPEED = Finite(min=5, max=500)
 """Mean speed of a stroke, mm/s."""
+velocity_option = functools.partial(option, "--velocity", "velocity_mm_s", type=POSITIVE)
+speeds_option = functools.partial(option, type=SPEED, multiple=True, default=SPEEDS_mm_s)
 PART = Finite(min=0.05, max=1)
 STROKE = click.Choice(["press", "release"])
 
 
 def check_output(path: Path | None, *endings: str) -> None:
     """Refuse at once a file that could not be written after long work. Raises InputError."""
-    from fdvv.errors import InputError
-
     if path is None:
         return
     allowed = " or ".join(endings)
@@ -212,8 +212,6 @@ def check_output(path: Path | None, *endings: str) -> None:
 
 def check_folder(folder: Path) -> None:
     """Refuse at once a folder that could be neither made nor written to. Raises InputError."""
-    from fdvv.errors import InputError
-
     there = next(part for part in (folder, *folder.absolute().parents) if part.exists())
     if not there.is_dir():
         raise InputError(there, "output", "is a file, a folder is needed", "name another place")

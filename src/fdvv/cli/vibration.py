@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from fdvv.button.export_file import vibration_of
+from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.options import exciter_option, opened_exciter
-
-if TYPE_CHECKING:
-    from fdvv.model.model import FDVVModel
-    from fdvv.model.vibration import Vibration
-    from fdvv.vibration.exciter import KnownExciter
+from fdvv.errors import InputError
+from fdvv.model.vibration import Vibration
+from fdvv.program.render_vibration import render_vibration, vibration_wav
+from fdvv.vibration.exciter import KnownExciter
 
 
 @click.command()
 @click.argument("button")
 @ui.option("--stroke", type=ui.STROKE, default="press", help="Of the sound that is written.")
-@ui.option(
-    "--velocity",
-    "velocity_mm_s",
-    type=ui.POSITIVE,
-    default=100.0,
-    help="Of the sound, mm/s: the nearest one.",
-)
+@ui.velocity_option(default=100.0, help="Of the sound, mm/s: the nearest one.")
 @exciter_option
 @ui.option("--wav", type=ui.PATH, help="The *.wav to write: acceleration, 48 kHz.")
 @ui.option("--board", is_flag=True, help="Write the vibration board's own samples, 16 kHz, bit for bit.")
@@ -45,10 +40,6 @@ def vibration(
     from its response how alike and how strong each is rendered; it is not a measurement. A sound of
     acceleration is as loud as 16 bits allow; its full scale is printed.
     """  # fmt: skip
-    from fdvv.button.open import open_button
-    from fdvv.errors import InputError
-    from fdvv.program.render_vibration import vibration_wav
-
     ui.check_output(wav, ".wav")
     model, known = open_button(button), opened_exciter(exciter)
     if not model.vibrations:
@@ -56,7 +47,7 @@ def vibration(
     rows = [_about(found, known) for found in model.vibrations]
     document: dict[str, Any] = {"name": model.name, "vibrations": rows, "wav": None}
     if wav:
-        made = vibration_wav(_chosen(model, button, stroke, velocity_mm_s), known, board)
+        made = vibration_wav(vibration_of(button, model, stroke, velocity_mm_s), known, board)
         made.save(wav)
         unit = "count" if board else "m/s2"
         document["wav"] = {"path": str(wav), "full_scale": made.full_scale, "unit": unit}
@@ -66,18 +57,7 @@ def vibration(
     _print(document)
 
 
-def _chosen(model: FDVVModel, button: str, stroke: str, velocity_mm_s: float) -> Vibration:
-    from fdvv.errors import InputError
-
-    found = model.vibration(stroke, velocity_mm_s)
-    if found is None:
-        raise InputError(button, "vibrations", f"it has none of the {stroke}", "choose the other --stroke")
-    return found
-
-
 def _about(found: Vibration, exciter: KnownExciter | None) -> dict[str, Any]:
-    from fdvv.program.render_vibration import render_vibration
-
     strongest = max(found.modes, key=lambda mode: abs(mode.amplitude_m_s2))
     about: dict[str, Any] = {
         "stroke": str(found.stroke),

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import statistics
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from fdvv.bench.capture import CaptureGuide, CaptureResult, capture_session
+from fdvv.bench.model import process_recording
+from fdvv.bench.plan import CapturePlan
 from fdvv.cli import ui
-from fdvv.cli.bench.capture_view import COLUMNS, capture_view, cells
+from fdvv.cli.bench.capture_view import COLUMNS, capture_view, cells, progress_row
 from fdvv.cli.options import Paces
-
-if TYPE_CHECKING:
-    from fdvv.bench.capture import CaptureResult, VelocityProgress
+from fdvv.device.bench import open_bench
+from fdvv.model.file import MODEL_SUFFIX, save_model
+from fdvv.recording.file import RECORDING_SUFFIX
 
 TWIN_BUTTON = "mx-clear"
 
@@ -73,12 +75,6 @@ def capture(
     Every press is on the disk before the next is asked for. Ctrl-C stops; the same command goes on where it
     stopped, also after a crash. With --output the recording is processed as fdvv process does.
     """
-    from fdvv.bench.capture import CaptureGuide, capture_session
-    from fdvv.bench.plan import CapturePlan
-    from fdvv.device.bench import open_bench
-    from fdvv.model.file import MODEL_SUFFIX, save_model
-    from fdvv.recording.file import RECORDING_SUFFIX
-
     ui.check_output(recording, RECORDING_SUFFIX)
     ui.check_output(output, MODEL_SUFFIX)
     shuffled = asked.pop("shuffle")
@@ -96,8 +92,6 @@ def capture(
         device.close()
     warnings: tuple[str, ...] = ()
     if output:
-        from fdvv.bench.model import process_recording
-
         model = process_recording(result.path)
         save_model(model.model, output)
         warnings = model.warnings
@@ -114,24 +108,10 @@ def _print(result: CaptureResult, output: Path | None, as_json: bool) -> None:
             "device": result.device,
         }
         document |= {"simulated": found.simulated, "takes": len(found.takes)}
-        document["paces"] = [_row(pace) for pace in result.velocities]
+        document["paces"] = [progress_row(pace) for pace in result.velocities]
         ui.print_json(document | ({"model": str(output)} if output else {}))
         return
     click.echo(f"{found.name} on {result.device}{ui.simulated(found.simulated)}, {len(found.takes)} takes")
     ui.print_table(COLUMNS, [cells(pace) for pace in result.velocities])
     click.echo(f"recorded in {result.path}")
     ui.print_written(output)
-
-
-def _row(progress: VelocityProgress) -> dict[str, Any]:
-    speeds = progress.achieved_mm_s
-    return {
-        "velocity_mm_s": progress.velocity_mm_s,
-        "good": progress.good,
-        "wanted": progress.wanted,
-        "takes": progress.made,
-        "missed": progress.missed,
-        "median_mm_s": statistics.median(speeds) if speeds else None,
-        "least_mm_s": min(speeds, default=None),
-        "most_mm_s": max(speeds, default=None),
-    }

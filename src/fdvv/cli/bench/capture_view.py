@@ -7,10 +7,11 @@ import statistics
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from fdvv.bench.capture import TakeDone, TakeRequest, VelocityProgress
 from fdvv.cli import ui
 from fdvv.cli.cue import BEATS, BEAT_s, FRAME_s, TONES_Hz, bar, beeper, depth_at
 
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.live import Live
 
-    from fdvv.bench.capture import TakeDone, TakeRequest, VelocityProgress
 
 Beep = Callable[[str], None]
 Show = Callable[[float], None]
@@ -160,12 +160,25 @@ def take_line(event: TakeDone) -> str:
 COLUMNS = ("pace", "good", "of", "takes", "missed", "median mm/s", "least", "most")
 
 
-def cells(progress: VelocityProgress) -> list[str]:
-    """Return the cells of a row."""
+def progress_row(progress: VelocityProgress) -> dict[str, Any]:
+    """Return what became of the presses of a pace; speeds are null where none was good."""
     speeds = progress.achieved_mm_s
-    found = (statistics.median(speeds), min(speeds), max(speeds)) if speeds else (None, None, None)
-    counts = (progress.good, progress.wanted, progress.made, progress.missed)
-    return [f"{progress.velocity_mm_s:g} mm/s", *map(str, counts), *(ui.number(v, 1) for v in found)]
+    return {
+        "velocity_mm_s": progress.velocity_mm_s,
+        "good": progress.good,
+        "wanted": progress.wanted,
+        "takes": progress.made,
+        "missed": progress.missed,
+        "median_mm_s": statistics.median(speeds) if speeds else None,
+        "least_mm_s": min(speeds, default=None),
+        "most_mm_s": max(speeds, default=None),
+    }
+
+
+def cells(progress: VelocityProgress) -> list[str]:
+    """Return the cells of a row, one for each of COLUMNS."""
+    pace, *counts, median, least, most = progress_row(progress).values()
+    return [f"{pace:g} mm/s", *map(str, counts), *(ui.number(v, 1) for v in (median, least, most))]
 
 
 def picture(rows: tuple[VelocityProgress, ...], lines: tuple[str, ...]) -> RenderableType:

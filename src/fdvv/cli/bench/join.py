@@ -6,7 +6,11 @@ from pathlib import Path
 
 import click
 
+from fdvv.bench.join_logs import join_logs
 from fdvv.cli import ui
+from fdvv.recording.check import facts_of
+from fdvv.recording.file import RECORDING_SUFFIX, save_recording
+from fdvv.recording.types import Bench
 
 
 def _fact(name: str, text: str) -> click.Option:
@@ -50,11 +54,6 @@ def join(
     LOGS are files of instruments that ran at once, as an export of Motive and the text of a board
     (docs/reference/log-files.md); each keeps its own clock, and process joins them by the light.
     """
-    from fdvv.bench.join_logs import join_logs
-    from fdvv.recording.check import facts_of
-    from fdvv.recording.file import RECORDING_SUFFIX, save_recording
-    from fdvv.recording.types import Bench
-
     ui.check_output(output, RECORDING_SUFFIX)
     recording = join_logs(logs, name, markers, light, Bench(**facts), licence, person)  # type: ignore[arg-type]
     save_recording(recording, output)

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import functools
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from fdvv.bench.html import capture_html
+from fdvv.bench.model import RecordedModel, capture_report, process_recording
+from fdvv.bench.vibration import recorded_vibrations
 from fdvv.cli import ui
 from fdvv.cli.options import Paces
-
-if TYPE_CHECKING:
-    from fdvv.bench.model import RecordedModel
+from fdvv.model.file import MODEL_SUFFIX, save_model
+from fdvv.preprocess.process import Settings
+from fdvv.report.report import write_report
 
 
 @click.command()
@@ -21,7 +24,7 @@ if TYPE_CHECKING:
 @ui.option("--report", type=ui.PATH, help="Draw every step into this .html file.")
 @ui.option(
     "--cap-mass-g",
-    type=ui.Finite(min=0, max=1000, min_open=True),
+    type=ui.above_0(1000),
     default=3.0,
     help="Of cap, stem, markers and a third of the spring.",
 )
@@ -53,11 +56,6 @@ def process(
     was one. Clocks are joined, filters undone, presses judged, and all that may be used are averaged for
     each stroke and pace. What was left out is listed with its reason.
     """
-    from fdvv.bench.model import capture_report, process_recording
-    from fdvv.bench.vibration import recorded_vibrations
-    from fdvv.model.file import MODEL_SUFFIX, save_model
-    from fdvv.preprocess.process import Settings
-
     ui.check_output(output, MODEL_SUFFIX)
     ui.check_output(report, ".html")
     found = process_recording(
@@ -68,9 +66,6 @@ def process(
     if output:
         save_model(found.model, output)
     if report:
-        from fdvv.bench.html import capture_html
-        from fdvv.report.report import write_report
-
         write_report(report, capture_html(found))
     document = capture_report(found)
     if as_json:
@@ -87,15 +82,13 @@ def _print(found: RecordedModel, document: dict[str, Any]) -> None:
         ["curve", "asked mm/s", "achieved mm/s", "presses", "spread cN", "most", "RMSE cN", "bump kept"],
         [
             [
-                c["stroke"],
-                ui.number(c["velocity_mm_s"], 1),
-                ui.with_spread(c["achieved_mm_s"], c["achieved_spread_mm_s"], 1),
-                *(c[key] for key in ("presses", "median_spread_cN", "largest_spread_cN")),
-                ui.number(c["rmse_cN"], 3),
-                ui.bump_kept(c["bump_kept_ratio"]),
+                *(c["stroke"], c["velocity_mm_s"], (c["achieved_mm_s"], c["achieved_spread_mm_s"])),
+                *(c["presses"], c["median_spread_cN"], c["largest_spread_cN"]),
+                *(c["rmse_cN"], ui.bump_kept(c["bump_kept_ratio"])),
             ]
             for c in document["curves"]
         ],
+        digits={"asked mm/s": 1, "achieved mm/s": 1, "RMSE cN": 3},
     )
     for name in ("travel", "actuation", "reset"):
         value, spread = getattr(found.model, f"{name}_mm"), getattr(found.model, f"{name}_spread")
@@ -106,8 +99,9 @@ def _print(found: RecordedModel, document: dict[str, Any]) -> None:
     if left:
         ui.print_table(
             ["left out", "mm/s", "why"],
-            [[f"take {p['take']}", ui.number(p["velocity_mm_s"], 0), p["reason"]] for p in left],
+            [[f"take {p['take']}", p["velocity_mm_s"], p["reason"]] for p in left],
             left=3,
+            digits={"mm/s": 0},
         )
     ui.print_warnings(found.warnings)
 
@@ -119,16 +113,13 @@ def _print_vibrations(vibrations: list[dict[str, Any]]) -> None:
         ["vibration", "mm/s", "onset mm", "Hz", "ms", "m/s²", "presses"],
         [
             [
-                v["stroke"],
-                ui.number(v["velocity_mm_s"], 0),
-                ui.with_spread(v["onset_mm"], v["onset_spread_mm"], 3),
-                ui.with_spread(v["frequency_Hz"], v["frequency_spread_Hz"], 0),
-                ui.with_spread(
-                    1e3 * v["duration_s"], v["duration_spread_s"] and 1e3 * v["duration_spread_s"], 1
-                ),
-                ui.with_spread(v["amplitude_m_s2"], v["amplitude_spread_m_s2"]),
+                *(v["stroke"], v["velocity_mm_s"], (v["onset_mm"], v["onset_spread_mm"])),
+                (v["frequency_Hz"], v["frequency_spread_Hz"]),
+                (1e3 * v["duration_s"], v["duration_spread_s"] and 1e3 * v["duration_spread_s"]),
+                (v["amplitude_m_s2"], v["amplitude_spread_m_s2"]),
                 "scaled" if v["presses"] is None else v["presses"],
             ]
             for v in vibrations
         ],
+        digits={"mm/s": 0, "onset mm": 3, "Hz": 0, "ms": 1},
     )

@@ -16,8 +16,12 @@ from fdvv.cli import ui
 from fdvv.cli.device.press import exciter, press, upload
 from fdvv.cli.device.strip import strip
 from fdvv.cli.options import device_option, opened, remote
+from fdvv.device.open import KINDS
 from fdvv.device.remote import Remote, watch
+from fdvv.device.serial import serial_ports
 from fdvv.device.telemetry import TickColumns
+from fdvv.errors import BuildError
+from fdvv.protocol.tables import Mode, Part, SelfTestResult
 
 
 def follow(device: Remote, duration_s: float, every: int, output: Path | None) -> dict[str, Any]:
@@ -101,10 +105,6 @@ for command in (upload, press, exciter, strip):
 @ui.json_option
 def list_(as_json: bool) -> None:
     """List what --device may be, serial ports among it."""
-    from fdvv.device.open import KINDS
-    from fdvv.device.serial import serial_ports
-    from fdvv.errors import BuildError
-
     rows = [{"device": name, "about": about} for name, about in KINDS.items()]
     note = []
     try:
@@ -136,8 +136,6 @@ def info(spec: str, as_json: bool) -> None:
 
 
 def _firmware(found: Remote) -> dict[str, Any]:
-    from fdvv.protocol.tables import Mode
-
     hello, client = found.client.hello, found.client
     version = ".".join(str(hello.firmware >> shift & 255) for shift in (16, 8, 0))
     return {
@@ -156,8 +154,6 @@ def _firmware(found: Remote) -> dict[str, Any]:
 def selftest(spec: str, as_json: bool) -> None:
     """Have a device test its parts; exit status 1 if one fails."""
     import struct
-
-    from fdvv.protocol.tables import Part, SelfTestResult
 
     with remote(spec) as found:
         reply = found.client.selftest()

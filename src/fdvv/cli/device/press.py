@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -17,9 +19,12 @@ from fdvv.cli.options import (
     record_option,
     velocity_option,
 )
-
-if TYPE_CHECKING:
-    from fdvv.vibration.exciter import KnownExciter
+from fdvv.compensation.identification.rig_file import load_rig
+from fdvv.errors import InputError
+from fdvv.protocol.messages import head_of, travel_mm_of
+from fdvv.rendering.exciter import identify_exciter, prepare_exciter
+from fdvv.rendering.tuning import program_image
+from fdvv.vibration.exciter import EXCITER_SUFFIX, save_exciter
 
 
 @click.command()
@@ -44,10 +49,6 @@ def exciter(
     The motor holds the cap in the middle while tones of 260 to 860 Hz sound. Gain, resonance and quality are
     printed with their standard errors; --exciter of other commands plays vibrations through the inverse.
     """  # fmt: skip
-    from fdvv.compensation.identification.rig_file import load_rig
-    from fdvv.rendering.exciter import identify_exciter
-    from fdvv.vibration.exciter import EXCITER_SUFFIX, save_exciter
-
     ui.check_output(output, EXCITER_SUFFIX)
     known = load_rig(rig_known) if rig_known else None
     with opened(spec, rig=rig, seed=seed) as found, ui.progress("tones", 14) as advance:
@@ -68,6 +69,22 @@ def exciter(
     ui.print_written(output)
 
 
+@contextmanager
+def _uploaded(
+    button: str, spec: str, velocities_mm_s: tuple[float, ...], exciter: Path | None, recording: Path | None
+) -> Iterator[tuple[Any, bytes]]:
+    """Open a device with a button as its program; give it and the image. InputError if it runs none."""
+    known = opened_exciter(exciter)
+    image = program_image(button, velocities_mm_s, known)
+    with opened(spec, recording) as found:
+        if not hasattr(found, "upload_program"):
+            raise InputError("--device", spec, "it runs tables of force only", "use host or serial:PORT")
+        if known:
+            prepare_exciter(found, known)
+        found.upload_program(image)
+        yield found, image
+
+
 @click.command()
 @click.argument("button")
 @device_option
@@ -75,25 +92,12 @@ def exciter(
 @exciter_option
 @record_option
 @ui.json_option
-def upload(
-    button: str,
-    spec: str,
-    velocities_mm_s: tuple[float, ...],
-    exciter: Path | None,
-    recording: Path | None,
-    as_json: bool,
-) -> None:
+def upload(as_json: bool, **asked: Any) -> None:
     """Make BUTTON the program of a device: a program image, a built-in, a *.fdvv.json or a measured file.
 
     A model is rendered by its own force, not compensated for the rig.
     """
-    from fdvv.protocol.messages import head_of, travel_mm_of
-    from fdvv.rendering.tuning import program_image
-
-    known = opened_exciter(exciter)
-    image = program_image(button, velocities_mm_s, known)
-    with opened(spec, recording) as found:
-        _upload(found, spec, image, known)
+    with _uploaded(**asked) as (found, image):
         name = found.info().name
     travel_mm = travel_mm_of(image)
     document = {"device": name, "bytes": len(image), "states": head_of(image).states, "travel_mm": travel_mm}
@@ -101,18 +105,6 @@ def upload(
         ui.print_json(document)
         return
     click.echo(f"{name}: {len(image)} bytes, checked and active, travel {travel_mm:.3f} mm")
-
-
-def _upload(found: Any, spec: str, image: bytes, exciter: KnownExciter | None) -> None:
-    """Make an image the program of a device. InputError if it runs none."""
-    from fdvv.errors import InputError
-    from fdvv.rendering.exciter import prepare_exciter
-
-    if not hasattr(found, "upload_program"):
-        raise InputError("--device", spec, "it runs tables of force only", "use host or serial:PORT")
-    if exciter:
-        prepare_exciter(found, exciter)
-    found.upload_program(image)
 
 
 @click.command()
@@ -124,28 +116,14 @@ def _upload(found: Any, spec: str, image: bytes, exciter: KnownExciter | None) -
 @ui.option("--presses", type=click.IntRange(1, 1000), default=3, help="How many.")
 @record_option
 @ui.json_option
-def press(
-    button: str,
-    spec: str,
-    velocities_mm_s: tuple[float, ...],
-    exciter: Path | None,
-    speed_mm_s: float,
-    presses: int,
-    recording: Path | None,
-    as_json: bool,
-) -> None:
+def press(speed_mm_s: float, presses: int, as_json: bool, **asked: Any) -> None:
     """Upload BUTTON and have it pressed.
 
     On a simulated device the presses are simulated; on a serial one a person presses. Ctrl-C stops the
     device and keeps what was recorded.
     """
-    from fdvv.rendering.tuning import program_image
-
-    known = opened_exciter(exciter)
-    image = program_image(button, velocities_mm_s, known)
     rows = []
-    with opened(spec, recording) as found:
-        _upload(found, spec, image, known)
+    with _uploaded(**asked) as (found, _image):
         info = found.info()
         for count in range(presses):
             if not info.simulated:
@@ -155,13 +133,9 @@ def press(
         ui.print_json({"device": info.name, "simulated": info.simulated, "presses": rows})
         return
     click.echo(f"{info.name}{ui.simulated(info.simulated)}, asked at {speed_mm_s:g} mm/s")
-    ui.print_table(
-        ["press", "duration s", "deepest mm", "largest cN", "ticks"],
-        [
-            [i, *(ui.number(v, 3) for v in list(row.values())[:3]), row["ticks"]]
-            for i, row in enumerate(rows, 1)
-        ],
-    )
+    columns = ["press", "duration s", "deepest mm", "largest cN", "ticks"]
+    numbered = [[i, *row.values()] for i, row in enumerate(rows, 1)]
+    ui.print_table(columns, numbered, digits=dict.fromkeys(columns, 3))
 
 
 def _summary(found: Any) -> dict[str, Any]:

@@ -4,59 +4,44 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import remote
-
-if TYPE_CHECKING:
-    from fdvv.optimize.run.strip import StripCheck
-    from fdvv.optimize.tasks import TaskPress
+from fdvv.optimize.run.strip import StripCheck, check_strip, rendering
+from fdvv.optimize.tasks import TaskPress
+from fdvv.rendering.tuning import program_image
 
 
 @click.command()
 @ui.option("--strip", "spec", required=True, help="serial:PORT of the strip's board, or host (simulated).")
-@ui.option(
-    "--level", type=click.Choice(["easy", "hard"]), default="easy", help="100 or 150 pixels per second."
-)
+@ui.choice_option("--level", ("easy", "hard"), help="100 or 150 pixels per second.")
 @ui.option("--rounds", type=click.IntRange(1, 100), default=3, help="Presses to make.")
 @ui.option("--seed", type=ui.COUNT, default=0, help="Of the start delays.")
-@ui.option(
+@ui.choice_option(
     "--led",
-    type=click.Choice(["each", "together"]),
-    default="each",
+    ("each", "together"),
     help="When a pixel shows what it is sent: each at once (APA102) or all after the frame (SK9822).",
 )
 @ui.option("--brightness", type=click.IntRange(1, 31), default=8, help="Of lit pixels, in 31sts.")
 @ui.option("--device", help="Rig that renders BUTTON meanwhile, as of the other commands of fdvv device.")
 @ui.option("--button", default="mx-clear", help="Rendered by --device.")
 @ui.json_option
-def strip(
-    spec: str,
-    level: str,
-    rounds: int,
-    seed: int,
-    led: str,
-    brightness: int,
-    device: str | None,
-    button: str,
-    as_json: bool,
-) -> None:
+def strip(spec: str, device: str | None, button: str, as_json: bool, **asked: Any) -> None:
     """Check the LED strip: light its ends and its middle, then play some rounds of the pointing task.
 
     Press the key of the rig when the white pixel reaches the middle of the green zone; each press is shown
     in ms after that, early ones with a minus. Exit status 1 if the key line never rose.
     """
-    from fdvv.optimize.run.strip import check_strip
 
     def heard(index: int, press: TaskPress) -> None:
         if not as_json:
             click.echo(f"round {index + 1}: {_lateness(press)}")
 
     with _rendered(device, button) as feed:
-        found = check_strip(spec, level, rounds, seed, led, brightness, heard, feed)
+        found = check_strip(spec, **asked, heard=heard, meanwhile=feed)
     if as_json:
         ui.print_json(_document(found))
     else:
@@ -68,9 +53,6 @@ def strip(
 @contextmanager
 def _rendered(device: str | None, button: str) -> Iterator[Callable[[], None] | None]:
     """Render a button on a device, if there is one; give what keeps it at that."""
-    from fdvv.optimize.run.strip import rendering
-    from fdvv.rendering.tuning import program_image
-
     if device is None:
         yield None
         return

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from fdvv.cli import ui
 from fdvv.cli.optimize.options import engine_option, rig_option
 from fdvv.cli.options import kept_on_interrupt
-
-if TYPE_CHECKING:
-    from fdvv.optimize.experiment.experiment import ExperimentResult, Stage
-    from fdvv.optimize.experiment.winner import RenderedWinner
+from fdvv.errors import DeviceError
+from fdvv.model.file import save_model
+from fdvv.optimize.experiment.experiment import ExperimentResult, Stage, judge_experiment, run_experiment
+from fdvv.optimize.experiment.html import write_experiment
+from fdvv.optimize.experiment.setup import ExperimentSetup
+from fdvv.optimize.experiment.winner import RenderedWinner, render_best
+from fdvv.optimize.run.begin import experiment_prior
+from fdvv.parallel.open import open_executor
 
 
 @click.command()
@@ -57,12 +61,6 @@ def experiment(
     winner.fdvv.json. Ctrl-C or a kill loses no finished trial; the same command goes on.
     """
     ui.check_folder(folder)
-    from fdvv.optimize.experiment.experiment import judge_experiment, run_experiment
-    from fdvv.optimize.experiment.html import write_experiment
-    from fdvv.optimize.experiment.setup import ExperimentSetup
-    from fdvv.optimize.run.begin import experiment_prior
-    from fdvv.parallel.open import open_executor
-
     begun_s = time.perf_counter()
     prior = experiment_prior(priors, asked["seed"])
     setup = ExperimentSetup(engine=engine[0], options=engine[1], prior=prior, **asked)
@@ -80,10 +78,6 @@ def experiment(
 
 
 def _rendered(result: ExperimentResult, folder: Path, stage: Stage) -> RenderedWinner | None:
-    from fdvv.errors import DeviceError
-    from fdvv.model.file import save_model
-    from fdvv.optimize.experiment.winner import render_best
-
     stage("winner", 0, 1)
     try:
         found = render_best(result)
@@ -99,23 +93,16 @@ def _print(document: dict[str, Any], folder: Path, time_s: float) -> None:
     statistics = document["statistics"]
     count = ui.counted(len(document["observations"]), "observation")
     click.echo(f"{count} of {document['people']} simulated people, engine {document['engine']}")
-    rows = [
-        [one["button"], one["level"], *(ui.number(one[k], 1) for k in ("mean_ms", "people_sd_ms"))]
-        for one in statistics["means"]
-    ]
-    ui.print_table(["button", "level", "mean ms", "SD ms"], rows, left=2)
+    means = [[one[k] for k in ("button", "level", "mean_ms", "people_sd_ms")] for one in statistics["means"]]
+    ui.print_table(["button", "level", "mean ms", "SD ms"], means, left=2, digits={"mean ms": 1, "SD ms": 1})
     for effect in statistics["anova"]["effects"]:
         ui.print_wrapped(effect_line(effect))
     rows = [
-        [
-            one["second"],
-            ui.number(one["difference"]["value"], 1),
-            *(_p(one[k]) for k in ("p", "holm_p", "bonferroni_p")),
-        ]
+        [one["second"], one["difference"]["value"], *(_p(one[k]) for k in ("p", "holm_p", "bonferroni_p"))]
         for one in statistics["pairs"]
         if one["first"] == "optimal"
     ]
-    ui.print_table(["optimal minus", "ms", "p", "Holm", "Bonferroni"], rows)
+    ui.print_table(["optimal minus", "ms", "p", "Holm", "Bonferroni"], rows, digits={"ms": 1})
     click.echo(f"simulated; kept in {folder} (report.html, result.json), {time_s:.0f} s")
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
@@ -11,10 +11,12 @@ from fdvv.cli import ui
 from fdvv.cli.optimize.experiment import experiment
 from fdvv.cli.optimize.options import Play, engine_option, level_option, on_strip, rig_option, strip_options
 from fdvv.cli.optimize.population import population
-
-if TYPE_CHECKING:
-    from fdvv.optimize.problem import Trial
-    from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.problem import Trial
+from fdvv.optimize.run.begin import RunAsked, begin_run
+from fdvv.optimize.run.player import POINTING, player_of
+from fdvv.optimize.run.report import optimize_html, optimize_report
+from fdvv.optimize.run.session import Optimization, replay_differences
+from fdvv.report.report import write_report
 
 LAST = 8
 """Trials that are printed; --json has all."""
@@ -59,8 +61,6 @@ def run(folder: Path, strip: str | None, device: str, as_json: bool, **asked: An
 
     The same options give the same trials. Ctrl-C stops between two trials; fdvv optimize resume goes on.
     """
-    from fdvv.optimize.run.begin import begin_run
-
     ui.check_folder(folder)
     wanted = _asked(strip=strip, **asked)
     with on_strip(strip, device) as play, begin_run(folder, wanted) as session:
@@ -73,8 +73,6 @@ def run(folder: Path, strip: str | None, device: str, as_json: bool, **asked: An
 @ui.json_option
 def resume(folder: Path, strip: str | None, device: str, as_json: bool) -> None:
     """Go on with the run in FOLDER that was stopped or killed; the next design is as if it had not been."""
-    from fdvv.optimize.run.session import Optimization
-
     with on_strip(strip, device) as play, Optimization.open(folder) as session:
         _play(session, play, as_json)
 
@@ -87,8 +85,6 @@ def replay(folder: Path, as_json: bool) -> None:
 
     Exit status 1 if one is not: another version of a library, or a folder that was changed by hand.
     """
-    from fdvv.optimize.run.session import Optimization, replay_differences
-
     with Optimization.open(folder) as session:
         engine, made = session.setup.engine, session.trials
     different = [trial.number for trial in replay_differences(folder)]
@@ -110,10 +106,6 @@ def replay(folder: Path, as_json: bool) -> None:
 @ui.json_option
 def report(folder: Path, output: Path | None, as_json: bool) -> None:
     """Write the run in FOLDER as a page: the design found, the scores, every trial."""
-    from fdvv.optimize.run.report import optimize_html, optimize_report
-    from fdvv.optimize.run.session import Optimization
-    from fdvv.report.report import write_report
-
     ui.check_output(output, ".html")
     path = output or folder / "report.html"
     with Optimization.open(folder) as session:
@@ -132,9 +124,6 @@ optimize.add_command(population)
 def _asked(
     engine: tuple[str, dict[str, Any]], trials: int, person: int, strip: str | None, **asked: Any
 ) -> Any:
-    from fdvv.optimize.run.begin import RunAsked
-    from fdvv.optimize.run.player import POINTING
-
     if strip and asked["task"] != POINTING:
         raise click.UsageError(f"on a strip one plays {POINTING}, not {asked['task']}")
     name, options = engine
@@ -143,9 +132,6 @@ def _asked(
 
 
 def _play(session: Optimization, play: Play | None, as_json: bool) -> None:
-    from fdvv.optimize.run.player import player_of
-    from fdvv.optimize.run.report import optimize_report
-
     ui.print_warnings(session.warnings)
     budget = session.setup.budget
     with ui.progress("trials", budget) as move:
@@ -180,11 +166,9 @@ def _print(session: Optimization, document: dict[str, Any]) -> None:
         f"{about}{ui.simulated(document['simulated'])}, engine {document['engine']}, "
         f"{ui.counted(len(trials), 'trial')}"
     )
-    rows = [
-        [t["number"], t["state"], ui.number(t["score"], 1), ui.number(t["error"], 1)] for t in trials[-LAST:]
-    ]
+    rows = [[t[key] for key in ("number", "state", "score", "error")] for t in trials[-LAST:]]
     name = session.problem.objectives[0].name
-    ui.print_table(["trial", "state", name, "error"], rows, left=2)
+    ui.print_table(["trial", "state", name, "error"], rows, left=2, digits={name: 1, "error": 1})
     if document["best"]:
         values = ", ".join(f"{key} {value:.2f}" for key, value in document["best"].items())
         click.echo(f"recommended: {values}")

@@ -79,7 +79,7 @@ def engine_option(default: str) -> Callable[[ui.Command], ui.Command]:
     )
 
 
-level_option = ui.option("--level", type=click.Choice(["easy", "hard"]), default="easy", help="Of the task.")
+level_option = ui.choice_option("--level", ("easy", "hard"), help="Of the task.")
 
 rig_option = ui.option(
     "--rig", default="ideal", help="Shipped rig that renders designs; ideal does so exactly."

@@ -9,12 +9,19 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import Workers, executor_options
+from fdvv.optimize.engines.registry import engine_of
+from fdvv.optimize.paper_space import paper_model, paper_space
+from fdvv.optimize.people.simulate import simulate_task
+from fdvv.optimize.population.plan import PopulationPlan
+from fdvv.optimize.population.population import run_population
+from fdvv.optimize.run.begin import read_grid
+from fdvv.optimize.tasks import TemporalPointing
 
 
 @click.command()
 @click.argument("folder", type=ui.PATH)
 @ui.option("--people", type=click.IntRange(1, 1_000_000), default=100, help="How many are simulated.")
-@ui.option("--level", type=click.Choice(["easy", "hard"]), default="easy", help="How fast the bullet is.")
+@ui.choice_option("--level", ("easy", "hard"), help="How fast the bullet is.")
 @ui.option("--engine", default="gp", help="Of every person's run.")
 @ui.option("--budget", type=click.IntRange(1, 1000), default=30, help="Trials of each person.")
 @ui.option(
@@ -36,9 +43,6 @@ def population(
     FOLDER keeps every part that is done: whatever ended the run, the same command goes on with it. The result
     is the same however many processes work on it. Everything is simulated.
     """
-    from fdvv.optimize.population.population import run_population
-    from fdvv.optimize.run.begin import read_grid
-
     where.check()
     plan = _plan(grid=grid, **asked)
     trials = read_grid(prior).prior() if prior else ()
@@ -49,12 +53,6 @@ def population(
 
 
 def _plan(grid: int | None, level: str, engine: str, shifts: tuple[str, ...], **asked: Any) -> Any:
-    from fdvv.optimize.engines.registry import engine_of
-    from fdvv.optimize.paper_space import paper_model, paper_space
-    from fdvv.optimize.people.simulate import simulate_task
-    from fdvv.optimize.population.plan import PopulationPlan
-    from fdvv.optimize.tasks import TemporalPointing
-
     engine_of(engine)
     found = PopulationPlan(
         kind="optimize" if grid is None else "grid",

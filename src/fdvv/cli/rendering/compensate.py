@@ -7,9 +7,16 @@ from typing import Any
 
 import click
 
+from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.options import law_of, method_options
 from fdvv.cli.rendering.session import Pressing, beside, session_options
+from fdvv.compensation.identification.rig_file import save_rig as keep
+from fdvv.compensation.method import Tuning
+from fdvv.rendering.actuation_file import load_actuation, save_actuation
+from fdvv.rendering.compensate import compensate as learn
+from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.probe import probe as judge
 
 
 @click.command()
@@ -37,11 +44,6 @@ def compensate(
     ui.check_output(output, ".actuation.json")
     ui.check_output(save_rig, ".rig.json")
     law = law_of(**asked, save_rig=save_rig)
-    from fdvv.button.open import open_button
-    from fdvv.compensation.identification.rig_file import save_rig as keep
-    from fdvv.rendering.actuation_file import save_actuation
-    from fdvv.rendering.compensate import compensate as learn
-
     model = open_button(button)
     session = pressing.session(beside(output, button, "session"))
     with pressing.guided(session, as_json) as (found, view, guide):
@@ -81,12 +83,6 @@ def probe(
     learning starts from: the model's own force). Errors are in true displacement, median over the
     presses. Use another --seed than for learning.
     """
-    from fdvv.button.open import open_button
-    from fdvv.compensation.method import Tuning
-    from fdvv.rendering.actuation_file import load_actuation
-    from fdvv.rendering.compensate import uncompensated
-    from fdvv.rendering.probe import probe as judge
-
     model = open_button(button)
     learned = load_actuation(actuation) if actuation else None
     method = learned.method if learned else "not compensated"

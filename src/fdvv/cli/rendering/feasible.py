@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.options import closing
 from fdvv.cli.rendering.session import Pressing, beside, session_options
-
-if TYPE_CHECKING:
-    from fdvv.model.model import FDVVModel
-    from fdvv.rendering.probe import ProbeResult
-    from fdvv.rendering.session import Session
+from fdvv.compensation.identification.rig_file import load_rig
+from fdvv.model.model import FDVVModel
+from fdvv.rendering.actuation_file import load_actuation
+from fdvv.rendering.feasibility import feasibility, feasible_curves
+from fdvv.rendering.probe import ProbeResult, probe
+from fdvv.rendering.session import Session
 
 NO_RIG = (
     "fdvv feasible needs --rig-known FILE.rig.json, what was learned from presses on this rig: "
@@ -52,10 +54,6 @@ def feasible(
     if rig_known is None:
         click.echo(NO_RIG)
         return
-    from fdvv.button.open import open_button
-    from fdvv.compensation.identification.rig_file import load_rig
-    from fdvv.rendering.feasibility import feasibility
-
     model, known = open_button(button), load_rig(rig_known)
     session = pressing.session(beside(actuation, button, "feasible"))
     measured = _measure(session, pressing, model, actuation, presses, as_json) if actuation else None
@@ -63,7 +61,6 @@ def feasible(
         settings, info = found.settings(), found.info()
     report = feasibility(model, known, settings, pressing.velocities_mm_s, measured, info)
     if figure:
-        from fdvv.rendering.feasibility import feasible_curves
         from fdvv.rendering.figures import plot_feasibility
 
         ui.save_figure(plot_feasibility(feasible_curves(report), title=model.name)[0, 0].figure, figure)
@@ -77,9 +74,6 @@ def _measure(
     session: Session, pressing: Pressing, model: FDVVModel, actuation: Path, presses: int, as_json: bool
 ) -> ProbeResult:
     """Probe a learned table on the device."""
-    from fdvv.rendering.actuation_file import load_actuation
-    from fdvv.rendering.probe import probe
-
     learned = load_actuation(actuation)
     with pressing.guided(session, as_json) as (found, view, guide):
         return probe(
@@ -94,7 +88,8 @@ def _print(document: dict[str, Any]) -> None:
     ui.print_wrapped(
         f"{document['model']} on {document['device']}{ui.simulated(document['simulated'])}, {known}"
     )
-    ui.print_table(COLUMNS, [_row(c) for c in document["curves"]])
+    digits = {"largest cN": 0, "margin": 1, "expected cN": 1, "measured cN": 1}
+    ui.print_table(COLUMNS, [_row(c) for c in document["curves"]], digits=digits)
     for curve in document["curves"]:
         for reason in curve["reasons"]:
             ui.print_wrapped(f"{ui.curve_name(curve)}: {reason}")
@@ -104,15 +99,15 @@ def _print(document: dict[str, Any]) -> None:
     click.echo("expected cN: mean error after compensation, an estimate; all but measured is computed")
 
 
-def _row(curve: dict[str, Any]) -> list[str]:
+def _row(curve: dict[str, Any]) -> list[Any]:
     kept, measured = curve["bump_kept_ratio"], curve["measured"]
     return [
         ui.curve_name(curve),
-        ui.number(curve["largest_command_cN"], 0),
-        "–" if kept is None else f"{100 * kept:.0f} %",
-        ui.number(min(curve["stability"]["margin"], 99.0), 1),
-        ui.number(curve["expected_error"]["mean_cN"], 1),
-        ui.number(measured and measured["mean_error_cN"], 1),
+        curve["largest_command_cN"],
+        kept if kept is None else f"{100 * kept:.0f} %",
+        min(curve["stability"]["margin"], 99.0),
+        curve["expected_error"]["mean_cN"],
+        measured and measured["mean_error_cN"],
         curve["verdict"],
     ]
 

@@ -15,14 +15,15 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.cue import show_cue
 from fdvv.cli.options import closing, packed
+from fdvv.compensation.presses import AcceptanceLimits
+from fdvv.device.contract import Device
+from fdvv.device.open import pressed_by_person
+from fdvv.rendering.session import Session
+from fdvv.rendering.session_run import Guide, PressDone, PressRequest, VelocityProgress
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.live import Live
-
-    from fdvv.device.contract import Device
-    from fdvv.rendering.session import Session
-    from fdvv.rendering.session_run import Guide, PressDone, PressRequest, VelocityProgress
 
 
 REDRAW_s = 0.1
@@ -152,10 +153,6 @@ class Pressing(NamedTuple):
 
     def session(self, default: Path) -> Session:
         """Choose where presses are kept; default is the folder for a person's. InputError if it cannot be."""
-        from fdvv.compensation.presses import AcceptanceLimits
-        from fdvv.device.open import pressed_by_person
-        from fdvv.rendering.session import Session
-
         folder = self.folder or (default if pressed_by_person(self.device) else None)
         if folder:
             ui.check_folder(folder)
@@ -164,9 +161,6 @@ class Pressing(NamedTuple):
     @contextmanager
     def guided(self, session: Session, as_json: bool) -> Iterator[tuple[Device, LineView | TableView, Guide]]:
         """Open the device, show the session, and let the device go at the end, whatever happens."""
-        from fdvv.device.open import pressed_by_person
-        from fdvv.rendering.session_run import Guide
-
         with (
             closing(session.open_device(self.device)) as found,
             session_view(pressed_by_person(self.device), as_json) as view,
@@ -181,10 +175,7 @@ session_options = packed(
     ui.option("--rig", type=ui.FILE, help="TOML file of the twin's rig (docs/reference/rig.md)."),
     ui.option("--finger", type=ui.FILE, help="TOML file of the twin's finger."),
     ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the twin."),
-    ui.option(
-        "--velocity", "velocities_mm_s", type=ui.SPEED, multiple=True, default=ui.SPEEDS_mm_s,
-        help="mm/s; repeatable.",
-    ),
+    ui.speeds_option("--velocity", "velocities_mm_s", help="mm/s; repeatable."),
     ui.option(
         "--session", "folder", type=ui.PATH,
         help="Folder that keeps every press; name it again to continue where it stopped. Presses by a person "

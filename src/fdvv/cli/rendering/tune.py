@@ -4,18 +4,26 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
+from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.cue import show_cue
 from fdvv.cli.options import closing, exciter_option, opened_exciter
 from fdvv.cli.rendering.session import Pressing, beside, session_options
-
-if TYPE_CHECKING:
-    from fdvv.rendering.session_run import Guide, PressRequest
-    from fdvv.vibration.tune import Preferred, Question
+from fdvv.device.open import pressed_by_person
+from fdvv.errors import InputError
+from fdvv.model.file import MODEL_SUFFIX, save_model
+from fdvv.rendering.actuation_file import load_actuation
+from fdvv.rendering.session_run import Guide, PressRequest
+from fdvv.rendering.tune_candidates import candidates_for, simulated_observer
+from fdvv.rendering.tune_vibration import TuneSetup
+from fdvv.rendering.tune_vibration import tune_vibration as ask
+from fdvv.vibration.templates import TemplateGrid
+from fdvv.vibration.tune import Preferred, Question, Rating
+from fdvv.vibration.tune_compare import Comparing
 
 RATE = "how close to the real button, 1 (not at all) to 7 (the same); r presses again"
 
@@ -37,8 +45,6 @@ class TuneView:
     @property
     def guide(self) -> Guide:
         """Return the callbacks of the session."""
-        from fdvv.rendering.session_run import Guide
-
         return Guide(self._ask, lambda text: ui.notice(text, self._as_json))
 
     def _ask(self, ask: PressRequest) -> None:
@@ -58,15 +64,12 @@ class TuneView:
 
     def answer(self, question: Question) -> int | Preferred | None:
         """Ask until the answer is one; None to press again."""
-        from fdvv.vibration.tune import Preferred
-
         self._press = 0
         if len(question.templates) == 1:
             answer = _prompt(RATE, [*map(str, range(1, 8)), "r"])
             return None if answer == "r" else int(answer)
-        answer = _prompt(COMPARE, ["1", "2", "0", "r"])
-        meant = {"1": Preferred.FIRST, "2": Preferred.SECOND, "0": Preferred.NEITHER}
-        return meant.get(answer)
+        meant = {"1": Preferred.FIRST, "2": Preferred.SECOND, "0": Preferred.NEITHER, "r": None}
+        return meant[_prompt(COMPARE, list(meant))]
 
 
 def _prompt(text: str, choices: list[str]) -> str:
@@ -132,16 +135,6 @@ def tune(
 
     Every answer is on file before the next question; the same command goes on where a session stopped.
     """
-    from fdvv.button.open import open_button
-    from fdvv.model.file import MODEL_SUFFIX, save_model
-    from fdvv.rendering.actuation_file import load_actuation
-    from fdvv.rendering.tune_candidates import candidates_for, simulated_observer
-    from fdvv.rendering.tune_vibration import TuneSetup
-    from fdvv.rendering.tune_vibration import tune_vibration as ask
-    from fdvv.vibration.templates import TemplateGrid
-    from fdvv.vibration.tune import Rating
-    from fdvv.vibration.tune_compare import Comparing
-
     ui.check_output(output, MODEL_SUFFIX)
     _check_observer(pressing.device, simulated)
     model, known = open_button(button), opened_exciter(exciter)
@@ -167,9 +160,6 @@ def tune(
 
 
 def _check_observer(device: str, simulated: bool) -> None:
-    from fdvv.device.open import pressed_by_person
-    from fdvv.errors import InputError
-
     if simulated and pressed_by_person(device):
         reason = "a person presses it, and nobody's answers would be kept"
         raise InputError("--simulated-observer", device, reason, "leave the option out")

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from fdvv.cli import ui
-
-if TYPE_CHECKING:
-    from fdvv.study.analysis.records import StudyAnalysis
-    from fdvv.study.plan.answers import Answers
-    from fdvv.study.plan.plan import StudyPlan
-
+from fdvv.errors import InputError
+from fdvv.io.files import read_limited
+from fdvv.study.admin.study import Study
+from fdvv.study.analysis.analyse import analyse as analysed
+from fdvv.study.analysis.code_book import write_answers
+from fdvv.study.analysis.columns import ColumnMap
+from fdvv.study.analysis.export import analysis_dict, write_analysis
+from fdvv.study.analysis.read_answers import read_answers
+from fdvv.study.analysis.records import StudyAnalysis
+from fdvv.study.analysis.report import study_summary, write_study_report
+from fdvv.study.plan.answers import Answers
+from fdvv.study.plan.plan import StudyPlan
+from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
 
 table_options = ui.options(
     click.option(
@@ -59,10 +66,6 @@ def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool,
     thresholds, and the main claim under every reasonable analysis; with --report as a page with figures.
     """
     ui.check_output(report, ".html")
-    from fdvv.study.analysis.analyse import analyse as analysed
-    from fdvv.study.analysis.export import analysis_dict
-    from fdvv.study.analysis.report import write_study_report
-
     answers, declared, origin = _opened(source, plan, table)
     found = analysed(answers, declared, "" if declared else source.name)
     if report is not None:
@@ -89,10 +92,6 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
     analysis.json holds every figure.
     """
     ui.check_folder(folder)
-    from fdvv.study.analysis.analyse import analyse as analysed
-    from fdvv.study.analysis.code_book import write_answers
-    from fdvv.study.analysis.export import write_analysis
-
     answers, declared, _ = _opened(source, plan, table)
     found = analysed(answers, declared, "" if declared else source.name)
     files = [*write_answers(folder, found.screening.answers, declared), *write_analysis(folder, found)]
@@ -106,12 +105,6 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
 
 
 def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Answers, StudyPlan | None, str]:
-    from fdvv.io.files import read_limited
-    from fdvv.study.admin.study import Study
-    from fdvv.study.analysis.columns import ColumnMap
-    from fdvv.study.analysis.read_answers import read_answers
-    from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
-
     asked = ColumnMap(
         kind=table["kind"],
         stimuli=tuple(name.strip() for name in table["stimuli"].split(",") if name.strip()),
@@ -133,8 +126,6 @@ def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Ans
 
 def _pairs(option: str, texts: tuple[str, ...]) -> dict[str, str]:
     """Read NAME=VALUE options; a name may hold no =, a value may. InputError."""
-    from fdvv.errors import InputError
-
     found = {}
     for text in texts:
         name, sign, value = text.partition("=")
@@ -145,8 +136,6 @@ def _pairs(option: str, texts: tuple[str, ...]) -> dict[str, str]:
 
 
 def _print(found: StudyAnalysis) -> None:
-    from fdvv.study.analysis.report import study_summary
-
     screening = found.screening
     counts = f"{screening.counted} of {screening.planned} trials count, {screening.people_counted} people"
     click.echo(f"{found.title} ({found.kind}): {counts}")

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from fdvv.cli import ui
-
-if TYPE_CHECKING:
-    from fdvv.report.report import Section
-    from fdvv.study.admin.review import StudyReview
+from fdvv.report.report import Section, write_report
+from fdvv.study.admin.preview import (
+    preview_dict,
+    preview_html,
+    preview_sections,
+    preview_summary,
+    preview_title,
+    summarise_plan,
+)
+from fdvv.study.admin.review import StudyReview, review_study
+from fdvv.study.plan.plan_file import write_template
 
 KINDS = ("realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase")
 
@@ -20,12 +27,7 @@ study_argument = click.argument("study", type=ui.PATH)
 
 @click.command()
 @click.argument("folder", type=ui.PATH)
-@ui.option(
-    "--kind",
-    type=click.Choice(KINDS),
-    default="realism",
-    help="What trials ask; realism is the paper's study.",
-)
+@ui.choice_option("--kind", KINDS, help="What trials ask; realism is the paper's study.")
 def new(folder: Path, kind: str) -> None:
     """Begin a study: a folder with a commented study.toml to edit, and the buttons it names.
 
@@ -33,8 +35,6 @@ def new(folder: Path, kind: str) -> None:
     field means is in docs/reference/study-file.md. Nothing counts before fdvv study freeze.
     """
     ui.check_folder(folder)
-    from fdvv.study.plan.plan_file import write_template
-
     path = write_template(kind, folder, folder.absolute().name)
     click.echo(f"written to {path}")
     click.echo(f"edit it, then: fdvv study check {folder}")
@@ -48,12 +48,8 @@ def check(study: Path, as_json: bool) -> None:
 
     STUDY is a study.toml, or the folder of one. All that is wrong is listed at once.
     """
-    from fdvv.study.admin.review import review_study
-
     look = review_study(study)
     if as_json:
-        from fdvv.study.admin.preview import summarise_plan
-
         notes = {"notes": [*look.notes, *(() if look.problems else summarise_plan(look.plan).notes)]}
         ui.print_json({"name": look.plan.name, "ok": not look.problems, "problems": look.problems, **notes})
     else:
@@ -63,8 +59,6 @@ def check(study: Path, as_json: bool) -> None:
 
 
 def _print_check(look: StudyReview) -> None:
-    from fdvv.study.admin.preview import summarise_plan
-
     _print_problems(look)
     if look.problems:
         return
@@ -96,16 +90,11 @@ def preview(study: Path, html: Path | None, as_json: bool) -> None:
     Exit status 1 where the study cannot be run.
     """
     ui.check_output(html, ".html")
-    from fdvv.study.admin.preview import preview_dict, preview_html, preview_sections
-    from fdvv.study.admin.review import review_study
-
     look = review_study(study)
     if look.problems:
         _print_problems(look)
         raise click.exceptions.Exit(1)
     if html:
-        from fdvv.report.report import write_report
-
         write_report(html, preview_html(look))
     if as_json:
         ui.print_json(preview_dict(look))
@@ -118,8 +107,6 @@ def preview(study: Path, html: Path | None, as_json: bool) -> None:
 
 
 def _print_head(look: StudyReview) -> None:
-    from fdvv.study.admin.preview import preview_summary, preview_title
-
     ui.print_wrapped(preview_title(look.plan))
     ui.print_wrapped(preview_summary(look.plan))
 

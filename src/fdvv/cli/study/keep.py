@@ -5,16 +5,15 @@ from __future__ import annotations
 import time
 from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from fdvv.cli import ui
-
-if TYPE_CHECKING:
-    from fdvv.study.admin.operator_view import OperatorView
-    from fdvv.study.admin.study import Study
-    from fdvv.study.plan.answers import Answers
+from fdvv.io.files import read_limited
+from fdvv.study.admin.operator_view import OperatorView, operator_view
+from fdvv.study.admin.study import Study
+from fdvv.study.plan.answers import Answers
 
 folder_argument = click.argument("folder", type=ui.FOLDER)
 passphrase_option = ui.option(
@@ -37,8 +36,6 @@ def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
     Asks for a passphrase. Whoever has it and keeper.json is the keeper, who alone can tell what the labels
     hide; nobody can restore it. The fingerprint goes into the preregistration.
     """
-    from fdvv.study.admin.study import Study
-
     study = Study.open(folder)
     fingerprint = study.freeze(_passphrase(passphrase_file, new=True))
     if as_json:
@@ -71,8 +68,6 @@ def verify(
     as_json: bool,
 ) -> None:
     """Verify that the study in FOLDER is as it was frozen and its logs as written; status 1 if not."""
-    from fdvv.study.admin.study import Study
-
     study = Study.open(folder)
     passphrase = _passphrase(passphrase_file) if marks or passphrase_file else ""
     problems = study.verify(fingerprint, passphrase, keeper, record)
@@ -97,9 +92,6 @@ def verify(
 @ui.json_option
 def status(folder: Path, as_json: bool) -> None:
     """Show how far the study in FOLDER is and what was done with it, but not what labels hide."""
-    from fdvv.study.admin.operator_view import operator_view
-    from fdvv.study.admin.study import Study
-
     study = Study.open(folder)
     document = _status(study, operator_view(study, time.time()))
     if as_json:
@@ -140,8 +132,6 @@ def unseal(
     Writes answers.csv, codebook.json, rendered.csv and pages.csv into unsealed/ of the folder; the rules that
     were frozen with the study say in answers.csv what does not count, and why.
     """
-    from fdvv.study.admin.study import Study
-
     study = Study.open(folder)
     answers = study.unseal(_passphrase(passphrase_file), who, why, keeper, despite)
     document = _unsealed(folder, answers)
@@ -167,8 +157,6 @@ def withdraw(folder: Path, person: str, keep: bool, yes: bool, as_json: bool) ->
     FOLDER is the study's, PERSON what fdvv study status calls them.
     What was unsealed of the study is deleted too, for it holds their answers: unseal it again.
     """
-    from fdvv.study.admin.study import Study
-
     study = Study.open(folder)
     person = study.person(person).name
     if not (yes or as_json):
@@ -183,8 +171,6 @@ def withdraw(folder: Path, person: str, keep: bool, yes: bool, as_json: bool) ->
 
 def _passphrase(file: Path | None, new: bool = False) -> str:
     if file is not None:
-        from fdvv.io.files import read_limited
-
         text = read_limited(file, 10_000, "name a file with the passphrase in its first line")
         return text.decode(errors="replace").partition("\n")[0].rstrip("\r")
     answer: str = click.prompt("Passphrase of the keeper", hide_input=True, confirmation_prompt=new, err=True)

@@ -6,18 +6,17 @@ import math
 import re
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import kept_on_interrupt
-
-if TYPE_CHECKING:
-    from fdvv.study.admin.study import Study
-    from fdvv.study.simulation.people import ProxySettings
-    from fdvv.study.simulation.sessions import SimulatedStudy
-    from fdvv.study.simulation.study_power import StudyPower
+from fdvv.errors import ModelError
+from fdvv.study.admin.study import Study
+from fdvv.study.simulation.people import ProxySettings
+from fdvv.study.simulation.sessions import SimulatedStudy, simulate_study
+from fdvv.study.simulation.study_power import StudyPower, study_power
 
 MOST_PEOPLE = 500
 
@@ -64,24 +63,16 @@ set_option = ui.option(
 @ui.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, help="Repeats the simulated answers.")
 @ui.json_option
 def power(
-    file: Path,
-    people: tuple[int, ...],
-    studies: int,
-    difference: float | None,
-    changes: tuple[str, ...],
-    seed: int,
-    as_json: bool,
+    file: Path, difference: float | None, changes: tuple[str, ...], as_json: bool, **asked: Any
 ) -> None:
     """Estimate how many people a study needs: the power of its claim, by simulated participants.
 
     FILE is a study's file, or its folder. The whole study is simulated many times, and the claim is tested in
     each as it will be in the real one. Proxies plan a study; what they say is never evidence.
     """
-    from fdvv.study.simulation.study_power import study_power
-
     settings = proxy_settings(changes)
     with ui.stages() as tell:
-        found = study_power(file, people, studies, seed, settings, difference, tell)
+        found = study_power(file, **asked, settings=settings, given_JND=difference, progress=tell)
     if as_json:
         ui.print_json(found.to_dict())
         return
@@ -90,9 +81,6 @@ def power(
 
 def proxy_settings(changes: tuple[str, ...]) -> ProxySettings:
     """Return the proxies with their changes. Raises BadParameter on one that cannot be."""
-    from fdvv.errors import ModelError
-    from fdvv.study.simulation.people import ProxySettings
-
     settings = ProxySettings()
     for text in changes:
         name, _, value = text.partition("=")
@@ -119,16 +107,13 @@ def _show_power(found: StudyPower) -> None:
     click.echo("")
     _show_rows(found)
     click.echo("")
-    ui.print_wrapped(
-        f"For a power of 0.8 the proxies ask for {_asked(found)}; {found.plan.people} are planned."
-    )
-
-
-def _asked(found: StudyPower) -> str:
     enough = found.table.enough()
-    if enough is None:
-        return "more people than that"
-    return f"{enough} people" + (" at most" if enough == found.table.rows[0].people else "")
+    asked = "more people than that" if enough is None else f"{enough} people"
+    # fewer than the first number of people were not tried
+    most = " at most" if enough == found.table.rows[0].people else ""
+    ui.print_wrapped(
+        f"For a power of 0.8 the proxies ask for {asked}{most}; {found.plan.people} are planned."
+    )
 
 
 def _show_items(report: dict[str, Any], more: str, less: str) -> None:
@@ -151,16 +136,13 @@ def _show_rows(found: StudyPower) -> None:
         columns,
         [
             [
-                row.people,
-                row.power.value,
-                f"{ui.number(row.power.low)} to {ui.number(row.power.high)}",
-                ui.number(row.false_nothing.value, 3),
-                ui.number(row.false_split.value, 3),
-                row.detectable_JND,
-                _percent(row.detectable_share),
+                *(row.people, row.power.value, f"{ui.number(row.power.low)} to {ui.number(row.power.high)}"),
+                *(row.false_nothing.value, row.false_split.value),
+                *(row.detectable_JND, _percent(row.detectable_share)),
             ]
             for row in found.table.rows
         ],
+        digits={"false: alike": 3, "false: split": 3},
     )
     ui.print_wrapped(
         "false: claims where nobody feels a difference, or as many people lean each way. found: the smallest "
@@ -188,9 +170,6 @@ def simulate(
     spent; a study with simulated participants takes no people any more. What proxies answer is marked as
     simulated wherever it is kept or shown, and is never evidence.
     """
-    from fdvv.study.admin.study import Study
-    from fdvv.study.simulation.sessions import simulate_study
-
     settings = proxy_settings(changes)
     study = Study.open(folder)
     kept = f"interrupted; who was done is kept in {folder}, the same command goes on"
