@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import errno
-import importlib
 import io
-import keyword
 import os
 import sys
 from typing import Any, NoReturn
 
 import click
 
-from fdvv import __version__
+from fdvv import __version__, extras
+from fdvv.cli import ui
 from fdvv.errors import BuildError, DeviceError, FdvvError, WorkerError
 
 COMMANDS = {
@@ -57,7 +56,7 @@ EXTRA_HELP = {
 """Short help of the extras' commands, which are not imported to list them."""
 
 
-class LazyGroup(click.Group):
+class MainGroup(click.Group):
     """A group that knows the names and short helps of its commands without importing them."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -66,16 +65,11 @@ class LazyGroup(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import a command; BuildError if it comes with an extra that is not installed."""
         if cmd_name in COMMANDS:
-            # a function cannot be called import
-            name = f"{cmd_name}_" if keyword.iskeyword(cmd_name) else cmd_name
-            found = getattr(importlib.import_module(f"fdvv.cli.{COMMANDS[cmd_name][0]}"), name)
-        else:
-            # lists every installed distribution: not worth its time for a command of ours
-            from fdvv import extras
-
-            if cmd_name not in extras.names("commands"):
-                return None
-            found = extras.load("commands", cmd_name)
+            return ui.imported(COMMANDS[cmd_name][0], cmd_name)
+        # lists every installed distribution: not worth its time for a command of ours
+        if cmd_name not in extras.names("commands"):
+            return None
+        found = extras.load("commands", cmd_name)
         assert isinstance(found, click.Command)
         return found
 
@@ -92,10 +86,8 @@ class LazyGroup(click.Group):
 
 
 def _short_helps() -> dict[str, str]:
-    from fdvv.extras import installed
-
     helps = {name: text for name, (_, text) in COMMANDS.items()}
-    for name, entry in installed("commands").items():
+    for name, entry in extras.installed("commands").items():
         helps[name] = EXTRA_HELP.get(name) or f"from {entry.dist.name if entry.dist else entry.module}"
     return helps
 
@@ -105,7 +97,7 @@ class Interrupted(Exception):  # noqa: N818 - nothing failed
 
 
 @click.group(
-    cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True
+    cls=MainGroup, context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True
 )
 @click.version_option(__version__, prog_name="fdvv")
 @click.pass_context

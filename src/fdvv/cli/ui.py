@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import functools
+import importlib
 import io
 import json
+import keyword
 import math
 import os
 import sys
@@ -41,6 +43,34 @@ def options(*several: Callable[[Command], Command]) -> Callable[[Command], Comma
         return command
 
     return add
+
+
+def imported(module: str, name: str) -> click.Command:
+    """Import a command: a function of the command's name, in a module below fdvv.cli."""
+    # a function cannot be called import
+    function = f"{name}_" if keyword.iskeyword(name) else name
+    found = getattr(importlib.import_module(f"fdvv.cli.{module}"), function)
+    assert isinstance(found, click.Command)
+    return found
+
+
+class LazyGroup(click.Group):
+    """A group that imports some of its commands when they are asked for: they load much that others do not.
+
+    modules : by the command's name, see ``imported``.
+    """
+
+    def __init__(self, *args: Any, modules: Mapping[str, str], **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.modules = modules
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted([*super().list_commands(ctx), *self.modules])
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name in self.modules:
+            return imported(self.modules[cmd_name], cmd_name)
+        return super().get_command(ctx, cmd_name)
 
 
 def choice_option(name: str, choices: Sequence[str], help: str) -> Callable[[Command], Command]:

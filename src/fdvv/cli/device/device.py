@@ -13,8 +13,6 @@ from typing import IO, Any
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.device.press import exciter, press, upload
-from fdvv.cli.device.strip import strip
 from fdvv.cli.options import device_option, opened, remote
 from fdvv.device.open import KINDS
 from fdvv.device.remote import Remote, watch
@@ -87,7 +85,10 @@ def writer(stream: IO[str], output: Path) -> Callable[[TickColumns], None]:
     return write
 
 
-@click.group()
+MODULES = dict.fromkeys(("exciter", "press", "upload"), "device.press") | {"strip": "device.strip"}
+
+
+@click.group(cls=ui.LazyGroup, modules=MODULES)
 def device() -> None:
     """Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.
 
@@ -95,10 +96,6 @@ def device() -> None:
     emulator), 'twin', 'serial:PORT' or 'replay:FILE'.
     What is simulated says so.
     """
-
-
-for command in (upload, press, exciter, strip):
-    device.add_command(command)
 
 
 @device.command("list")

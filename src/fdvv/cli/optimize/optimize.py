@@ -8,9 +8,7 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.optimize.experiment import experiment
 from fdvv.cli.optimize.options import Play, engine_option, level_option, on_strip, rig_option, strip_options
-from fdvv.cli.optimize.population import population
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.begin import RunAsked, begin_run
 from fdvv.optimize.run.player import POINTING, player_of
@@ -23,7 +21,10 @@ LAST = 8
 folder_argument = click.argument("folder", type=ui.FOLDER)
 
 
-@click.group()
+MODULES = {"experiment": "optimize.experiment", "population": "optimize.population"}
+
+
+@click.group(cls=ui.LazyGroup, modules=MODULES)
 def optimize() -> None:
     """Find the button that makes a person perform best.
 
@@ -115,10 +116,6 @@ def report(folder: Path, output: Path | None, as_json: bool) -> None:
         ui.print_json({**document, "report": str(path)})
     else:
         click.echo(f"written to {path}")
-
-
-optimize.add_command(experiment)
-optimize.add_command(population)
 
 
 def _asked(

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
-
 import click
+
+from fdvv.cli import ui
 
 MODULES = {
     "declare": ("new", "check", "preview"),
@@ -12,27 +12,18 @@ MODULES = {
     "simulate": ("power", "simulate"),
     "analyse": ("analyse", "export"),
 }
-"""Commands by the module below fdvv.cli.study that holds them, as functions of the command's name."""
-COMMANDS = {name: module for module, names in MODULES.items() for name in names}
+"""Commands by the module below fdvv.cli.study that holds them."""
+COMMANDS = {name: f"study.{module}" for module, names in MODULES.items() for name in names}
 
 
-class StudyGroup(click.Group):
-    """A group that imports a command when it is asked for."""
+class StudyGroup(ui.LazyGroup):
+    """Lists its commands in the order in which a study needs them."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names of the commands."""
-        return list(COMMANDS)
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import and give one command."""
-        if cmd_name not in COMMANDS:
-            return None
-        found = getattr(importlib.import_module(f"fdvv.cli.study.{COMMANDS[cmd_name]}"), cmd_name)
-        assert isinstance(found, click.Command)
-        return found
+        return list(self.modules)
 
 
-@click.group(cls=StudyGroup)
+@click.group(cls=StudyGroup, modules=COMMANDS)
 def study() -> None:
     """Compare buttons blind, with people, and analyse what they said.
 
