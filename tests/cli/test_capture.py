@@ -24,7 +24,7 @@ from fdvv.bench.capture import TakeDone, TakeRequest, VelocityProgress
 from fdvv.bench.plan import COUNT_IN_s, Step
 from fdvv.bench.plan import DWELL_s as TOLD_DWELL_s
 from fdvv.bench.take_check import TakeCheck
-from fdvv.cli.bench.capture_view import Beeps, CaptureLines, CaptureTable, asked, frame
+from fdvv.cli.bench.capture_view import CaptureLines, CaptureTable, asked, beeps, frame
 from fdvv.cli.cue import BEATS, BEAT_s, DWELL_s, TONES_Hz, beeper, tone
 from fdvv.device.bench import SerialBench
 from fdvv.errors import InputError
@@ -198,10 +198,10 @@ def test_the_shown_cue_keeps_the_times_that_the_marks_tell() -> None:
 def test_it_beeps_once_at_contact_and_once_at_the_bottom() -> None:
     heard = list[tuple[float, str]]()
     now = [0.0]
-    beeps = Beeps(ASK, lambda event: heard.append((now[0], event)))
+    show = beeps(ASK, lambda event: heard.append((now[0], event)))
     for tick in range(500):
         now[0] = 0.004 * tick
-        beeps(now[0])
+        show(now[0])
     assert [event for _, event in heard] == list(TONES_Hz)
     assert [t for t, _ in heard] == pytest.approx([1.5, 1.58], abs=0.004)
 

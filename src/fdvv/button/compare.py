@@ -58,11 +58,7 @@ class Comparison:
     def to_dict(self) -> dict[str, Any]:
         """Return the report of ``fdvv compare --json``."""
         buttons = [
-            {
-                "name": name,
-                **marks.to_dict(),
-                "landmark_errors": {mark: vars(error) for mark, error in errors.items()},
-            }
+            {"name": name, **marks.to_dict(), "landmark_errors": {k: vars(e) for k, e in errors.items()}}
             for name, marks, errors in zip(self.names, self.landmarks, self.errors, strict=True)
         ]
         differences = [{**vars(d), "stroke": str(d.stroke)} for d in self.differences]
@@ -133,9 +129,7 @@ def curve_spread(curve: ForceCurve) -> dict[str, Any]:
     return {
         "stroke": str(curve.stroke),
         "velocity_mm_s": curve.velocity_mm_s,
-        "achieved_mm_s": spread.achieved_mm_s if spread else None,
-        "achieved_spread_mm_s": spread.achieved_spread_mm_s if spread else None,
-        "presses": spread.presses if spread else None,
+        **{key: getattr(spread, key, None) for key in ("achieved_mm_s", "achieved_spread_mm_s", "presses")},
         "median_spread_cN": float(np.median(spread.spread_cN)) if spread else None,
         "largest_spread_cN": float(spread.spread_cN.max()) if spread else None,
     }

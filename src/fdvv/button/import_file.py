@@ -103,8 +103,7 @@ def import_file(path: Path | str, settings: ImportSettings | None = None) -> Imp
     form = _format(path)
     if form is None:
         return _curves(path, chosen)
-    modes, duration_s, notes = _READERS[form](path, chosen.full_scale_m_s2)
-    return _given(path, chosen, form, modes, duration_s, notes)
+    return _given(path, chosen, form, _READERS[form](path, chosen.full_scale_m_s2))
 
 
 def _format(path: Path) -> str | None:
@@ -154,6 +153,7 @@ def _name(text: str) -> str:
 
 
 Read = tuple[tuple[Mode, ...], float, tuple[str, ...]]
+"""Modes, duration in s, and notes of what was assumed."""
 
 
 def _pulse(read: Callable[..., Any]) -> Callable[[Path, float | None], Read]:
@@ -215,15 +215,9 @@ _READERS: dict[str, Callable[[Path, float | None], Read]] = {
 }
 
 
-def _given(
-    path: Path,
-    settings: ImportSettings,
-    form: str,
-    modes: tuple[Mode, ...],
-    duration_s: float,
-    notes: tuple[str, ...],
-) -> Imported:
+def _given(path: Path, settings: ImportSettings, form: str, read: Read) -> Imported:
     """Put a vibration into a button, in place of the one it has there."""
+    modes, duration_s, notes = read
     if settings.into is None:
         raise InputError(path, "whole file", "holds a vibration, no button", "name the button with --into")
     model = open_button(settings.into)

@@ -79,7 +79,6 @@ def depth_at(t_s: float, stroke_s: float) -> float:
 
 
 def bar(depth: float) -> str:
-    """Draw a depth of 0 to 1."""
     filled = round(depth * WIDTH)
     return "█" * filled + "·" * (WIDTH - filled)
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
@@ -110,21 +109,11 @@ def demo(
     switch : a file of measured curves; the shipped one if None. Raises InputError, DeviceError.
     """
     begun = time.perf_counter()
-    with _switch_path(switch) as path:
-        fitted = _fit_switch(path, stage)
+    with resources.as_file(resources.files("fdvv.button") / "examples" / SWITCH) as shipped:
+        fitted = _fit_switch(switch or shipped, stage)
     button = load_builtin(BUTTON)
     renderings = _render(open_device, button, seed, stage)
     return DemoResult(fitted, button, renderings, seed, time.perf_counter() - begun)
-
-
-@contextmanager
-def _switch_path(switch: Path | None) -> Iterator[Path]:
-    """Yield the path of the person's switch file, or of the shipped one."""
-    if switch is not None:
-        yield switch
-        return
-    with resources.as_file(resources.files("fdvv.button") / "examples" / SWITCH) as path:
-        yield path
 
 
 def _fit_switch(path: Path, stage: Stage) -> SwitchFit:

@@ -31,14 +31,28 @@ def library(ctx: click.Context, as_json: bool) -> None:
     Without a subcommand the built-in buttons are listed.
     """
     if ctx.invoked_subcommand is None:
-        _list_builtins(as_json)
+        ctx.invoke(list_, as_json=as_json)
 
 
 @library.command(name="list")
 @ui.json_option
 def list_(as_json: bool) -> None:
     """List the built-in buttons."""
-    _list_builtins(as_json)
+    models = [load_builtin(name) for name in builtin_names()]
+    marks = [landmarks(model).to_dict() for model in models]
+    if as_json:
+        entries = [
+            {"name": m.name, "source": m.provenance.source, "licence": m.provenance.licence, "landmarks": k}
+            for m, k in zip(models, marks, strict=True)
+        ]
+        ui.print_json({"buttons": entries})
+        return
+    columns = ("travel_mm", "peak_cN", "snap_ratio", "bottom_out_cN")
+    rows = [
+        [m.name, m.provenance.source.partition(",")[0], *(k[c] for c in columns)]
+        for m, k in zip(models, marks, strict=True)
+    ]
+    ui.print_table(["button", "source", *columns], rows, left=2)
 
 
 @library.command()
@@ -153,21 +167,3 @@ def _print_hits(
     more = f", {len(hits) - count} more with -n" if len(hits) > count else ""
     click.echo(f"{len(hits)} found{more}")
     ui.print_written(output)
-
-
-def _list_builtins(as_json: bool) -> None:
-    models = [load_builtin(name) for name in builtin_names()]
-    marks = [landmarks(model).to_dict() for model in models]
-    if as_json:
-        entries = [
-            {"name": m.name, "source": m.provenance.source, "licence": m.provenance.licence, "landmarks": k}
-            for m, k in zip(models, marks, strict=True)
-        ]
-        ui.print_json({"buttons": entries})
-        return
-    columns = ("travel_mm", "peak_cN", "snap_ratio", "bottom_out_cN")
-    rows = [
-        [m.name, m.provenance.source.partition(",")[0], *(k[c] for c in columns)]
-        for m, k in zip(models, marks, strict=True)
-    ]
-    ui.print_table(["button", "source", *columns], rows, left=2)

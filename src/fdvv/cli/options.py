@@ -51,7 +51,6 @@ class Workers(NamedTuple):
     cluster: str | None
 
     def check(self) -> None:
-        """Refuse two of the options at once."""
         if sum(choice is not None for choice in self) > 1:
             raise click.UsageError("--processes, --workers and --cluster exclude each other")
 
@@ -97,16 +96,13 @@ exciter_option = ui.option(
 
 
 def opened_exciter(path: Path | None) -> KnownExciter | None:
-    """Read the file of a known exciter, if one is named. Raises InputError."""
     from fdvv.vibration.exciter import load_exciter
 
     return load_exciter(path) if path else None
 
 
 RIG_AWARE, PAPER = "rig-aware", "paper"
-
 ROUNDS = {RIG_AWARE: 3, PAPER: 4}
-
 PRESSES = 12
 
 method_options = ui.options(
@@ -156,8 +152,6 @@ def _refuse(options: dict[str, object], other: str) -> None:
 
 
 class Paces(click.ParamType[tuple[float, ...]]):
-    """Speeds with commas between them."""
-
     name = "mm/s,..."
 
     def convert(

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import ipaddress
+import threading
+import webbrowser
 from pathlib import Path
 
 import click
 
 from fdvv.cli import ui
 from fdvv.errors import InputError
+from fdvv.library.library import Library
+from fdvv.studio.auth import saved_token
+from fdvv.studio.server import serve
+from fdvv.studio.studio import Studio
 
 
 @click.command()
@@ -47,20 +53,19 @@ def studio(
     everything is kept.
     """
     _check_host(host, share)
-    _check_libraries(libraries)
-    from fdvv.studio.auth import saved_token
-    from fdvv.studio.server import serve
-    from fdvv.studio.studio import Studio
+    # refuse at once what the background could not read
+    for library in libraries:
+        Library(library)
 
     def ready(address: str) -> None:
         click.echo(f"the studio is open at {address}")
-        click.echo("Ctrl-C ends it", err=True)
+        ui.tell("Ctrl-C ends it")
         if not no_browser:
-            _show(address)
+            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
     token = saved_token(project) if keep_address else ""
     serve(Studio(project, folders, libraries), host, port, ready, token)
-    click.echo("the studio is closed; everything is kept", err=True)
+    ui.tell("the studio is closed; everything is kept")
 
 
 def _check_host(host: str, share: bool) -> None:
@@ -71,18 +76,3 @@ def _check_host(host: str, share: bool) -> None:
     if not loopback and not share:
         reason = "other machines could reach it, and what passes is not encrypted"
         raise InputError("--host", host, reason, "add --share if that is wanted")
-
-
-def _check_libraries(folders: tuple[Path, ...]) -> None:
-    """Refuse at once what the background could not read. InputError, BuildError."""
-    from fdvv.library.library import Library
-
-    for folder in folders:
-        Library(folder)
-
-
-def _show(address: str) -> None:
-    import threading
-    import webbrowser
-
-    threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()

@@ -234,9 +234,8 @@ def check_output(path: Path | None, *endings: str) -> None:
     if path.is_dir():
         raise InputError(path, "output", "is a folder", f"name a file ending in {allowed}")
     if path.suffix.lower() not in {"." + ending.rpartition(".")[2] for ending in endings}:
-        raise InputError(
-            path, "output", "its name has another ending than what is written", f"end it in {allowed}"
-        )
+        reason = "its name has another ending than what is written"
+        raise InputError(path, "output", reason, f"end it in {allowed}")
     check_folder(path.parent)
 
 
@@ -250,15 +249,21 @@ def check_folder(folder: Path) -> None:
 
 
 @contextmanager
-def live() -> Iterator[Live | None]:
-    """Give a part of the terminal that is redrawn in place; None where standard error is no terminal."""
+def live(per_s: float | None = None) -> Iterator[Live | None]:
+    """Give a part of the terminal that is redrawn in place; None where standard error is no terminal.
+
+    per_s : how often it is redrawn of itself; by default only when it is told to.
+    """
     if not sys.stderr.isatty():
         yield None
         return
     from rich.console import Console
     from rich.live import Live
 
-    with Live(console=Console(stderr=True), auto_refresh=False, transient=True) as found:
+    console = Console(stderr=True)
+    with Live(
+        console=console, auto_refresh=per_s is not None, refresh_per_second=per_s or 4, transient=True
+    ) as found:
         yield found
 
 

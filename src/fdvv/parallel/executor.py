@@ -133,7 +133,6 @@ class _Pool:
         return answers
 
     def close(self) -> None:
-        """End every process, whatever it is at."""
         for worker, _ in self.busy.values():
             worker.end()
         self.busy.clear()
@@ -166,7 +165,6 @@ class _Worker:
         far.close()
 
     def end(self) -> None:
-        """End the process at once."""
         self._process.kill()
         self._process.join()
         self._process.close()

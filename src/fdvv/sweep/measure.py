@@ -50,11 +50,9 @@ class Subjects:
 
 @dataclass(frozen=True)
 class Figure:
-    """A column of results."""
-
     name: str
-    type: str
     meaning: str
+    type: str = "double"
 
 
 @dataclass(frozen=True)
@@ -149,7 +147,6 @@ def _known(rig: Rig, finger: Finger | None, seed: int, speeds_mm_s: tuple[float,
 
 
 def _press(about: Subjects, settings: Mapping[str, Any]) -> Figures:
-    """Press a simulated real button with the simulated finger."""
     assert isinstance(about.button, ButtonPhysics)
     count = settings["presses"]
     found = press_physics(about.button, about.finger or Finger(), (about.speed_mm_s,), count, about.seed)
@@ -178,14 +175,14 @@ MEASURES = {
         {"rig": "default", "finger": "default", "button": "mx-clear", "method": "rig-aware"},
         {"velocities_mm_s": list(SPEEDS_mm_s), "presses": 5, "rounds": 3},
         (
-            Figure("mean_error_cN", "double", "mean error of all strokes and speeds"),
-            Figure("worst_mean_error_cN", "double", "mean error of the worst stroke and speed"),
-            Figure("press_error_cN", "double", "mean error of the presses"),
-            Figure("release_error_cN", "double", "mean error of the releases; null if the model has none"),
-            Figure("max_error_cN", "double", "largest error anywhere"),
-            Figure("reached_ratio", "double", "part of the travel that the worst press reached"),
-            Figure("learning_presses", "int64", "presses that were made to learn"),
-            Figure("skipped_presses", "int64", "presses that could not be used"),
+            Figure("mean_error_cN", "mean error of all strokes and speeds"),
+            Figure("worst_mean_error_cN", "mean error of the worst stroke and speed"),
+            Figure("press_error_cN", "mean error of the presses"),
+            Figure("release_error_cN", "mean error of the releases; null if the model has none"),
+            Figure("max_error_cN", "largest error anywhere"),
+            Figure("reached_ratio", "part of the travel that the worst press reached"),
+            Figure("learning_presses", "presses that were made to learn", "int64"),
+            Figure("skipped_presses", "presses that could not be used", "int64"),
         ),
         _probe,
         0.5,
@@ -195,16 +192,14 @@ MEASURES = {
         {"rig": "default", "finger": "default", "button": "mx-clear"},
         {"velocities_mm_s": list(SPEEDS_mm_s)},
         (
-            Figure("expected_error_cN", "double", "error to expect of the worst after learning, an estimate"),
-            Figure("verdict", "string", "of the worst stroke and speed: can follow, follows in part, cannot"),
-            Figure("followed_ratio", "double", "part of strokes and speeds that can be followed"),
-            Figure("largest_command_cN", "double", "largest force the coil is asked for"),
-            Figure("saturated_ratio", "double", "part of the travel beyond the rig's force, of the worst"),
-            Figure(
-                "bump_kept_ratio", "double", "part of the bump that is reached, of the worst; null without"
-            ),
-            Figure("lag_mm", "double", "by how much the force comes late, of the worst"),
-            Figure("margin", "double", "of the sampled loop's stability, of the worst"),
+            Figure("expected_error_cN", "error to expect of the worst after learning, an estimate"),
+            Figure("verdict", "of the worst stroke and speed: can follow, follows in part, cannot", "string"),
+            Figure("followed_ratio", "part of strokes and speeds that can be followed"),
+            Figure("largest_command_cN", "largest force the coil is asked for"),
+            Figure("saturated_ratio", "part of the travel beyond the rig's force, of the worst"),
+            Figure("bump_kept_ratio", "part of the bump that is reached, of the worst; null without"),
+            Figure("lag_mm", "by how much the force comes late, of the worst"),
+            Figure("margin", "of the sampled loop's stability, of the worst"),
         ),
         _feasible,
         0.1,
@@ -214,13 +209,13 @@ MEASURES = {
         {"finger": "default", "button": "mx-clear", "speed_mm_s": 100.0},
         {"presses": 5},
         (
-            Figure("closing_ms", "double", "when the circuit closed, after the cap began to move, median"),
-            Figure("closing_spread_ms", "double", "its standard deviation over the presses"),
-            Figure("closed_ratio", "double", "part of the presses that closed the circuit"),
-            Figure("achieved_mm_s", "double", "mean speed of the stroke down that was reached, median"),
-            Figure("before_stop_cN", "double", "largest force before the last 0.1 mm of the travel, median"),
-            Figure("quasi_static_peak_cN", "double", "the same at 0.5 mm/s, as a force tester has it"),
-            Figure("largest_cN", "double", "largest force, impact at the bottom included, median"),
+            Figure("closing_ms", "when the circuit closed, after the cap began to move, median"),
+            Figure("closing_spread_ms", "its standard deviation over the presses"),
+            Figure("closed_ratio", "part of the presses that closed the circuit"),
+            Figure("achieved_mm_s", "mean speed of the stroke down that was reached, median"),
+            Figure("before_stop_cN", "largest force before the last 0.1 mm of the travel, median"),
+            Figure("quasi_static_peak_cN", "the same at 0.5 mm/s, as a force tester has it"),
+            Figure("largest_cN", "largest force, impact at the bottom included, median"),
         ),
         _press,
         0.05,

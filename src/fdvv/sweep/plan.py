@@ -99,7 +99,6 @@ class SweepPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def count(self) -> int:
-        """Of the cells."""
         return int(np.prod([len(values) for values in self.levels().values()], dtype=object))
 
     def cells(self) -> Iterator[dict[str, Value]]:
@@ -240,11 +239,11 @@ class SweepWork:
         return [self._row(number, cell) for number, cell in cells]
 
     def _row(self, number: int, cell: Mapping[str, Value]) -> Row:
-        """Return a cell's row; one that fails is a row with its reason."""
         row: Row = {"cell": number, **cell, "seed": seed_of(self.seed, int(cell[REPEAT]))}
         try:
             figures: Figures = MEASURES[self.measure].find(self.subjects(cell), self.settings)
         except Exception as error:
+            # whatever is wrong with one cell must not end a sweep of hours
             reason = one_line(f"{type(error).__name__}: {error}")
             return {**row, "state": "failed", "reason": reason}
         return {**row, "state": "done", "reason": None, **figures}

@@ -93,7 +93,6 @@ class SweepPreview:
     failed: tuple[str, ...]
 
     def seconds(self, processes: int) -> float:
-        """Estimate how long the rest takes."""
         return (self.cells - self.done) * self.cell_s / processes
 
 

@@ -34,7 +34,6 @@ class DeviceConformance:
         raise NotImplementedError
 
     def pressed(self, device: Device) -> Press:
-        """Upload the plain surface and press once."""
         device.upload(plain_surface(travel_mm=self.travel_mm), self.travel_mm)
         return device.press(self.speed_mm_s)
 
@@ -104,7 +103,6 @@ class DeviceConformance:
         assert press.velocity_mm_s == self.speed_mm_s
 
     def test_a_press_holds_what_the_rig_sensed_and_did(self) -> None:
-        """Every optional column is there, and ticks are one period apart."""
         device = self.make()
         press = self.pressed(device)
         columns = (press.sensed_mm, press.sensed_cN, press.commanded_cN, press.saturated, press.tick)

@@ -87,7 +87,6 @@ class ScriptedDevice:
         self._active = (surface, travel_mm)
 
     def press(self, velocity_mm_s: float) -> Press:
-        """Press once down and up."""
         if self._active is None:
             raise DeviceError("scripted: press before upload; upload a surface first")
         if not velocity_mm_s > 0:

@@ -39,19 +39,17 @@ def _bell() -> None:
         click.echo("\a", nl=False, err=True)
 
 
-class Beeps:
-    """Beeps once for each event of a cue, when its time has come."""
+def beeps(ask: TakeRequest, beep: Beep) -> Show:
+    """Return what beeps once for each event of a cue, when its time has come."""
+    stroke_s, begun_s = stroke_of(ask), BEAT_s * len(BEATS)
+    times_s = () if stroke_s is None else (begun_s, begun_s + stroke_s)
+    left = list(zip(times_s, TONES_Hz, strict=False))
 
-    def __init__(self, ask: TakeRequest, beep: Beep) -> None:
-        stroke_s = stroke_of(ask)
-        begun_s = BEAT_s * len(BEATS)
-        times_s = () if stroke_s is None else (begun_s, begun_s + stroke_s)
-        self._left = list(zip(times_s, TONES_Hz, strict=False))
-        self._beep = beep
+    def show(t_s: float) -> None:
+        while left and t_s >= left[0][0]:
+            beep(left.pop(0)[1])
 
-    def __call__(self, t_s: float) -> None:
-        while self._left and t_s >= self._left[0][0]:
-            self._beep(self._left.pop(0)[1])
+    return show
 
 
 class CaptureLines:
@@ -65,7 +63,7 @@ class CaptureLines:
         if not self._paced:
             return lambda _t_s: None
         ui.tell(asked(ask))
-        return Beeps(ask, self._beep)
+        return beeps(ask, self._beep)
 
     def done(self, event: TakeDone) -> None:
         if self._paced or not self._quiet:
@@ -84,13 +82,12 @@ class CaptureTable:
         self._line = ""
 
     def cue(self, ask: TakeRequest) -> Show:
-        """Show a person the pace."""
         if not self._paced:
             return lambda _t_s: None
-        beeps, drawn_s = Beeps(ask, self._beep), [-1.0]
+        sound, drawn_s = beeps(ask, self._beep), [-1.0]
 
         def show(t_s: float) -> None:
-            beeps(t_s)
+            sound(t_s)
             if t_s - drawn_s[0] >= FRAME_s:
                 drawn_s[0] = t_s
                 self._draw(asked(ask), frame(ask, t_s))
@@ -105,7 +102,6 @@ class CaptureTable:
         self._draw()
 
     def notice(self, text: str) -> None:
-        """Report it above the rows."""
         self._live.console.print(ui.one_line(text), highlight=False, markup=False)
 
     def _draw(self, *lines: str) -> None:
@@ -129,7 +125,6 @@ def frame(ask: TakeRequest, t_s: float) -> str:
 
 
 def asked(ask: TakeRequest) -> str:
-    """Say what is wanted."""
     at, again = f"{ask.number} of {ask.total}", " once more" if ask.again else ""
     stroke_s, velocity = stroke_of(ask), ask.step.velocity_mm_s
     if stroke_s is None:
@@ -145,7 +140,6 @@ NAMES = {"rest": "bench at rest", "probe": "slow probe"}
 
 
 def take_line(event: TakeDone) -> str:
-    """Say what became of a take."""
     take, check = event.take, event.check
     what = NAMES.get(str(take.stage)) or f"{take.velocity_mm_s:g} mm/s"
     at = f"take {take.number}, {event.done} of {event.total}, {what}"
@@ -176,13 +170,11 @@ def progress_row(progress: VelocityProgress) -> dict[str, Any]:
 
 
 def cells(progress: VelocityProgress) -> list[str]:
-    """Return the cells of a row, one for each of COLUMNS."""
     pace, *counts, median, least, most = progress_row(progress).values()
     return [f"{pace:g} mm/s", *map(str, counts), *(ui.number(v, 1) for v in (median, least, most))]
 
 
 def picture(rows: tuple[VelocityProgress, ...], lines: tuple[str, ...]) -> RenderableType:
-    """Lay out the rows and the lines below them."""
     from rich.console import Group
     from rich.text import Text
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import click
 
@@ -21,52 +20,41 @@ from fdvv.device.telemetry import TickColumns
 from fdvv.errors import BuildError
 from fdvv.protocol.tables import Mode, Part, SelfTestResult
 
+if TYPE_CHECKING:
+    from rich.text import Text
+
 
 def follow(device: Remote, duration_s: float, every: int, output: Path | None) -> dict[str, Any]:
     """Watch a device, show and write what it tells; give the counts. DeviceError if it goes away."""
     records = 0
     telemetry, info = device.client.telemetry, device.info()
     target = output.open("w", encoding="ascii") if output else nullcontext()
-    with target as stream, live_line() as show:
+    with target as stream, ui.live(per_s=20) as shown:
         write = writer(stream, output) if output and stream else None
         for columns in watch(device, duration_s, every):
             records += columns.tick.size
             if write:
                 write(columns)
-            if columns.tick.size:
-                show(line_of(columns, telemetry.missing_ticks))
+            if shown and columns.tick.size:
+                shown.update(line_of(columns, telemetry.missing_ticks))
+    lost = ("missing_ticks", "missing_frames", "lost_records", "late_ticks")
     return {
         "device": info.name,
         "simulated": info.simulated,
         "records": records,
-        "missing_ticks": telemetry.missing_ticks,
-        "missing_frames": telemetry.missing_frames,
-        "lost_records": telemetry.lost_records,
-        "late_ticks": telemetry.late_ticks,
+        **{name: getattr(telemetry, name) for name in lost},
     }
 
 
-def line_of(columns: TickColumns, missing: int) -> str:
-    """Format the newest tick as a line."""
-    return (
+def line_of(columns: TickColumns, missing: int) -> Text:
+    """Write the newest tick for a terminal."""
+    from rich.text import Text
+
+    return Text(
         f"tick {columns.tick[-1]}  {columns.displacement_mm[-1]:7.3f} mm  "
         f"{columns.velocity_mm_s[-1]:7.1f} mm/s  {columns.commanded_cN[-1]:7.1f} cN  "
         f"state {columns.state[-1]}  missing {missing}"
     )
-
-
-@contextmanager
-def live_line() -> Iterator[Callable[[str], None]]:
-    """Show a line that is written over, on a terminal; elsewhere nothing."""
-    if not sys.stderr.isatty():
-        yield lambda _line: None
-        return
-    from rich.console import Console
-    from rich.live import Live
-    from rich.text import Text
-
-    with Live(console=Console(stderr=True), transient=True, refresh_per_second=20) as live:
-        yield lambda line: live.update(Text(line))
 
 
 def writer(stream: IO[str], output: Path) -> Callable[[TickColumns], None]:

@@ -69,9 +69,6 @@ def _lateness(press: TaskPress) -> str:
 
 
 def _document(found: StripCheck) -> dict[str, Any]:
-    rounds = [
-        {"target_s": press.target_s, "activations_s": list(press.activations_s)} for press in found.presses
-    ]
     return {
         "strip": found.name,
         "simulated": found.simulated,
@@ -80,7 +77,7 @@ def _document(found: StripCheck) -> dict[str, Any]:
         "edges": found.edges,
         "bad_frames": found.bad_frames,
         "asynchrony_ms": found.asynchrony_ms,
-        "rounds": rounds,
+        "rounds": [{"target_s": p.target_s, "activations_s": p.activations_s} for p in found.presses],
     }
 
 

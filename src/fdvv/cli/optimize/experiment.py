@@ -32,7 +32,7 @@ from fdvv.parallel.open import open_executor
 @ui.option("--trials", type=click.IntRange(1, 1000), default=27, help="Of a training.")
 @ui.option("--presses", type=click.IntRange(2, 1000), default=20, help="Of a trial.")
 @ui.option("--rounds", type=click.IntRange(1, 20), default=2, help="How often each button appears per level.")
-@engine_option("gp")
+@engine_option
 @ui.option(
     "--prior",
     "priors",

@@ -49,7 +49,7 @@ def optimize() -> None:
 )
 @ui.option("--task", default="temporal-pointing", help="What is played.")
 @level_option
-@engine_option("gp")
+@engine_option
 @ui.option("--trials", type=click.IntRange(1, 100_000), default=30, help="How many designs are tried.")
 @ui.option("--presses", type=click.IntRange(2, 1000), default=20, help="Of a trial.")
 @ui.option("--person", type=ui.COUNT, default=0, help="Seed that the simulated person is drawn with.")

@@ -69,15 +69,12 @@ class EngineType(click.ParamType[tuple[str, dict[str, Any]]]):
         return name, options
 
 
-def engine_option(default: str) -> Callable[[ui.Command], ui.Command]:
-    """Add the option that chooses an engine."""
-    return ui.option(
-        "--engine",
-        type=EngineType(),
-        default=default,
-        help="Suggests designs (docs/explanation/optimisation.md); name:{JSON} for options.",
-    )
-
+engine_option = ui.option(
+    "--engine",
+    type=EngineType(),
+    default="gp",
+    help="Suggests designs (docs/explanation/optimisation.md); name:{JSON} for options.",
+)
 
 level_option = ui.choice_option("--level", ("easy", "hard"), help="Of the task.")
 

@@ -92,8 +92,8 @@ def _show(summary: dict[str, Any], folder: Path, as_json: bool) -> None:
         "mean_ms": "mean of a design ms",
     }
     rows = [
-        [names[key], *(f"{summary[key][part]:.1f}" for part in ("median", "low", "high"))]
-        for key in names
+        [name, *(f"{summary[key][part]:.1f}" for part in ("median", "low", "high"))]
+        for key, name in names.items()
         if key in summary
     ]
     ui.print_table(["simulated", "median", "5 %", "95 %"], rows)

@@ -25,14 +25,10 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.live import Live
 
-
 REDRAW_s = 0.1
-
 LINES = 10
 """Where there is no terminal, simulated presses are reported in so many lines."""
-
 Cue = Callable[[float, Callable[[str], None]], None]
-
 KEPT = {"compensate": "best", "probe": "median"}
 """What the mean and the largest error of a curve are of."""
 
@@ -54,12 +50,10 @@ class LineView:
         self._person, self._quiet = person, quiet
 
     def ask(self, ask: PressRequest) -> None:
-        """Ask a person for a press."""
         if self._person:
             ui.tell(asked(ask))
 
     def done(self, event: PressDone) -> None:
-        """Report a press, if it is due."""
         step = max(1, event.presses_total // LINES)
         due = self._person or event.skipped or event.presses_done % step == 0
         if due and (self._person or not self._quiet):
@@ -78,7 +72,6 @@ class TableView:
         self._line, self._kept, self._drawn_s = "", "best", 0.0
 
     def ask(self, ask: PressRequest) -> None:
-        """Show a person the pace."""
         if self._person:
             self._cue(ask.travel_mm / ask.velocity_mm_s, lambda cue: self._draw(asked(ask), cue))
             self._draw(asked(ask), "press now")
@@ -92,7 +85,6 @@ class TableView:
             self._drawn_s = time.monotonic()
 
     def notice(self, text: str) -> None:
-        """Report it above the rows."""
         self._live.console.print(ui.one_line(text), highlight=False, markup=False)
 
     def _draw(self, *lines: str) -> None:
@@ -100,7 +92,6 @@ class TableView:
 
 
 def asked(ask: PressRequest) -> str:
-    """Say what is wanted."""
     stroke_ms = 1000 * ask.travel_mm / ask.velocity_mm_s
     return (
         f"press {ask.number} of {ask.total}: {ask.velocity_mm_s:g} mm/s, "
@@ -109,7 +100,6 @@ def asked(ask: PressRequest) -> str:
 
 
 def press_line(event: PressDone) -> str:
-    """Say what became of a press."""
     at = f"{event.presses_done} of {event.presses_total}, {event.velocity_mm_s:g} mm/s"
     if event.skipped:
         return ui.one_line(f"{at}: not used, {event.skipped}")
@@ -118,7 +108,6 @@ def press_line(event: PressDone) -> str:
 
 
 def picture(rows: tuple[VelocityProgress, ...], kept: str, lines: tuple[str, ...]) -> RenderableType:
-    """Lay out the rows and the lines below them."""
     from rich.console import Group
     from rich.text import Text
 
@@ -199,11 +188,8 @@ LISTED = 10
 
 
 def print_receipt(found: dict[str, Any]) -> None:
-    """Print how a result came about."""
-    click.echo(
-        f"{found['task']} {found['model']['name']} on {found['device']['name']}"
-        f"{ui.simulated(found['simulated'])}"
-    )
+    device = f"{found['device']['name']}{ui.simulated(found['simulated'])}"
+    click.echo(f"{found['task']} {found['model']['name']} on {device}")
     ui.print_wrapped(f"method: {found['method']}")
     spent = f"{found['pressing_s']:.0f} s of pressing in {ui.counted(len(found['runs']), 'run')}"
     ui.print_wrapped(f"begun {found['begun']}, last press {found['finished'] or '–'}, {spent}")
@@ -219,16 +205,10 @@ def print_receipt(found: dict[str, Any]) -> None:
     if not found["curves"]:
         click.echo("not finished; run the session's command again to go on")
         return
+    columns = ("presses", "first_cN", "last_cN", "best_cN", "mean_cN", "max_cN")
     ui.print_table(
         ["curve", "presses", "first cN", "last cN", "best cN", "mean cN", "max cN"],
-        [
-            [
-                ui.curve_name(c),
-                c["presses"],
-                *(c[f"{k}_cN"] for k in ("first", "last", "best", "mean", "max")),
-            ]
-            for c in found["curves"]
-        ],
+        [[ui.curve_name(c), *(c[k] for k in columns)] for c in found["curves"]],
     )
 
 

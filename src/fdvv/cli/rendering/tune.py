@@ -44,7 +44,6 @@ class TuneView:
 
     @property
     def guide(self) -> Guide:
-        """Return the callbacks of the session."""
         return Guide(self._ask, lambda text: ui.notice(text, self._as_json))
 
     def _ask(self, ask: PressRequest) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -99,16 +98,12 @@ def preview(study: Path, html: Path | None, as_json: bool) -> None:
     if as_json:
         ui.print_json(preview_dict(look))
         return
-    _print_head(look)
+    ui.print_wrapped(preview_title(look.plan))
+    ui.print_wrapped(preview_summary(look.plan))
     for section in preview_sections(look):
         _print_section(section)
     if html:
         click.echo(f"\nwritten to {html}")
-
-
-def _print_head(look: StudyReview) -> None:
-    ui.print_wrapped(preview_title(look.plan))
-    ui.print_wrapped(preview_summary(look.plan))
 
 
 def _print_section(section: Section) -> None:
@@ -116,6 +111,5 @@ def _print_section(section: Section) -> None:
     for text in section.paragraphs:
         ui.print_wrapped(text)
     for table in section.tables:
-        rows: list[Any] = [list(row) for row in table.rows]
-        ui.print_table(table.columns, rows, left=len(table.columns))
+        ui.print_table(table.columns, table.rows, left=len(table.columns))
         ui.print_wrapped(table.caption)
