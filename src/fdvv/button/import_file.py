@@ -169,11 +169,6 @@ def _pulse(read: Callable[..., Any]) -> Callable[[Path, float | None], Read]:
     return reader
 
 
-def _hjif(path: Path, scale: float | None) -> Read:
-    modes, duration_s = read_hjif(path, scale)
-    return modes, duration_s, ()
-
-
 def _wav(path: Path, scale: float | None) -> Read:
     if scale is None:
         raise InputError(path, "samples", "a sound does not say what full scale is", "pass --full-scale-m-s2")
@@ -210,7 +205,7 @@ def _thinned(samples: FloatArray, rate_Hz: int) -> tuple[FloatArray, float]:
 _READERS: dict[str, Callable[[Path, float | None], Read]] = {
     "ahap": _pulse(read_ahap),
     "haptic": _pulse(read_meta_haptic),
-    "hjif": _hjif,
+    "hjif": lambda path, scale: (*read_hjif(path, scale), ()),
     "wav": _wav,
 }
 

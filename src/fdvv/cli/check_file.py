@@ -52,16 +52,16 @@ def _head(path: Path) -> bytes:
         raise InputError(path, "whole file", reason, "check the path and its permissions") from error
 
 
-def _guarded(path: Path, kind: str, check: Callable[[Path], FileCheck]) -> FileCheck:
+def _guarded(path: Path, kind: str, check: Callable[[Path, str], FileCheck]) -> FileCheck:
     try:
-        return check(path)
+        return check(path, kind)
     except InputError as error:
         return unusable(path, kind, error)
     except FdvvError as error:
         return unusable(path, kind, InputError(path, "whole file", str(error), "make it again"))
 
 
-def _model(path: Path) -> FileCheck:
+def _model(path: Path, kind: str) -> FileCheck:
     model = load_model(path)
     facts = {
         "version": 1,
@@ -71,10 +71,10 @@ def _model(path: Path) -> FileCheck:
         "curves": [{"stroke": str(c.stroke), "velocity_mm_s": c.velocity_mm_s} for c in model.curves],
         "vibrations": len(model.vibrations),
     }
-    return FileCheck(path, A_MODEL, facts, notes=tuple(model.provenance.assumptions))
+    return FileCheck(path, kind, facts, notes=tuple(model.provenance.assumptions))
 
 
-def _program(path: Path) -> FileCheck:
+def _program(path: Path, kind: str) -> FileCheck:
     program = load_program(path)
     facts = {
         "version": 1,
@@ -86,22 +86,22 @@ def _program(path: Path) -> FileCheck:
     report = check_program(program)
     remedy = "change it; fdvv program check tells more"
     problems = tuple(FileProblem(f.state or f.place, str(f), remedy) for f in report.refused)
-    return FileCheck(path, A_PROGRAM, facts, problems, tuple(map(str, report.warnings)))
+    return FileCheck(path, kind, facts, problems, tuple(map(str, report.warnings)))
 
 
-def _image(path: Path) -> FileCheck:
+def _image(path: Path, kind: str) -> FileCheck:
     held = describe(path.read_bytes(), path)
     facts = {name: getattr(held, name) for name in ("name", "size_bytes", "travel_mm")}
-    return FileCheck(path, AN_IMAGE, {**facts, "states": len(held.states)})
+    return FileCheck(path, kind, {**facts, "states": len(held.states)})
 
 
-def _rig(path: Path) -> FileCheck:
+def _rig(path: Path, kind: str) -> FileCheck:
     rig = asdict(load_rig(path))
     facts = {name: list(value) if isinstance(value, tuple) else value for name, value in rig.items()}
-    return FileCheck(path, A_RIG, {"version": 1, **facts})
+    return FileCheck(path, kind, {"version": 1, **facts})
 
 
-def _actuation(path: Path) -> FileCheck:
+def _actuation(path: Path, kind: str) -> FileCheck:
     found = load_actuation(path)
     facts = {
         "method": found.method,
@@ -114,10 +114,10 @@ def _actuation(path: Path) -> FileCheck:
         "presses_skipped": len(found.skipped),
         "receipt": found.receipt is not None,
     }
-    return FileCheck(path, AN_ACTUATION, facts)
+    return FileCheck(path, kind, facts)
 
 
-def _journal(path: Path) -> FileCheck:
+def _journal(path: Path, _kind: str) -> FileCheck:
     if path.name == PRESSES and (path.parent / MANIFEST).is_file():
         return check_session(path.parent)
     return check_recording(path)
@@ -137,17 +137,15 @@ def _log(path: Path) -> FileCheck:
     return FileCheck(path, f"a log ({form})", facts, (), found.warnings)
 
 
-A_MODEL, A_PROGRAM, AN_IMAGE = "an FDVV model", "a program", "a program's image"
-A_RIG, AN_ACTUATION = "a known rig", "an actuation"
-KINDS: tuple[tuple[bytes, str, Callable[[Path], FileCheck]], ...] = (
+KINDS: tuple[tuple[bytes, str, Callable[[Path, str], FileCheck]], ...] = (
     (b'{"crc32": ', "a recording", _journal),
-    (b'{"fdvv": "session"', "a recording of a device", check_device_recording),
-    (b'"fdvv-model"', A_MODEL, _model),
-    (b'"fdvv-program"', A_PROGRAM, _program),
-    (b'"fdvv-rig"', A_RIG, _rig),
-    (b'"fdvv-actuation"', AN_ACTUATION, _actuation),
-    (b'"fdvv-session"', A_SESSION, lambda path: check_session(path.parent)),
-    (b'"fdvv-receipt"', A_SESSION, lambda path: check_session(path.parent)),
-    (IMAGE, AN_IMAGE, _image),
+    (b'{"fdvv": "session"', "a recording of a device", lambda path, _kind: check_device_recording(path)),
+    (b'"fdvv-model"', "an FDVV model", _model),
+    (b'"fdvv-program"', "a program", _program),
+    (b'"fdvv-rig"', "a known rig", _rig),
+    (b'"fdvv-actuation"', "an actuation", _actuation),
+    (b'"fdvv-session"', A_SESSION, lambda path, _kind: check_session(path.parent)),
+    (b'"fdvv-receipt"', A_SESSION, lambda path, _kind: check_session(path.parent)),
+    (IMAGE, "a program's image", _image),
 )
 """What stands within the first bytes of each kind, and who looks at it."""

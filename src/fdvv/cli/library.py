@@ -91,13 +91,7 @@ def build(folders: tuple[Path, ...], output: Path, where: Workers, as_json: bool
 @CSV
 @ui.json_option
 def search(
-    folder: Path,
-    words: tuple[str, ...],
-    sort: str,
-    descending: bool,
-    count: int,
-    output: Path | None,
-    as_json: bool,
+    folder: Path, words: tuple[str, ...], count: int, output: Path | None, as_json: bool, **order: Any
 ) -> None:
     """Find buttons of a library by words and conditions.
 
@@ -105,7 +99,7 @@ def search(
     for the shell: 'peak_cN>=50' 'travel_mm=3..3.5' kind=tactile,dome. Without words all are found.
     """
     ui.check_output(output, ".csv")
-    query = library_query(" ".join(words), sort, descending)
+    query = library_query(" ".join(words), **order)
     opened = Library(folder)
     hits, mended = opened.find(query)
     ui.print_warnings([f"nothing is called {word}; the nearest words were taken" for word in mended])

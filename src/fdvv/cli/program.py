@@ -172,9 +172,7 @@ def _report(opened: Program, report: Report) -> dict[str, Any]:
     return {
         "name": opened.name,
         "accepted": not report.refused,
-        "return_s": report.return_s,
-        "stiffness_cN_mm": report.stiffness_cN_mm,
-        "rise_K": report.rise_K,
+        **{key: getattr(report, key) for key in ("return_s", "stiffness_cN_mm", "rise_K")},
         "findings": findings,
     }
 

@@ -67,7 +67,13 @@ def _width(name: str, errors: dict[str, LandmarkError]) -> int:
 def _print_columns(result: Comparison) -> None:
     marks = [m.to_dict() for m in result.landmarks]
     rows = [
-        [key, *((m[key], _error(e, key)) for m, e in zip(marks, result.errors, strict=True))]
+        [
+            key,
+            *(
+                (m[key], getattr(e.get(key), "error", None))
+                for m, e in zip(marks, result.errors, strict=True)
+            ),
+        ]
         for key in marks[0]
     ]
     ui.print_table(["landmark", *result.names], rows, digits=dict.fromkeys(result.names, 3))
@@ -78,10 +84,6 @@ def _print_columns(result: Comparison) -> None:
         [f"force less {result.names[0]}", "stroke", "rms cN", "mean cN", "max cN", "at mm"],
         [[d.name, d.stroke, d.rms_cN, d.mean_cN, d.max_cN, d.max_mm] for d in result.differences],
     )
-
-
-def _error(errors: dict[str, LandmarkError], key: str) -> float | None:
-    return errors[key].error if key in errors else None
 
 
 def _print_lines(result: Comparison) -> None:

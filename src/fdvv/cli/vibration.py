@@ -26,13 +26,7 @@ from fdvv.vibration.exciter import KnownExciter
 @ui.option("--board", is_flag=True, help="Write the vibration board's own samples, 16 kHz, bit for bit.")
 @ui.json_option
 def vibration(
-    button: str,
-    stroke: str,
-    velocity_mm_s: float,
-    exciter: Path | None,
-    wav: Path | None,
-    board: bool,
-    as_json: bool,
+    button: str, exciter: Path | None, wav: Path | None, board: bool, as_json: bool, **of: Any
 ) -> None:
     """Show a button's vibrations, and write one as a sound.
 
@@ -47,7 +41,7 @@ def vibration(
     rows = [_about(found, known) for found in model.vibrations]
     document: dict[str, Any] = {"name": model.name, "vibrations": rows, "wav": None}
     if wav:
-        made = vibration_wav(vibration_of(button, model, stroke, velocity_mm_s), known, board)
+        made = vibration_wav(vibration_of(button, model, **of), known, board)
         made.save(wav)
         unit = "count" if board else "m/s2"
         document["wav"] = {"path": str(wav), "full_scale": made.full_scale, "unit": unit}

@@ -162,12 +162,8 @@ def _press(about: Subjects, settings: Mapping[str, Any]) -> Figures:
     }
 
 
-@lru_cache(maxsize=256)
-def _slow_peak_cN(button: ButtonPhysics) -> float:
-    """Return what fingers do not change; it takes as long as a press."""
-    return quasi_static_peak_cN(button)
-
-
+_slow_peak_cN = lru_cache(maxsize=256)(quasi_static_peak_cN)
+"""Fingers and speeds do not change it, and it takes as long as a press."""
 SPEEDS_mm_s = (50.0, 100.0, 200.0)
 MEASURES = {
     "probe": Measure(

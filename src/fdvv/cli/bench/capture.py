@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -84,12 +85,9 @@ def capture(
     name = (button and Path(button).name.removesuffix(".toml")) or (
         TWIN_BUTTON if twin else recording.name.removesuffix(RECORDING_SUFFIX)
     )
-    try:
-        with capture_view(watch or not twin, as_json, player) as view:
-            guide = CaptureGuide(view.cue, view.done, view.notice)
-            result = capture_session(device, recording, name, plan, guide)
-    finally:
-        device.close()
+    with closing(device), capture_view(watch or not twin, as_json, player) as view:
+        guide = CaptureGuide(view.cue, view.done, view.notice)
+        result = capture_session(device, recording, name, plan, guide)
     warnings: tuple[str, ...] = ()
     if output:
         model = process_recording(result.path)
@@ -102,13 +100,14 @@ def capture(
 def _print(result: CaptureResult, output: Path | None, as_json: bool) -> None:
     found = result.recording
     if as_json:
-        document: dict[str, Any] = {
+        document = {
             "recording": str(result.path),
             "button": found.name,
             "device": result.device,
+            "simulated": found.simulated,
+            "takes": len(found.takes),
+            "paces": [progress_row(pace) for pace in result.velocities],
         }
-        document |= {"simulated": found.simulated, "takes": len(found.takes)}
-        document["paces"] = [progress_row(pace) for pace in result.velocities]
         ui.print_json(document | ({"model": str(output)} if output else {}))
         return
     click.echo(f"{found.name} on {result.device}{ui.simulated(found.simulated)}, {len(found.takes)} takes")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -12,21 +13,15 @@ from fdvv.recording.check import facts_of
 from fdvv.recording.file import RECORDING_SUFFIX, save_recording
 from fdvv.recording.types import Bench
 
-
-def _fact(name: str, text: str) -> click.Option:
-    return click.Option(
-        [f"--{name.replace('_', '-').lower()}", name], type=ui.Finite(min=0), default=0.0, help=text
-    )
-
-
-FACTS = (
-    _fact("force_filter_ms", "Time constant of the force sensor's RC filter, undone."),
-    _fact("force_play_cN", "By how much the force sensor reads more on the way back, undone."),
-    _fact("tip_mass_g", "Mass of the force sensor's tip, whose inertia is taken off."),
-    _fact("sound_filter_ms", "Time constant of the microphone's filter, taken off as a delay."),
-    _fact("sound_V_s_m", "What the microphone gives per speed of the cap."),
-    _fact("exposure_ms", "Of a frame of the cameras, which is stamped at its start."),
-)
+FACTS = {
+    "force_filter_ms": "Time constant of the force sensor's RC filter, undone.",
+    "force_play_cN": "By how much the force sensor reads more on the way back, undone.",
+    "tip_mass_g": "Mass of the force sensor's tip, whose inertia is taken off.",
+    "sound_filter_ms": "Time constant of the microphone's filter, taken off as a delay.",
+    "sound_V_s_m": "What the microphone gives per speed of the cap.",
+    "exposure_ms": "Of a frame of the cameras, which is stamped at its start.",
+}
+"""Options that tell of the bench."""
 
 
 @click.command()
@@ -38,24 +33,15 @@ FACTS = (
 @click.option("--licence", default="", help="Of the data, as its owner states it.")
 @click.option("--person", default="", help="A word for who pressed, never a name.")
 @ui.json_option
-def join(
-    logs: tuple[Path, ...],
-    output: Path,
-    name: str,
-    markers: tuple[str, ...],
-    light: str,
-    licence: str,
-    person: str,
-    as_json: bool,
-    **facts: float,
-) -> None:
+def join(logs: tuple[Path, ...], output: Path, as_json: bool, **asked: Any) -> None:
     """Join logs of instruments that ran at once into a recording.
 
     LOGS are files of instruments that ran at once, as an export of Motive and the text of a board
     (docs/reference/log-files.md); each keeps its own clock, and process joins them by the light.
     """
     ui.check_output(output, RECORDING_SUFFIX)
-    recording = join_logs(logs, name, markers, light, Bench(**facts), licence, person)  # type: ignore[arg-type]
+    bench = Bench(**{name: asked.pop(name) for name in FACTS})
+    recording = join_logs(logs, bench=bench, **asked)
     save_recording(recording, output)
     if as_json:
         ui.print_json({"recording": str(output), **facts_of(recording), "warnings": list(recording.warnings)})
@@ -70,4 +56,6 @@ def join(
     ui.print_warnings(recording.warnings)
 
 
-join.params.extend(FACTS)
+for name, text in FACTS.items():
+    flag = f"--{name.replace('_', '-').lower()}"
+    join.params.append(click.Option([flag, name], type=ui.Finite(min=0), default=0.0, help=text))

@@ -35,15 +35,7 @@ from fdvv.vibration.exciter import EXCITER_SUFFIX, save_exciter
 @ui.option("--seed", type=ui.COUNT, default=0, help="Of a simulated device.")
 @ui.option("-o", "--output", type=ui.PATH, help="The *.exciter.json to write.")
 @ui.json_option
-def exciter(
-    spec: str,
-    rig: Path | None,
-    rig_known: Path | None,
-    tone_s: float,
-    seed: int,
-    output: Path | None,
-    as_json: bool,
-) -> None:
+def exciter(rig_known: Path | None, tone_s: float, output: Path | None, as_json: bool, **device: Any) -> None:
     """Know the exciter of a rig from tones that its position sensor sees; nobody touches the button.
 
     The motor holds the cap in the middle while tones of 260 to 860 Hz sound. Gain, resonance and quality are
@@ -51,7 +43,7 @@ def exciter(
     """  # fmt: skip
     ui.check_output(output, EXCITER_SUFFIX)
     known = load_rig(rig_known) if rig_known else None
-    with opened(spec, rig=rig, seed=seed) as found, ui.progress("tones", 14) as advance:
+    with opened(**device) as found, ui.progress("tones", 14) as advance:
         result = identify_exciter(found, known, tone_s, advance, ui.tell)
         name = found.info().name
     if output:

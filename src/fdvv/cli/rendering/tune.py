@@ -119,12 +119,11 @@ def tune(
     compare: bool,
     comparisons: int | None,
     repeats: int,
-    frequency_ratios: tuple[float, ...],
-    gain_ratios: tuple[float, ...],
     exciter: Path | None,
     simulated: bool,
     output: Path | None,
     as_json: bool,
+    **ratios: Any,
 ) -> None:
     """Tune the vibration of a button's press with a person.
 
@@ -138,7 +137,7 @@ def tune(
     _check_observer(pressing.device, simulated)
     model, known = open_button(button), opened_exciter(exciter)
     learned = load_actuation(actuation) if actuation else None
-    grid = TemplateGrid(frequency_ratios, gain_ratios)
+    grid = TemplateGrid(**ratios)
     setup = TuneSetup(
         learned.surface if learned else None, known, grid, "simulated observer" if simulated else "person"
     )

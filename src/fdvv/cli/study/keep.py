@@ -58,19 +58,11 @@ def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
 @passphrase_option
 @keeper_option
 @ui.json_option
-def verify(
-    folder: Path,
-    fingerprint: str,
-    record: str,
-    marks: bool,
-    passphrase_file: Path | None,
-    keeper: Path | None,
-    as_json: bool,
-) -> None:
+def verify(folder: Path, marks: bool, passphrase_file: Path | None, as_json: bool, **held: Any) -> None:
     """Verify that the study in FOLDER is as it was frozen and its logs as written; status 1 if not."""
     study = Study.open(folder)
     passphrase = _passphrase(passphrase_file) if marks or passphrase_file else ""
-    problems = study.verify(fingerprint, passphrase, keeper, record)
+    problems = study.verify(passphrase=passphrase, **held)
     if as_json:
         whole = {"whole": not problems, "problems": list(problems), "marks": bool(passphrase)}
         # of people whose record was tampered with nothing is sure
