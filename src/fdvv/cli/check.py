@@ -42,7 +42,7 @@ def check(files: tuple[str, ...], as_json: bool) -> None:
                 _print(one)
     for one in found:
         if not one.usable:
-            ui.tell(f"fdvv: {ui.one_line(f'{one.path}: {one.problems[0]}')}")
+            ui.print_stderr(f"fdvv: {ui.one_line(f'{one.path}: {one.problems[0]}')}")
     raise click.exceptions.Exit(max(one.status for one in found))
 
 

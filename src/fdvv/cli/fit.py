@@ -120,7 +120,7 @@ def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: boo
 def _print_folder(results: list[FolderFit], summary: dict[str, Any]) -> None:
     for result in results:
         if not result.fit:
-            ui.tell(f"refused: {ui.one_line(result.reason)}")
+            ui.print_stderr(f"refused: {ui.one_line(result.reason)}")
             continue
         ui.print_warnings([f"{result.file.name}: {w}" for w in result.fit.warnings])
     click.echo(f"{ui.counted(summary['files'], 'file')}, {summary['refused']} refused")

@@ -59,13 +59,13 @@ def studio(
 
     def ready(address: str) -> None:
         click.echo(f"the studio is open at {address}")
-        ui.tell("Ctrl-C ends it")
+        ui.print_stderr("Ctrl-C ends it")
         if not no_browser:
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
     token = saved_token(project) if keep_address else ""
     serve(Studio(project, folders, libraries), host, port, ready, token)
-    ui.tell("the studio is closed; everything is kept")
+    ui.print_stderr("the studio is closed; everything is kept")
 
 
 def _check_host(host: str, share: bool) -> None:

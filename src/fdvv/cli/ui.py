@@ -165,32 +165,32 @@ def counted(count: int, noun: str) -> str:
 
 
 def print_written(*paths: Path | None) -> None:
-    """Tell which files were written; None stands for one that was not asked for."""
+    """Print which files were written; None stands for one that was not asked for."""
     for path in paths:
         if path:
             click.echo(f"written to {path}")
 
 
-def tell(text: str) -> None:
+def print_stderr(text: str) -> None:
     """Print a line to standard error."""
     click.echo(text, err=True)
 
 
 def notice(text: str, quiet: bool) -> None:
-    """Tell what a person should know; where only a document is wanted, warnings alone."""
+    """Print to standard error what a person should know; where only a document is wanted, warnings alone."""
     if not quiet or text.startswith("warning: "):
-        tell(one_line(text))
+        print_stderr(one_line(text))
 
 
 def print_warnings(warnings: Iterable[str]) -> None:
     """Print warnings to standard error."""
     for warning in warnings:
-        tell(f"warning: {one_line(warning)}")
+        print_stderr(f"warning: {one_line(warning)}")
 
 
 def failed(reason: str, status: int = 1) -> click.exceptions.Exit:
     """Print why a command has failed; raise what is returned."""
-    click.echo(f"fdvv: {reason}", err=True)
+    print_stderr(f"fdvv: {reason}")
     return click.exceptions.Exit(status)
 
 
@@ -250,9 +250,9 @@ def check_folder(folder: Path) -> None:
 
 @contextmanager
 def live(per_s: float | None = None) -> Iterator[Live | None]:
-    """Give a part of the terminal that is redrawn in place; None where standard error is no terminal.
+    """Yield a part of the terminal that is redrawn in place; None where standard error is no terminal.
 
-    per_s : how often it is redrawn of itself; by default only when it is told to.
+    per_s : how often it is redrawn of itself; by default only when it is updated.
     """
     if not sys.stderr.isatty():
         yield None
@@ -282,20 +282,20 @@ def rich_table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
 @contextmanager
 def progress(label: str, total: int) -> Iterator[Callable[[int, int], None]]:
     """Show a progress bar on standard error if it is a terminal; yield what sets (done, total)."""
-    with stages(tell=lambda _label: None) as move:
+    with stages(report=lambda _label: None) as move:
         move(label, 0, total)
         yield functools.partial(move, label)
 
 
 @contextmanager
-def stages(tell: Callable[[str], None] = tell) -> Iterator[Callable[[str, int, int], None]]:
+def stages(report: Callable[[str], None] = print_stderr) -> Iterator[Callable[[str, int, int], None]]:
     """Show a progress bar for each named stage; yield what sets (label, done, total).
 
-    Where standard error is not a terminal, each label is told once, as a line.
+    Where standard error is not a terminal, each label is printed once, as a line.
     """
     if not sys.stderr.isatty():
-        told = functools.cache(tell)
-        yield lambda label, _done, _total: told(label)
+        print_once = functools.cache(report)
+        yield lambda label, _done, _total: print_once(label)
         return
     from rich.console import Console
     from rich.progress import Progress, TaskID

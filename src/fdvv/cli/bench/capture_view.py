@@ -62,12 +62,12 @@ class CaptureLines:
         """Ask a person; only beeps show the pace."""
         if not self._paced:
             return lambda _t_s: None
-        ui.tell(asked(ask))
+        ui.print_stderr(asked(ask))
         return beeps(ask, self._beep)
 
     def done(self, event: TakeDone) -> None:
         if self._paced or not self._quiet:
-            ui.tell(take_line(event))
+            ui.print_stderr(take_line(event))
 
     def notice(self, text: str) -> None:
         ui.notice(text, self._quiet)

@@ -44,7 +44,7 @@ def exciter(rig_known: Path | None, tone_s: float, output: Path | None, as_json:
     ui.check_output(output, EXCITER_SUFFIX)
     known = load_rig(rig_known) if rig_known else None
     with opened(**device) as found, ui.progress("tones", 14) as advance:
-        result = identify_exciter(found, known, tone_s, advance, ui.tell)
+        result = identify_exciter(found, known, tone_s, advance, ui.print_stderr)
         name = found.info().name
     if output:
         save_exciter(result, output)
@@ -119,7 +119,7 @@ def press(speed_mm_s: float, presses: int, as_json: bool, **asked: Any) -> None:
         info = found.info()
         for count in range(presses):
             if not info.simulated:
-                ui.tell(f"press {count + 1} of {presses}: press fully and let go")
+                ui.print_stderr(f"press {count + 1} of {presses}: press fully and let go")
             rows.append(_summary(found.press(speed_mm_s)))
     if as_json:
         ui.print_json({"device": info.name, "simulated": info.simulated, "presses": rows})

@@ -51,13 +51,13 @@ class LineView:
 
     def ask(self, ask: PressRequest) -> None:
         if self._person:
-            ui.tell(asked(ask))
+            ui.print_stderr(asked(ask))
 
     def done(self, event: PressDone) -> None:
         step = max(1, event.presses_total // LINES)
         due = self._person or event.skipped or event.presses_done % step == 0
         if due and (self._person or not self._quiet):
-            ui.tell(press_line(event))
+            ui.print_stderr(press_line(event))
 
     def notice(self, text: str) -> None:
         ui.notice(text, self._quiet)

@@ -51,7 +51,7 @@ class TuneView:
             return
         self._press = self._press + 1 if ask.number == self._asked else 1
         self._asked = ask.number
-        ui.tell(
+        ui.print_stderr(
             f"question {ask.number} of {ask.total} at most, press {self._press}: {ask.velocity_mm_s:g} mm/s, "
             "down to the stop and let go"
         )
