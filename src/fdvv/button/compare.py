@@ -114,7 +114,6 @@ def _difference(
 
 
 def spread_reports(model: FDVVModel) -> dict[str, Any]:
-    """Return the spreads of a model: of its curves, its points and its vibrations."""
     points = {name: getattr(model, f"{name}_spread") for name in ("travel", "actuation", "reset")}
     return {
         "curves": [curve_spread(curve) for curve in model.curves],

@@ -82,7 +82,6 @@ class ModelFit:
 
 
 def fit_report(fit: CurveFit) -> dict[str, Any]:
-    """Return the figures of one fitted curve by name."""
     return {
         "rmse_cN": fit.rmse_cN,
         "max_cN": fit.max_cN,

@@ -113,12 +113,12 @@ def _rendered(result: DemoResult) -> list[RenderedCurve]:
     curves = []
     learned = [r for r in result.renderings if r.learned]
     for i, first in enumerate(learned[0].judged.curves):
-        bands = []
-        for rendering in learned:
-            low, middle, high = np.percentile(rendering.judged.curves[i].rendered_cN, [25, 50, 75], axis=0)
-            bands.append(RenderedBand(rendering.label, middle, low, high))
+        bands = tuple(
+            RenderedBand(r.label, *np.percentile(r.judged.curves[i].rendered_cN, [50, 25, 75], axis=0))
+            for r in learned
+        )
         where = (first.stroke, first.velocity_mm_s, first.displacement_mm, first.target_cN)
-        curves.append(RenderedCurve(*where, tuple(bands), simulated=True))
+        curves.append(RenderedCurve(*where, bands, simulated=True))
     return curves
 
 

@@ -69,7 +69,6 @@ def build(folders: tuple[Path, ...], output: Path, where: Workers, as_json: bool
     Parquet file (docs/reference/library-files.md); a file that cannot be used is kept with its reason.
     Whatever ended a build, the same command goes on; files that did not change are not read again.
     """
-    where.check()
     ui.check_folder(output)
     with where.at_work(output, "files", 1) as (executor, tell):
         found = build_library(folders, output, executor, tell)

@@ -6,8 +6,9 @@ import functools
 import math
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -28,14 +29,14 @@ def packed(
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Join options whose values reach the command as one record.
 
-    name : the parameter of the command that gets the record. record : a NamedTuple with a field for each of
+    name : the parameter of the command that gets the record. record : a dataclass with a field for each of
         the options.
     """
 
     def add(command: Callable[..., Any]) -> Any:
         @functools.wraps(command)
         def call(**values: Any) -> Any:
-            values[name] = record(*(values.pop(field) for field in record._fields))
+            values[name] = record(**{field.name: values.pop(field.name) for field in fields(record)})
             return command(**values)
 
         return ui.options(*several)(call)
@@ -43,15 +44,16 @@ def packed(
     return add
 
 
-class Workers(NamedTuple):
+@dataclass(frozen=True)
+class Workers:
     """Where a command works: processes of this machine, dask workers, or the cluster of a scheduler."""
 
     processes: int | None
     workers: int | None
     cluster: str | None
 
-    def check(self) -> None:
-        if sum(choice is not None for choice in self) > 1:
+    def __post_init__(self) -> None:
+        if sum(choice is not None for choice in (self.processes, self.workers, self.cluster)) > 1:
             raise click.UsageError("--processes, --workers and --cluster exclude each other")
 
     @contextmanager
@@ -63,7 +65,7 @@ class Workers(NamedTuple):
 
         with (
             kept_on_interrupt(f"interrupted; what is done is kept in {folder}, the same command goes on"),
-            open_executor(*self) as executor,
+            open_executor(self.processes, self.workers, self.cluster) as executor,
             ui.progress(label, total) as tell,
         ):
             yield executor, tell
@@ -189,6 +191,7 @@ def opened(
     from fdvv.rendering.tuning import open_device
 
     with ExitStack() as stack:
+        # a recorder closes its device too, but one that cannot open its file does not come to be
         found = stack.enter_context(closing(open_device(spec, rig, None, seed)))
         yield stack.enter_context(Recorder(found, recording)) if recording else found
 

@@ -15,14 +15,11 @@ from fdvv.io.files import write_atomic
 from fdvv.program.check import Report, check_program, require_accepted
 from fdvv.program.compile import compile_program
 from fdvv.program.describe import describe
-from fdvv.program.file import save_program
+from fdvv.program.file import PROGRAM_SUFFIX, save_program
 from fdvv.program.library import make as make_shipped
 from fdvv.program.library import open_program, programs
 from fdvv.program.program import Program, State
 from fdvv.program.surface import Limits
-
-SUFFIX = ".fdvv-program.json"
-IMAGE_SUFFIX = ".fdvv-image"
 
 weight_option = ui.option(
     "--weight-cN",
@@ -113,7 +110,7 @@ def make(name: str, base: str | None, given: tuple[str, ...], output: Path) -> N
 
     NAME is one of fdvv program list, as in: make rapid-trigger --set press_mm=0.1 -o r.fdvv-program.json
     """
-    ui.check_output(output, SUFFIX)
+    ui.check_output(output, PROGRAM_SUFFIX)
     model = None if base is None else open_button(base)
     made = make_shipped(name, model, **dict(map(_parameter, given)))
     save_program(made, output)
@@ -190,7 +187,7 @@ def compile_(
 
     Columns of a surface are evenly spaced in an image; the output says what that and rounding cost.
     """
-    ui.check_output(output, IMAGE_SUFFIX)
+    ui.check_output(output, ".fdvv-image")
     opened = open_program(program)
     limits = _limits(weight_cN, opposing_cN)
     report = require_accepted(opened, limits)

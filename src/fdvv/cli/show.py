@@ -53,28 +53,21 @@ def compare(
     if as_json:
         ui.print_json({**result.to_dict(), "refused": refused})
         return
-    widths = [_width(*named) for named in zip(result.names, result.errors, strict=True)]
+    widths = [
+        2 + max(16 if errors else 8, len(name))
+        for name, errors in zip(result.names, result.errors, strict=True)
+    ]
     if LABEL_WIDTH + sum(widths) <= ui.WIDTH:
         _print_columns(result)
     else:
         _print_lines(result)
 
 
-def _width(name: str, errors: dict[str, LandmarkError]) -> int:
-    return 2 + max(16 if errors else 8, len(name))
-
-
 def _print_columns(result: Comparison) -> None:
-    marks = [m.to_dict() for m in result.landmarks]
+    pairs = [(m.to_dict(), e) for m, e in zip(result.landmarks, result.errors, strict=True)]
     rows = [
-        [
-            key,
-            *(
-                (m[key], getattr(e.get(key), "error", None))
-                for m, e in zip(marks, result.errors, strict=True)
-            ),
-        ]
-        for key in marks[0]
+        [key, *((marks[key], getattr(errors.get(key), "error", None)) for marks, errors in pairs)]
+        for key in pairs[0][0]
     ]
     ui.print_table(["landmark", *result.names], rows, digits=dict.fromkeys(result.names, 3))
     if any(result.errors):

@@ -29,7 +29,6 @@ def sweep(plan: Path, output: Path | None, preview: bool, where: Workers, as_jso
     Parquet file with a column for each factor and figure; one that fails is a row with its reason. Whatever
     ended a sweep, the same command goes on. The result is the same however many processes work on it.
     """
-    where.check()
     asked = read_sweep_plan(plan)
     if preview:
         _preview(asked, plan, output, where.processes or where.workers, as_json)

@@ -107,7 +107,6 @@ def bump_kept(ratio: float | None) -> str:
 
 
 def curve_name(curve: dict[str, Any]) -> str:
-    """Name a curve of a report by its stroke and speed."""
     return f"{curve['stroke']} {curve['velocity_mm_s']:g} mm/s"
 
 
@@ -172,7 +171,6 @@ def print_written(*paths: Path | None) -> None:
 
 
 def print_stderr(text: str) -> None:
-    """Print a line to standard error."""
     click.echo(text, err=True)
 
 
@@ -183,7 +181,6 @@ def notice(text: str, quiet: bool) -> None:
 
 
 def print_warnings(warnings: Iterable[str]) -> None:
-    """Print warnings to standard error."""
     for warning in warnings:
         print_stderr(f"warning: {one_line(warning)}")
 
@@ -205,7 +202,6 @@ class Finite(click.FloatRange):
 
 
 def above_0(most: float | None = None) -> Finite:
-    """Make a range of positive numbers."""
     return Finite(min=0, max=most, min_open=True)
 
 

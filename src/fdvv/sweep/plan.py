@@ -224,13 +224,12 @@ class SweepWork:
 
     Attributes
     ----------
-    measure, settings, seed : as in the plan, settings whole.
+    settings : of the plan, whole.
     rigs, fingers, buttons : by the names that cells have for them.
     """
 
-    measure: str
+    plan: SweepPlan
     settings: Mapping[str, Any]
-    seed: int
     rigs: Mapping[str, Rig]
     fingers: Mapping[str, Finger]
     buttons: Mapping[str, FDVVModel | ButtonPhysics]
@@ -239,9 +238,9 @@ class SweepWork:
         return [self._row(number, cell) for number, cell in cells]
 
     def _row(self, number: int, cell: Mapping[str, Value]) -> Row:
-        row: Row = {"cell": number, **cell, "seed": seed_of(self.seed, int(cell[REPEAT]))}
+        row: Row = {"cell": number, **cell, "seed": seed_of(self.plan.seed, int(cell[REPEAT]))}
         try:
-            figures: Figures = MEASURES[self.measure].find(self.subjects(cell), self.settings)
+            figures: Figures = self.plan.measured.find(self.subjects(cell), self.settings)
         except Exception as error:
             # whatever is wrong with one cell must not end a sweep of hours
             reason = one_line(f"{type(error).__name__}: {error}")
@@ -257,7 +256,7 @@ class SweepWork:
             self.buttons[str(cell["button"])],
             str(cell.get("method", "")),
             float(cell.get("speed_mm_s", 0.0)),
-            seed_of(self.seed, int(cell[REPEAT])),
+            seed_of(self.plan.seed, int(cell[REPEAT])),
         )
 
 
@@ -270,9 +269,8 @@ def sweep_work(plan: SweepPlan, folder: Path) -> SweepWork:
             remedy = f"use one of {', '.join(METHODS)}"
             raise InputError("plan", "factors.method", f"unknown: {method}", remedy)
     work = SweepWork(
-        plan.measure,
+        plan,
         _settings(plan),
-        plan.seed,
         {name: _rig(name, plan.seed, folder) for name in names["rig"]},
         {name: _finger(name, plan.seed, folder) for name in names["finger"]},
         {name: _button(name, plan.measured.real, folder) for name in names["button"]},

@@ -16,7 +16,6 @@ from fdvv.cli import ui
 from fdvv.cli.cue import BEATS, BEAT_s, FRAME_s, TONES_Hz, bar, beeper, depth_at
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
     from rich.live import Live
 
 
@@ -105,7 +104,12 @@ class CaptureTable:
         self._live.console.print(ui.one_line(text), highlight=False, markup=False)
 
     def _draw(self, *lines: str) -> None:
-        self._live.update(picture(self._rows, (self._line, *lines)), refresh=True)
+        from rich.console import Group
+        from rich.text import Text
+
+        table = [ui.rich_table(COLUMNS, map(cells, self._rows))] if self._rows else []
+        texts = [Text(line, no_wrap=True) for line in (self._line, *lines) if line]
+        self._live.update(Group(*table, *texts), refresh=True)
 
 
 def stroke_of(ask: TakeRequest) -> float | None:
@@ -172,11 +176,3 @@ def progress_row(progress: VelocityProgress) -> dict[str, Any]:
 def cells(progress: VelocityProgress) -> list[str]:
     pace, *counts, median, least, most = progress_row(progress).values()
     return [f"{pace:g} mm/s", *map(str, counts), *(ui.number(v, 1) for v in (median, least, most))]
-
-
-def picture(rows: tuple[VelocityProgress, ...], lines: tuple[str, ...]) -> RenderableType:
-    from rich.console import Group
-    from rich.text import Text
-
-    table = [ui.rich_table(COLUMNS, map(cells, rows))] if rows else []
-    return Group(*table, *(Text(line, no_wrap=True) for line in lines if line))

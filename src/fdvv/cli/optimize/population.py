@@ -43,7 +43,6 @@ def population(
     FOLDER keeps every part that is done: whatever ended the run, the same command goes on with it. The result
     is the same however many processes work on it. Everything is simulated.
     """
-    where.check()
     plan = _plan(grid=grid, **asked)
     trials = read_grid(prior).prior() if prior else ()
     label = "people" if grid is None else "grid"

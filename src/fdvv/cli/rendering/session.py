@@ -7,8 +7,9 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -22,7 +23,6 @@ from fdvv.rendering.session import Session
 from fdvv.rendering.session_run import Guide, PressDone, PressRequest, VelocityProgress
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
     from rich.live import Live
 
 REDRAW_s = 0.1
@@ -88,7 +88,13 @@ class TableView:
         self._live.console.print(ui.one_line(text), highlight=False, markup=False)
 
     def _draw(self, *lines: str) -> None:
-        self._live.update(picture(self._rows, self._kept, (self._line, *lines)), refresh=True)
+        from rich.console import Group
+        from rich.text import Text
+
+        errors = (f"{self._kept} mean", "max cN")
+        columns = ["velocity", "presses", "press: last", *errors, "release: last", *errors]
+        table = ui.rich_table(columns, map(cells, self._rows))
+        self._live.update(Group(table, *map(Text, (self._line, *lines))), refresh=True)
 
 
 def asked(ask: PressRequest) -> str:
@@ -107,17 +113,6 @@ def press_line(event: PressDone) -> str:
     return ui.one_line(f"{at}: {'; '.join([*found, *([event.message] if event.message else [])])}")
 
 
-def picture(rows: tuple[VelocityProgress, ...], kept: str, lines: tuple[str, ...]) -> RenderableType:
-    from rich.console import Group
-    from rich.text import Text
-
-    figures = [
-        name for stroke in ("press", "release") for name in (f"{stroke}: last", f"{kept} mean", "max cN")
-    ]
-    table = ui.rich_table(["velocity", "presses", *figures], map(cells, rows))
-    return Group(table, *map(Text, lines))
-
-
 def cells(row: VelocityProgress) -> list[str]:
     """Return the row of a velocity: error_k of the last press, mean and largest error of what is kept."""
     wanted = "" if row.wanted is None else f"/{row.wanted}"
@@ -129,7 +124,8 @@ def cells(row: VelocityProgress) -> list[str]:
     return found
 
 
-class Pressing(NamedTuple):
+@dataclass(frozen=True)
+class Pressing:
     """The device that presses, the speeds, and where the presses are kept."""
 
     device: str
