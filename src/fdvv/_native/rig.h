@@ -152,9 +152,9 @@ uint8_t fdvv_rig_load(fdvv_rig *rig, const uint8_t *image);
 void fdvv_rig_tick(fdvv_rig *rig, const fdvv_outputs *outputs, const fdvv_rig_noise *noise, double *rows,
                    fdvv_inputs *inputs);
 
-enum { FDVV_RIG_TICK_FORCE_N, FDVV_RIG_TICK_HEAT_K, FDVV_RIG_TICK_STOP_M, FDVV_RIG_TOLD };
+enum { FDVV_RIG_TICK_FORCE_N, FDVV_RIG_TICK_HEAT_K, FDVV_RIG_TICK_STOP_M, FDVV_RIG_TICK_COLUMNS };
 
-/* Write FDVV_RIG_TOLD numbers of this tick: reading of the finger's sensor, temperature rise of the coil,
+/* Write FDVV_RIG_TICK_COLUMNS numbers of this tick: reading of the finger's sensor, temperature rise of the coil,
  * position of the bottom stop. */
 void fdvv_rig_write_tick(const fdvv_rig *rig, double *tick_row);
 

@@ -23,7 +23,7 @@ void fdvv_twin_run(fdvv_core *core, fdvv_rig *rig, int64_t ticks, const fdvv_twi
         fdvv_supervisor_host_seen(&core->supervisor, inputs->time_us);
         fdvv_core_tick(core, inputs, &out);
         if (rows) {
-            fdvv_rig_write_tick(rig, tick_rows + k * FDVV_RIG_TOLD);
+            fdvv_rig_write_tick(rig, tick_rows + k * FDVV_RIG_TICK_COLUMNS);
             outputs[k] = out;
         }
         fdvv_rig_tick(rig, &out, &tick_noise, rows ? rows + k * row_doubles : 0, inputs);

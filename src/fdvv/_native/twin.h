@@ -38,7 +38,7 @@ void fdvv_twin_run(fdvv_core *core, fdvv_rig *rig, int64_t ticks, const fdvv_twi
  *
  * settings and image must be valid; image is aligned to four bytes.
  * Writes, from the beginning of the record: rows (ticks * steps_per_tick / steps_per_row, FDVV_RIG_COLUMNS);
- * tick_rows (ticks, FDVV_RIG_TOLD) at each tick; outputs (ticks,) of the core.
+ * tick_rows (ticks, FDVV_RIG_TICK_COLUMNS) at each tick; outputs (ticks,) of the core.
  * Returns 0; 1 if the grid is invalid; 2 if the plan is invalid or the core did not arm. */
 int fdvv_twin_press(const fdvv_rig_model *model, const fdvv_rig_grid *grid, const fdvv_twin_press_plan *plan,
                     const fdvv_settings *settings, const uint8_t *image, const fdvv_twin_noise *noise, double *rows,

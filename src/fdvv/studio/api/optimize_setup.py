@@ -75,7 +75,7 @@ class OptimizeCreate(Message):
 
 
 PAPER = "paper"
-ENGINES_TOLD = {
+ENGINE_DESCRIPTIONS = {
     "random": "draws designs by lot",
     "sobol": "spreads designs evenly",
     "tpe": "Optuna's; for many trials",
@@ -85,27 +85,27 @@ ENGINES_TOLD = {
     "gp-ei": "as in the paper: a Gaussian process and expected improvement",
     "botorch": "the strongest; needs the extra fdvv[botorch]",
 }
-SPACES_TOLD = {
+SPACE_DESCRIPTIONS = {
     PAPER: "eight parameters of the paper, three points, activation, vibration",
     "FDV": "variations of the button you start from: force, bump, activation, vibration",
     "FDVV": "the same and a scale of force for every speed it knows",
 }
-PAIR_ENGINES_TOLD = {
+PAIR_ENGINE_DESCRIPTIONS = {
     "preference": "learns from which of two you prefer",
     "preference-botorch": "the same, stronger; needs the extra fdvv[botorch]",
 }
-MORE_TOLD = {"lost_ratio": "share of rounds lost"}
+OBJECTIVE_DESCRIPTIONS = {"lost_ratio": "share of rounds lost"}
 
 
 @call("optimize.offers")
 def offers(studio: Studio, _ask: Empty) -> OptimizeOffers:
     return OptimizeOffers(
-        [Offer(name, ENGINES_TOLD.get(name, "")) for name in engine_names()],
-        [Offer(name, PAIR_ENGINES_TOLD.get(name, "")) for name in pair_engine_names()],
-        [Offer(name, about) for name, about in SPACES_TOLD.items()],
+        [Offer(name, ENGINE_DESCRIPTIONS.get(name, "")) for name in engine_names()],
+        [Offer(name, PAIR_ENGINE_DESCRIPTIONS.get(name, "")) for name in pair_engine_names()],
+        [Offer(name, about) for name, about in SPACE_DESCRIPTIONS.items()],
         [Offer(entry.rig_id, entry.about) for entry in studio.rigs.entries()],
         [Offer(name, f"{speed:g} pixels per second") for name, speed in LEVELS_px_s.items()],
-        [Offer(name, about) for name, about in MORE_TOLD.items()],
+        [Offer(name, about) for name, about in OBJECTIVE_DESCRIPTIONS.items()],
         [Offer(choice.id, choice.name) for choice in button_choices(studio.catalog)],
         [Offer(name, grid.about) for name, grid in offered_grids(studio.project).items()],
     )
@@ -151,8 +151,10 @@ def _space(studio: Studio, ask: OptimizeCreate) -> tuple[SpaceSetup, dict[str, f
     base = None if ask.start is None else studio.catalog.model(ask.start)
     if ask.space == PAPER:
         return SpaceSetup(rig=ask.rig), None if base is None else paper_design_like(base)
-    if ask.space not in SPACES_TOLD:
-        raise InputError("optimise", ask.space, "there is no such space", f"use {', '.join(SPACES_TOLD)}")
+    if ask.space not in SPACE_DESCRIPTIONS:
+        raise InputError(
+            "optimise", ask.space, "there is no such space", f"use {', '.join(SPACE_DESCRIPTIONS)}"
+        )
     if base is None:
         reason = "varies a button, and none was named"
         raise InputError("optimise", ask.space, reason, "choose one to start from")

@@ -216,7 +216,7 @@ def place_of(one: PersonView) -> str:
 
 
 UNSEALED, ANSWERS = "unsealed", "answers.csv"
-TOLD = {
+TEMPLATE_DESCRIPTIONS = {
     "realism": "which of two hidden renderings is closer to a named reference; the paper's",
     "abx": "X is A or B: which?",
     "2afc": "which of two has more of something",

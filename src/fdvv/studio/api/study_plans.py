@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fdvv.errors import InputError
 from fdvv.report.report import Section
-from fdvv.studio.api.studies import TOLD, Name, StudiesAsk, Text
+from fdvv.studio.api.studies import TEMPLATE_DESCRIPTIONS, Name, StudiesAsk, Text
 from fdvv.studio.contract import Empty, Message, Offer, call, error_line
 from fdvv.studio.studies import Studies
 from fdvv.studio.studio import Studio
@@ -79,7 +79,7 @@ def preview_section(one: Section) -> StudiesSection:
 
 @call("studies.offers")
 def offers(_studio: Studio, _ask: Empty) -> StudiesOffers:
-    return StudiesOffers([Offer(name, TOLD.get(name, "")) for name in template_names()])
+    return StudiesOffers([Offer(name, TEMPLATE_DESCRIPTIONS.get(name, "")) for name in template_names()])
 
 
 @call("studies.create")
