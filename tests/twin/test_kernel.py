@@ -47,7 +47,7 @@ def test_a_structure_of_other_types_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("last", "count"), [("FDVV_RIG_COLUMNS", RIG_COLUMNS), ("FDVV_RIG_TOLD", TICK_COLUMNS)]
+    ("last", "count"), [("FDVV_RIG_COLUMNS", RIG_COLUMNS), ("FDVV_RIG_TICK_COLUMNS", TICK_COLUMNS)]
 )
 def test_a_row_has_as_many_columns_as_the_header_names(last: str, count: int) -> None:
     names = re.search(r"enum \{([^}]*)\b" + last + r"\b", TEXT)
