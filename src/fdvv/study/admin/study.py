@@ -2,20 +2,50 @@
 
 from __future__ import annotations
 
+import os
+import secrets
+import shutil
+from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
+
+import fdvv
 from fdvv.errors import InputError
-from fdvv.io.files import read_limited
+from fdvv.eventlog import Journal
+from fdvv.io.files import read_limited, sync_folder, write_atomic
 from fdvv.rendering.session import now
-from fdvv.study.admin.declare import declare_folder, freeze_folder, put_plan
-from fdvv.study.admin.enrol import Enrolment, enrol_person, withdraw_person
-from fdvv.study.files.chained_log import ChainedLog, open_when_free, read_chained
+from fdvv.study.admin.review import review_plan, twin_problems
+from fdvv.study.analysis.unseal import unseal_folder
+from fdvv.study.files import layout
+from fdvv.study.files.chained_log import ChainedLog, head_path, open_when_free, read_chained
 from fdvv.study.files.folder import StudyFolder, study_problems
-from fdvv.study.files.layout import LOG_FILE, SCHEDULE_FILE, SEALED_FILE, SESSION_FILE, SMALLER, LARGEST_bytes
-from fdvv.study.files.people import EVERYBODY, Schedule, open_schedule, pause_person
-from fdvv.study.files.seal import CODE_COST, PASSPHRASE_COST, Cost, KeyHolder
+from fdvv.study.files.layout import (
+    FROZEN_FILE,
+    KEEPER_FILE,
+    LOG_FILE,
+    PEOPLE,
+    SCHEDULE_FILE,
+    SEALED_FILE,
+    SESSION_FILE,
+    UNSEALED,
+    Frozen,
+    digest,
+)
+from fdvv.study.files.people import (
+    EVERYBODY,
+    Schedule,
+    free_place,
+    lock_schedule,
+    open_schedule,
+    pause_person,
+    people_of,
+    person_of,
+)
+from fdvv.study.files.seal import CODE_COST, PASSPHRASE_COST, Cost, KeyHolder, new_code, new_key_holder
 from fdvv.study.plan.answers import Answers
-from fdvv.study.plan.plan_file import STUDY_FILE
+from fdvv.study.plan.plan_file import STUDY_FILE, check_plan, read_plan_text
+from fdvv.study.plan.schedule import draw_schedule
 
 
 class Study(StudyFolder):
@@ -32,13 +62,26 @@ class Study(StudyFolder):
 
         InputError on a plan that cannot be read, or that names a file that is not there. OSError.
         """
-        text = read_limited(plan_file, LARGEST_bytes, SMALLER).decode(errors="replace")
+        text = read_limited(plan_file, layout.LARGEST_bytes, layout.SMALLER).decode(errors="replace")
         return cls.declare_text(folder, text, Path(plan_file).parent, plan_file)
 
     @classmethod
     def declare_text(cls, folder: Path, text: str, beside: Path, source: object = STUDY_FILE) -> Study:
-        """Declare a study from the text of its plan. beside : where the files lie that it names."""
-        declare_folder(Path(folder), text, Path(beside), source)
+        """Declare a study from the text of its plan, whole or not at all. beside : where its files lie."""
+        folder = Path(folder)
+        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+            raise InputError(folder, "folder", "is not empty", "name a new one, or open the study in it")
+        if folder.exists():  # it may be the working directory of a shell
+            _put_plan(folder, text, beside, source)
+            return cls(folder)
+        building = folder.with_name(f".{folder.name}.new")
+        shutil.rmtree(building, ignore_errors=True)  # of a process that was killed
+        try:
+            _put_plan(building, text, beside, source)
+            building.replace(folder)
+        finally:
+            shutil.rmtree(building, ignore_errors=True)
+        sync_folder(folder.parent)
         return cls(folder)
 
     @classmethod
@@ -52,14 +95,44 @@ class Study(StudyFolder):
         """Replace the plan of a study that is not frozen. beside : where files lie that it names."""
         if self.frozen:
             raise InputError(self.folder, "study", "is frozen", "declare a new study in another folder")
-        put_plan(self.folder, text, Path(beside or self.folder), STUDY_FILE)
+        _put_plan(self.folder, text, beside or self.folder, STUDY_FILE)
 
     def freeze(self, passphrase: str, cost: Cost = PASSPHRASE_COST) -> str:
-        """Freeze the study, and return its fingerprint. passphrase : the key holder's; it is not stored.
+        """Freeze the study, and return its fingerprint: from now on every change is noticed.
 
-        InputError on a plan with problems, or a study that was frozen before.
+        passphrase : the key holder's; it is not stored. Files beside the plan that it names are copied into
+        the study first: what is frozen is what is rendered. InputError on a plan with problems, a study that
+        was frozen before, a short passphrase. BuildError: no PyNaCl. OSError.
         """
-        return freeze_folder(self.folder, self.plan, passphrase, cost)
+        folder, plan = self.folder, self.plan
+        check_plan(plan, folder / STUDY_FILE)
+        review = review_plan(plan, folder)
+        for problem in (*review.problems, *twin_problems(plan, folder, opened=review.models)):
+            raise InputError(
+                folder / STUDY_FILE, "plan", problem, "change it: it could not be run as it says"
+            )
+        if (folder / FROZEN_FILE).exists() or (folder / PEOPLE).exists():
+            raise InputError(folder, "study", "was frozen before", "declare a new study in another folder")
+        layout.keep_files(plan, folder)
+        paths = [folder / STUDY_FILE, *(layout.kept_path(folder, name) for name in layout.named_files(plan))]
+        files = {path.relative_to(folder).as_posix(): digest(layout.content(path)) for path in paths}
+        seal, keeper = new_key_holder(passphrase, cost)
+        write_atomic(folder / KEEPER_FILE, keeper)
+        files[KEEPER_FILE] = digest(keeper)
+        builtins = {name: layout.builtin_digest(name) for name in layout.named_builtins(plan)}
+        frozen = Frozen(files=files, builtins=builtins, seal=seal.text, fdvv=fdvv.__version__, when=now())
+        return self._begin_log(frozen)
+
+    def _begin_log(self, frozen: Frozen) -> str:
+        log_path, sha256 = self.folder / LOG_FILE, digest(frozen.text)
+        for left in (log_path, head_path(log_path)):
+            left.unlink(missing_ok=True)  # of a freezing that was killed
+        with ChainedLog.create(log_path, {"study": sha256}) as log:
+            log.write({"frozen": {"when": frozen.when, "sha256": sha256, "fdvv": frozen.fdvv}})
+        # last of all: before it is there, nothing is frozen
+        write_atomic(self.folder / FROZEN_FILE, frozen.text)
+        sync_folder(self.folder)
+        return layout.fingerprint_of(sha256)
 
     def enrol(
         self, language: str = "", consent: str = "", simulated: bool = False, cost: Cost = CODE_COST
@@ -75,8 +148,25 @@ class Study(StudyFolder):
             known = ", ".join(self.plan.languages)
             raise InputError(language, "language", "is not one of the study", f"name one of {known}")
         with self._log() as log:
-            enrolment = Enrolment(language, consent, simulated)
-            return enrol_person(self.folder, self.plan, self.seal, log, enrolment, cost)
+            self._check_enrolment(log, simulated)
+            people = people_of(log.records)
+            person, place = f"P{len(people) + 1:02d}", free_place(people)
+            # seeded by the operating system, anew for everybody: one schedule must not predict the next
+            trials = draw_schedule(self.plan, place, np.random.default_rng())
+            schedule, code = Schedule(log.about["study"], person, secrets.token_hex(32), trials), new_code()
+            text = lock_schedule(schedule, self.seal, code, cost)
+            _keep_person(self.folder / PEOPLE / person, schedule, text, consent)
+            about = {"language": language, "place": place, "simulated": simulated}
+            log.write({"enrolled": {"person": person, **about, "when": now(), "schedule": digest(text)}})
+        return person, code
+
+    def _check_enrolment(self, log: ChainedLog, simulated: bool) -> None:
+        if any("unsealed" in record for record in log.records):
+            reason = "was unsealed, nobody can begin it any more"
+            raise InputError(self.folder, "study", reason, "declare a new study")
+        if any(person.simulated != simulated for person in people_of(log.records)):
+            reason = "has people and cannot have simulated ones" if simulated else "has simulated people only"
+            raise InputError(self.folder, "study", reason, "declare another study for them")
 
     def schedule(self, person: str, key: str | KeyHolder) -> Schedule:
         """Open a person's schedule with their code, or the key holder's key. **Secret.**
@@ -120,7 +210,17 @@ class Study(StudyFolder):
         InputError where they are in the study at this moment. OSError.
         """
         with self._log() as log:
-            withdraw_person(self.folder, log, person, delete)
+            state = person_of(log.records, person).state
+            own = self.folder / PEOPLE / person
+            if (own / SESSION_FILE).exists():
+                remedy = "have them press withdraw, or close their screen"
+                busy = InputError(person, "person", "is in the study at this moment", remedy)
+                Journal(own / SESSION_FILE, busy).close()
+            if state != "deleted" and (delete or state != "withdrawn"):
+                # first on record: a process that is killed in between leaves files that verify reports
+                log.write({"withdrawn": {"when": now(), "person": person, "deleted": delete}})
+            for left in (own, self.folder / UNSEALED) if delete else ():
+                _wipe(left)
 
     def unseal(
         self, passphrase: str, who: str, why: str, keeper: Path | None = None, despite: bool = False
@@ -131,15 +231,55 @@ class Study(StudyFolder):
         people's files were changed: nothing of theirs counts, and the record says so.
         InputError on a wrong passphrase, an empty name or reason, a study that is not whole. OSError.
         """
-        from fdvv.study.analysis.unseal import check_words, refuse_problems, unseal_folder
-
-        words = check_words(who=who, why=why)
+        about: dict[str, object] = {"who": " ".join(who.split()), "why": " ".join(why.split())}
+        for name, text in about.items():
+            if not text:
+                raise InputError(name, "whole", "is empty", "say who unseals the study, and why")
         holder, plan = self.key_holder(passphrase, keeper), self.plan
         problems = study_problems(self.folder, holder=holder)
-        if not despite:
-            refuse_problems(self.folder, problems)
+        if problems and not despite:
+            more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+            remedy = f"{layout.REMEDY}; --despite goes on without the people concerned"
+            raise InputError(self.folder, "study", problems[0] + more, remedy)
         with self._log() as log:
-            return unseal_folder(self.folder, plan, log, holder, {**words, "problems": list(problems)})
+            return unseal_folder(self.folder, plan, log, holder, {**about, "problems": list(problems)})
 
     def _log(self) -> ChainedLog:
         return open_when_free(self.folder / LOG_FILE)
+
+
+def _put_plan(folder: Path, text: str, beside: Path, source: object) -> None:
+    """Write a plan, behind all files that it names. InputError where one is not there, OSError."""
+    layout.copy_files(read_plan_text(text, source), Path(beside), folder)
+    write_atomic(folder / STUDY_FILE, text)
+
+
+def _keep_person(folder: Path, schedule: Schedule, text: str, consent: str) -> None:
+    """Make the folder of a person, whole or not at all: the locked schedule and two empty logs."""
+    building = folder.with_name(f".{schedule.person}.new")
+    for left in (building, folder):  # of an enrolment that was killed before it was logged
+        shutil.rmtree(left, ignore_errors=True)
+    write_atomic(building / SCHEDULE_FILE, text)
+    logs: dict[str, Mapping[str, str]] = {
+        SESSION_FILE: {"log": "session", "consent": consent},
+        SEALED_FILE: {"log": "sealed"},
+    }
+    for name, own in logs.items():
+        about = {"study": schedule.study, "person": schedule.person, **own}
+        ChainedLog.create(building / name, about, bytes.fromhex(schedule.key)).close()
+    building.replace(folder)
+    sync_folder(folder.parent)
+
+
+def _wipe(folder: Path) -> None:
+    """Overwrite every file below a folder, and remove them all; nothing if it is not there. OSError."""
+    if not folder.exists():
+        return
+    for path in folder.rglob("*"):
+        if path.is_file() and not path.is_symlink():
+            with path.open("r+b") as stream:
+                stream.write(bytes(path.stat().st_size))
+                stream.flush()
+                os.fsync(stream.fileno())
+    shutil.rmtree(folder)
+    sync_folder(folder.parent)

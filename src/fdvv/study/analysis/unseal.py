@@ -19,7 +19,7 @@ from fdvv.io.files import write_atomic
 from fdvv.rendering.session import now
 from fdvv.study.analysis.code_book import write_answers
 from fdvv.study.files.chained_log import ChainedLog, read_chained
-from fdvv.study.files.layout import PEOPLE, REMEDY, SCHEDULE_FILE, SEALED_FILE, SESSION_FILE, UNSEALED
+from fdvv.study.files.layout import PEOPLE, SCHEDULE_FILE, SEALED_FILE, SESSION_FILE, UNSEALED
 from fdvv.study.files.people import Person, Schedule, SealedTrial, open_schedule, people_of
 from fdvv.study.files.seal import KeyHolder
 from fdvv.study.plan.answers import Answers, screen
@@ -209,23 +209,6 @@ def _ratings(rows: Sequence[UnsealedTrial], rating: str, stimuli: Sequence[str])
 
 def _words(words: Sequence[str]) -> np.ndarray:
     return np.array(words, np.str_)
-
-
-def check_words(**words: str) -> dict[str, str]:
-    """Return who and why as they are recorded. InputError where one is empty."""
-    found = {name: " ".join(text.split()) for name, text in words.items()}
-    for name, text in found.items():
-        if not text:
-            raise InputError(name, "whole", "is empty", "say who unseals the study, and why")
-    return found
-
-
-def refuse_problems(folder: Path, problems: Sequence[str]) -> None:
-    """Refuse to unseal a study that is not whole. InputError."""
-    if problems:
-        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-        remedy = f"{REMEDY}; --despite goes on without the people concerned"
-        raise InputError(folder, "study", problems[0] + more, remedy)
 
 
 def unseal_folder(

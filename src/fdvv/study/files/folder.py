@@ -10,7 +10,7 @@ from fdvv.errors import InputError
 from fdvv.study.files import layout
 from fdvv.study.files.chained_log import ChainRead, read_chained
 from fdvv.study.files.layout import FROZEN_FILE, KEEPER_FILE, LOG_FILE, PEOPLE, SCHEDULE_FILE, Frozen
-from fdvv.study.files.people import Person, no_person, open_schedule, paused_of, people_of
+from fdvv.study.files.people import Person, open_schedule, paused_of, people_of, person_of
 from fdvv.study.files.seal import KeyHolder, SealingKey
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
@@ -84,11 +84,7 @@ class StudyFolder:
 
     def person(self, name: str) -> Person:
         """Return a person by name. InputError."""
-        people = self.people()
-        found = next((person for person in people if person.name == name), None)
-        if found is None:
-            raise no_person(name, people)
-        return found
+        return person_of(self.history(), name)
 
     def person_folder(self, name: str) -> Path:
         """Return the folder of a person's files. InputError on a name that nobody has."""

@@ -144,10 +144,13 @@ def open_schedule(path: Path, key: str | KeyHolder) -> Schedule:
     return msgspec.json.decode(key.unlock(found.sealed, path), type=Schedule)
 
 
-def no_person(name: str, people: Iterable[Person]) -> InputError:
-    """Return the error that lists who is in the study."""
-    known = ", ".join(person.name for person in people) or "nobody yet"
-    return InputError(name, "person", "is not in this study", f"name one of: {known}")
+def person_of(records: Iterable[Mapping[str, Any]], name: str) -> Person:
+    """Return a person in a study's log. InputError, which lists who is in it."""
+    people = {person.name: person for person in people_of(records)}
+    if name not in people:
+        known = ", ".join(people) or "nobody yet"
+        raise InputError(name, "person", "is not in this study", f"name one of: {known}")
+    return people[name]
 
 
 def paused_of(records: Iterable[Mapping[str, Any]]) -> frozenset[str]:
@@ -165,9 +168,8 @@ def pause_person(log: ChainedLog, person: str, on: bool) -> None:
 
     person : `EVERYBODY` for all. InputError on a person who is not in the study.
     """
-    people = people_of(log.records)
-    if person != EVERYBODY and all(one.name != person for one in people):
-        raise no_person(person, people)
+    if person != EVERYBODY:
+        person_of(log.records, person)
     if on != (person in paused_of(log.records)):
         about = {"person": person} if person != EVERYBODY else {}
         log.write({PAUSED if on else CONTINUED: {"when": now(), **about}})
