@@ -124,8 +124,7 @@ def test_a_break_is_kept_across_a_crash(tmp_path: Path) -> None:
     one.show_trial(0)
     clock.now_s += 61.0
     one.answer(0, answer_of(one.state.started.trials[0]))
-    one._log.close()  # as a process that is killed does
-    one._sealed.close()
+    one._session.close()  # as a process that is killed does
     clock.now_s += 50.0
     again = Participant.resume(study, "P01", code, StillStage(), clock=clock)
     assert (again.step().kind, again.step().left_s) == ("break", 70.0)

@@ -12,8 +12,10 @@ from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
 from fdvv.study.files.people import SealedTrial
-from fdvv.study.plan.trial import Rendered
-from fdvv.study.session.trial import SEALED_BYTES, lost_trial, sealed_bytes
+from fdvv.study.plan.plan_file import read_plan_text, template_text
+from fdvv.study.plan.trial import Rendered, StudyTrial
+from fdvv.study.session.trial import SEALED_BYTES, ReconnectableRenderer, sealed_bytes
+from fdvv.study.simulation.participant import NullRenderer
 
 ODD = (None, float("nan"), float("inf"), 1e9, 0.0, 1.0 / 3.0)
 NAMES = ("FD", "x" * 60, "\u00fc" * 60, "\x01" * 60, "\U0001f600" * 60)
@@ -66,8 +68,11 @@ def test_more_renderings_than_a_page_holds_are_refused() -> None:
 
 
 def test_of_a_lost_trial_every_label_tells_so() -> None:
-    found = lost_trial(SealedTrial(0, 0.0, ()), {"A": "FD", "B": "FDVV"}, "line broke")
-    assert [(one.label, one.stimulus, one.faults) for one in found.rendered] == [
+    plan = read_plan_text(template_text("realism"), "realism")
+    trial = StudyTrial(3, plan.items[0].name, 0, {"A": "FD", "B": "FDVV"}, ratio=0.25)
+    found = ReconnectableRenderer(plan, NullRenderer()).lost(trial, "line broke")
+    assert (found.number, found.ratio) == (3, 0.25)
+    assert [(one.label, one.stimulus, one.faults) for one in found.rendered if one.label != "X"] == [
         ("A", "FD", ("device lost", "line broke")),
         ("B", "FDVV", ("device lost", "line broke")),
     ]

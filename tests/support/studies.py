@@ -14,7 +14,7 @@ from fdvv.study.files.people import SealedTrial
 from fdvv.study.files.seal import Cost
 from fdvv.study.plan.events import PageAnswered, TrialAnswered, TrialShown
 from fdvv.study.plan.trial import Rendered, StudyTrial, TrialAnswer
-from fdvv.study.session.log import open_session
+from fdvv.study.session.log import OpenedSession
 
 PASSPHRASE = "four words of no sense"
 CHEAP = Cost(1, 8192)
@@ -120,15 +120,14 @@ def answered(
     age: float = 33.0,
 ) -> None:
     """Answer pages and so many trials, practice included, and close."""
-    opened = open_session(study, person, code, 0.0)
-    opened.log.add(PageAnswered(1.0, "consent"))
-    opened.log.add(PageAnswered(2.0, "about", {"age": age}))
-    for trial in opened.schedule.trials[:trials]:
-        opened.log.add(TrialShown(10.0 * trial.number, trial.number, 1))
-        opened.sealed.add(SealedTrial(trial.number, trial.ratio, render(trial)))
-        opened.log.add(TrialAnswered(10.0 * trial.number + 5.0, trial.number, 1, judge(trial)))
-    opened.log.close()
-    opened.sealed.close()
+    opened = OpenedSession(study, person, code, 0.0)
+    opened.add(PageAnswered(1.0, "consent"))
+    opened.add(PageAnswered(2.0, "about", {"age": age}))
+    for trial in opened.trials[:trials]:
+        opened.add(TrialShown(10.0 * trial.number, trial.number, 1))
+        opened.seal(SealedTrial(trial.number, trial.ratio, render(trial)))
+        opened.add(TrialAnswered(10.0 * trial.number + 5.0, trial.number, 1, judge(trial)))
+    opened.close()
     if trials is None:
         study.finished(person)
 

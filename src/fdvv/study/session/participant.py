@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from types import TracebackType
 from typing import Self
+
+from msgspec import structs
 
 from fdvv.errors import DeviceError, ModelError
 from fdvv.study.admin.study import Study
@@ -14,14 +15,13 @@ from fdvv.study.plan import events
 from fdvv.study.plan.events import Event, TrialFace, Value, check_answer, checked_page
 from fdvv.study.plan.session import ENDS, MOST_FALLS, Step, next_step
 from fdvv.study.plan.trial import StudyTrial, TrialAnswer
-from fdvv.study.session.log import OpenedSession, open_session
+from fdvv.study.session.log import OpenedSession
 from fdvv.study.session.trial import (
     GONE,
     ReconnectableRenderer,
     RendererLostError,
     TrialWatch,
-    has_converged,
-    with_ratio,
+    staircase_ratio,
 )
 from fdvv.study.stimulus.renderer import StimulusRenderer
 
@@ -37,10 +37,10 @@ class Participant:
     """
 
     def __init__(
-        self, study: Study, opened: OpenedSession, renderer: StimulusRenderer, clock: Callable[[], float]
+        self, study: Study, session: OpenedSession, renderer: StimulusRenderer, clock: Callable[[], float]
     ) -> None:
-        self.study, self._plan, self._schedule = study, study.plan, opened.schedule.trials
-        self._log, self._sealed, self.state = opened.log, opened.sealed, opened.state
+        self.study, self._plan = study, study.plan
+        self._session, self.state = session, session.state
         self.person, self.language = self.state.started.person, self.state.started.language
         self._renderer = ReconnectableRenderer(self._plan, renderer)
         self._clock = clock
@@ -82,7 +82,7 @@ class Participant:
         InputError on a wrong code, on a person who withdrew, where the session runs elsewhere or where the
         study was changed. OSError.
         """
-        return cls(study, open_session(study, person, code, round(clock(), 1)), renderer, clock)
+        return cls(study, OpenedSession(study, person, code, round(clock(), 1)), renderer, clock)
 
     @property
     def trial(self) -> TrialFace | None:
@@ -106,7 +106,10 @@ class Participant:
         self._watch.begin()
         # before it is prepared: how long that takes could reveal what is rendered
         self._add(events.TrialShown(self._now(), number, attempt, simulated))
-        trial = with_ratio(self._plan, self._schedule, self.state, number)
+        ratio = self._ratio(number)
+        if ratio is None:
+            raise ModelError(f"the staircase of trial {number} has ended")
+        trial = structs.replace(self._session.trials[number], ratio=ratio)
         self._use(trial, lambda: self._renderer.prepare(trial))
         self._trial = trial
         self._watch.begin()
@@ -129,7 +132,7 @@ class Participant:
         trial = self._open(number)
         check_answer(self._plan, self.state.started.trials[number], answer)
         evidence = self._renderer.evidence(trial)
-        self._sealed.add(evidence)
+        self._session.seal(evidence)
         attempt = self.state.attempts[number]
         self._add(events.TrialAnswered(self._now(), number, attempt, self._watch.whole(answer, evidence)))
         self._trial = None
@@ -159,7 +162,7 @@ class Participant:
     def reconnect(self, renderer: StimulusRenderer) -> None:
         """Continue with another renderer; the trial that was shown is shown again."""
         if self.state.open is not None:
-            self._interrupt(self._schedule[self.state.open], "another stage was taken")
+            self._interrupt(self._session.trials[self.state.open], "another stage was taken")
         self._renderer.replace(renderer)
 
     def withdraw(self, delete: bool = True) -> Step:
@@ -177,9 +180,7 @@ class Participant:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def _now(self) -> float:
@@ -187,12 +188,12 @@ class Participant:
         return round(self._clock(), 1)
 
     def _add(self, event: Event) -> None:
-        self.state = self._log.add(event)
+        self.state = self._session.add(event)
 
     def _advance(self) -> Step:
         """Pass over the trials of staircases that have converged, and log where all is done."""
         while trial := self.state.next_trial:
-            if not has_converged(self._plan, self._schedule, self.state, trial.number):
+            if self._ratio(trial.number) is not None:
                 break
             self._add(events.StaircaseConverged(self._now(), trial.item, trial.round))
         step = self.step()
@@ -208,9 +209,11 @@ class Participant:
 
     def _release(self) -> None:
         self._closed = True
-        self._log.close()
-        self._sealed.close()
+        self._session.close()
         self._renderer.drop()
+
+    def _ratio(self, number: int) -> float | None:
+        return staircase_ratio(self._plan, self._session.trials, self.state, number)
 
     def _open(self, number: int | None = None) -> StudyTrial:
         """Return the trial that is shown. ModelError where it is another, or none."""
@@ -231,7 +234,7 @@ class Participant:
     def _interrupt(self, trial: StudyTrial, reason: str) -> None:
         """Log that a trial is to be shown again, or given up where it brings the device down every time."""
         felt, self._trial = self._watch.felt, None
-        self._sealed.add(self._renderer.lost(trial, reason))
+        self._session.seal(self._renderer.lost(trial, reason))
         self._add(events.TrialInterrupted(self._now(), trial.number, felt))
         if self.state.falls[trial.number] >= MOST_FALLS:
             self._add(events.TrialSkipped(self._now(), trial.number))

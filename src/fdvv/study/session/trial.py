@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 import msgspec
 import numpy as np
@@ -22,6 +23,7 @@ GONE = "the device went away; connect it again: the trial goes on"
 SEALED_BYTES = 16_384
 """Of every trial: its length does not show how many presses or faults there were."""
 
+Result = TypeVar("Result")
 _LABEL_BYTES, _PRESS_BYTES = 1_200, 22
 _LARGEST, _FAULTS, _FAULT = 99_999.0, 6, 40
 
@@ -46,32 +48,17 @@ def trial_stimuli(plan: StudyPlan, trial: StudyTrial) -> dict[str, Stimulus]:
     return dict(sorted(found.items()))
 
 
-def with_ratio(
+def staircase_ratio(
     plan: StudyPlan, schedule: Sequence[StudyTrial], state: SessionState, number: int
-) -> StudyTrial:
-    """Return a trial with the ratio that its staircase has reached; of other kinds it is as drawn."""
+) -> float | None:
+    """Return the ratio that the staircase of a trial has reached, None where it has ended, with its answer.
+
+    Of other kinds of trials it is as drawn. A staircase is replayed: ratios are not logged, they follow from
+    the answers.
+    """
     trial = schedule[number]
     if plan.kind != "staircase" or plan.staircase is None or trial.practice:
-        return trial
-    ratio = next_ratio(plan.staircase, _history(plan, schedule, state, trial))
-    if ratio is None:
-        raise ModelError(f"the staircase of trial {number} has ended")
-    return msgspec.structs.replace(trial, ratio=ratio)
-
-
-def has_converged(plan: StudyPlan, schedule: Sequence[StudyTrial], state: SessionState, number: int) -> bool:
-    """Return whether the staircase of a trial has ended, with its answer if it has one."""
-    trial = schedule[number]
-    if plan.kind != "staircase" or plan.staircase is None or trial.practice:
-        return False
-    return next_ratio(plan.staircase, _history(plan, schedule, state, trial)) is None
-
-
-def _history(
-    plan: StudyPlan, schedule: Sequence[StudyTrial], state: SessionState, trial: StudyTrial
-) -> list[tuple[float, bool]]:
-    """Replay a staircase: ratios are not logged, they follow from the answers."""
-    assert plan.staircase is not None
+        return trial.ratio
     history: list[tuple[float, bool]] = []
     for one in schedule:
         answered = state.answers.get(one.number)
@@ -79,7 +66,7 @@ def _history(
             ratio = next_ratio(plan.staircase, history)
             assert ratio is not None
             history.append((ratio, answered.answer.choice == one.correct))
-    return history
+    return next_ratio(plan.staircase, history)
 
 
 def sealed_bytes(trial: SealedTrial) -> bytes:
@@ -95,13 +82,6 @@ def sealed_bytes(trial: SealedTrial) -> bytes:
         raise ModelError(f"a trial of {len(trial.rendered)} renderings is too much to be sealed")
     # blanks at the end of JSON mean nothing
     return text.ljust(SEALED_BYTES)
-
-
-def lost_trial(trial: SealedTrial, stimuli: dict[str, str], reason: str) -> SealedTrial:
-    """Return the record of a trial whose renderer was lost. stimuli : names, by label."""
-    faults = ("device lost", reason)
-    rendered = tuple(Rendered(label, name, faults=faults) for label, name in stimuli.items())
-    return msgspec.structs.replace(trial, rendered=rendered)
 
 
 def _short(one: Rendered, presses: int) -> Rendered:
@@ -142,26 +122,26 @@ class ReconnectableRenderer:
         return self._renderer
 
     def prepare(self, trial: StudyTrial) -> None:
-        """Prepare the stimuli of a trial."""
         stimuli = trial_stimuli(self._plan, trial)
         self._use(lambda renderer: renderer.prepare(stimuli))
 
     def show(self, label: str) -> None:
-        """Render a label."""
         self._use(lambda renderer: renderer.show(label))
 
     def evidence(self, trial: StudyTrial) -> SealedTrial:
         """Return what was rendered in a trial; that it was lost, where the renderer is lost now."""
         try:
-            return SealedTrial(trial.number, trial.ratio, self._connected().rendered())
-        except (DeviceError, RendererLostError) as error:
-            self.drop()
+            rendered = self._use(lambda renderer: renderer.rendered())
+        except RendererLostError as error:
             return self.lost(trial, str(error))
+        return SealedTrial(trial.number, trial.ratio, rendered)
 
     def lost(self, trial: StudyTrial, reason: str) -> SealedTrial:
         """Return the record of a trial whose renderer was lost, with the reason."""
-        names = {label: one.name for label, one in trial_stimuli(self._plan, trial).items()}
-        return lost_trial(SealedTrial(trial.number, trial.ratio, ()), names, reason)
+        faults = ("device lost", reason)
+        stimuli = trial_stimuli(self._plan, trial).items()
+        rendered = tuple(Rendered(label, one.name, faults=faults) for label, one in stimuli)
+        return SealedTrial(trial.number, trial.ratio, rendered)
 
     def replace(self, renderer: StimulusRenderer) -> None:
         """Close this renderer and use another."""
@@ -176,17 +156,14 @@ class ReconnectableRenderer:
                 self._renderer.close()
         self._renderer = None
 
-    def _use(self, work: Callable[[StimulusRenderer], None]) -> None:
+    def _use(self, work: Callable[[StimulusRenderer], Result]) -> Result:
+        if self._renderer is None:
+            raise RendererLostError("it went away before")
         try:
-            work(self._connected())
+            return work(self._renderer)
         except DeviceError as error:
             self.drop()
             raise RendererLostError(str(error)) from None
-
-    def _connected(self) -> StimulusRenderer:
-        if self._renderer is None:
-            raise RendererLostError("it went away before")
-        return self._renderer
 
 
 class TrialWatch:
