@@ -80,33 +80,21 @@ class PlanSummary:
 
 def summarise_plan(plan: StudyPlan) -> PlanSummary:
     """Work out what a checked plan comes to."""
-    trial_s, trials = trial_time_s(plan), trial_count(plan)
-    breaks = _breaks(plan, trials, trial_s)
+    trial_s = RATED_s * len(plan.items[0].stimuli) if plan.kind == "mushra" else TRIAL_s[plan.kind]
+    breaks = _breaks(plan, trial_s)
     page_s = sum(PAGE_s + QUESTION_s * len(page.questions) for page in plan.pages)
-    whole_s = page_s + (trials + plan.practice) * trial_s + 60.0 * breaks * plan.break_min
+    whole_s = page_s + (plan.trials + plan.practice) * trial_s + 60.0 * breaks * plan.break_min
     places, follows = _balance(plan)
-    return PlanSummary(
-        trials, plan.practice, trial_s, breaks, whole_s / 60.0, places, follows, tuple(_notes(plan, places))
-    )
+    notes = tuple(_notes(plan, places))
+    return PlanSummary(plan.trials, plan.practice, trial_s, breaks, whole_s / 60.0, places, follows, notes)
 
 
-def trial_count(plan: StudyPlan) -> int:
-    """Return how many trials a person has at most, practice left out."""
-    block = plan.staircase.trials if plan.kind == "staircase" and plan.staircase else 1
-    return len(plan.items) * plan.rounds * block
-
-
-def trial_time_s(plan: StudyPlan) -> float:
-    """Return what a trial of that kind takes (assumed)."""
-    return RATED_s * len(plan.items[0].stimuli) if plan.kind == "mushra" else TRIAL_s[plan.kind]
-
-
-def _breaks(plan: StudyPlan, trials: int, trial_s: float) -> int:
+def _breaks(plan: StudyPlan, trial_s: float) -> int:
     if plan.break_every_min == 0:
         return 0
     # the first trial that ends after so long
     between = max(1, -int(-60.0 * plan.break_every_min // trial_s))
-    return max(0, (trials + plan.practice - 1) // between)
+    return max(0, (plan.trials + plan.practice - 1) // between)
 
 
 def _balance(plan: StudyPlan) -> tuple[tuple[int, int] | None, tuple[int, int] | None]:

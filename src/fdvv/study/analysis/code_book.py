@@ -128,7 +128,7 @@ def _ratings(answers: Answers, plan: StudyPlan | None) -> tuple[CodedColumn, ...
     for rating in answers.ratings:
         scale = scales.get(rating)
         question = next(iter(scale.question.values()), "") if scale else ""
-        low, high = (None, None) if scale is None else scale_ends(scale.points)
+        low, high = map(float, scale.ends) if scale else (None, None)
         for stimulus in answers.stimuli:
             meaning = f"{rating} of {stimulus}" + (f": {question}" if question else "")
             found.append(
@@ -138,11 +138,6 @@ def _ratings(answers: Answers, plan: StudyPlan | None) -> tuple[CodedColumn, ...
                 )
             )  # fmt: skip
     return tuple(found)
-
-
-def scale_ends(points: int) -> tuple[float, float]:
-    """Return the ends of a scale: 7 is 1 to 7, 101 a slider from 0 to 100."""
-    return (0.0, 100.0) if points == 101 else (1.0, float(points))
 
 
 def write_answers(folder: Path, answers: Answers, plan: StudyPlan | None = None) -> tuple[Path, Path]:

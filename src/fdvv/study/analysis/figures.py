@@ -73,10 +73,8 @@ def _shown_stimuli(found: StudyAnalysis) -> tuple[str, ...]:
     return found.claim.claim.less, found.claim.claim.more
 
 
-def scale_of(answers: Answers, rating: str, points: int | None) -> tuple[float, float]:
-    """Return the ends of a rating's axis: the scale's, or, where none is known, what holds every answer."""
-    if points:
-        return (0.0, 100.0) if points == 101 else (1.0, float(points))
+def scale_around(answers: Answers, rating: str) -> tuple[float, float]:
+    """Return the ends of a scale that holds every answer of a rating, for one that is not known."""
     values = answers.ratings[rating]
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     if low >= 1 and high <= 9:

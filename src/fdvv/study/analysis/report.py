@@ -182,10 +182,10 @@ def study_summary(found: StudyAnalysis) -> str:
 
 def _ratings(found: StudyAnalysis, plan: StudyPlan | None) -> list[Section]:
     """Return a section for each rating: of all renderings beside each other, else of the claim's two."""
-    points = {one.name: one.points for one in plan.ratings} if plan else {}
+    scales = {one.name: one.ends for one in plan.ratings} if plan else {}
     sections = []
     for rating in dict.fromkeys(one.rating for one in found.rated or found.tests):
-        scale = figures.scale_of(found.screening.answers, rating, points.get(rating))
+        scale = scales.get(rating) or figures.scale_around(found.screening.answers, rating)
         svg = figure_svg(figures.draw_ratings(found, rating, scale), f"Mean {rating} by button")
         if found.rated:
             rows = [one for one in found.rated if one.rating == rating]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal, get_args
 
 import msgspec
 from msgspec import Struct
@@ -41,14 +41,16 @@ class TrialFace(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class _Event(Struct, frozen=True, forbid_unknown_fields=True):
-    """What all events have. at_s : wall time."""
+    """What all events have. word : key of its record in the log. at_s : wall time."""
 
+    word: ClassVar[str]
     at_s: float
 
 
 class SessionStarted(_Event, frozen=True):
     """The session started, with its trials. simulated : the participant is simulated."""
 
+    word: ClassVar[str] = "began"
     person: str
     language: str
     trials: tuple[TrialFace, ...]
@@ -58,6 +60,7 @@ class SessionStarted(_Event, frozen=True):
 class PageAnswered(_Event, frozen=True):
     """A page was read and its questions were answered. agreed : False on a consent page ends it all."""
 
+    word: ClassVar[str] = "page"
     name: str
     values: dict[str, Value] = {}
     agreed: bool = True
@@ -69,6 +72,7 @@ class TrialShown(_Event, frozen=True):
     attempt : 1, and one more each time it had to be shown again. simulated : on a simulated rig.
     """
 
+    word: ClassVar[str] = "shown"
     number: int
     attempt: int
     simulated: bool = False
@@ -77,6 +81,7 @@ class TrialShown(_Event, frozen=True):
 class TrialAnswered(_Event, frozen=True):
     """A trial was answered, in that attempt; it is never shown again."""
 
+    word: ClassVar[str] = "answered"
     number: int
     attempt: int
     answer: TrialAnswer
@@ -88,6 +93,7 @@ class TrialInterrupted(_Event, frozen=True):
     felt : a label had been felt by then.
     """
 
+    word: ClassVar[str] = "interrupted"
     number: int
     felt: bool = False
 
@@ -95,12 +101,14 @@ class TrialInterrupted(_Event, frozen=True):
 class TrialSkipped(_Event, frozen=True):
     """The device went away in a trial again and again: it is given up, and missing in the analysis."""
 
+    word: ClassVar[str] = "skipped"
     number: int
 
 
 class StaircaseConverged(_Event, frozen=True):
     """The staircase of an item in a round ended: its other trials are passed over."""
 
+    word: ClassVar[str] = "settled"
     item: str
     round: int
 
@@ -108,19 +116,26 @@ class StaircaseConverged(_Event, frozen=True):
 class BreakEnded(_Event, frozen=True):
     """The person ended a break."""
 
+    word: ClassVar[str] = "break_ended"
+
 
 class SessionClosed(_Event, frozen=True):
     """The session was closed in order; time until it is resumed is not work."""
+
+    word: ClassVar[str] = "left"
 
 
 class SessionResumed(_Event, frozen=True):
     """The session was opened again, with the person's code or by the key holder."""
 
+    word: ClassVar[str] = "resumed"
     by: Literal["code", "keeper"]
 
 
 class ParticipantWithdrew(_Event, frozen=True):
     """The person left the study for good."""
+
+    word: ClassVar[str] = "withdrawn"
 
 
 Event = (
@@ -138,27 +153,12 @@ Event = (
 )
 """What can happen in a session, as its journal keeps it."""
 
-EVENTS: dict[str, type[Event]] = {
-    "began": SessionStarted,
-    "page": PageAnswered,
-    "shown": TrialShown,
-    "answered": TrialAnswered,
-    "interrupted": TrialInterrupted,
-    "skipped": TrialSkipped,
-    "settled": StaircaseConverged,
-    "break_ended": BreakEnded,
-    "left": SessionClosed,
-    "resumed": SessionResumed,
-    "withdrawn": ParticipantWithdrew,
-}
-"""Events by the key of their record."""
-
-WORD = {kind: word for word, kind in EVENTS.items()}
+EVENTS: dict[str, type[Event]] = {kind.word: kind for kind in get_args(Event)}
 
 
 def record_of(event: Event) -> dict[str, Any]:
     """Return the journal's record of an event: an object with one key."""
-    return {WORD[type(event)]: msgspec.to_builtins(event)}
+    return {event.word: msgspec.to_builtins(event)}
 
 
 def event_of(record: dict[str, Any]) -> Event:
@@ -210,7 +210,7 @@ def check_answer(plan: StudyPlan, trial: TrialFace, answer: TrialAnswer) -> None
 
 
 def _check_rating(rating: Rating, given: Mapping[str, float], labels: tuple[str, ...], place: str) -> None:
-    low, high = (0, 100) if rating.points == 101 else (1, rating.points)
+    low, high = rating.ends
     if set(given) != set(labels):
         raise InputError("answer", place, f"{rating.name} is not rated for {', '.join(labels)}", CHOOSE)
     for label, points in given.items():

@@ -71,6 +71,11 @@ class Rating(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     high: dict[str, str] = {}
     points: Annotated[int, Meta(ge=2, le=101)] = 7
 
+    @property
+    def ends(self) -> tuple[int, int]:
+        """The lowest and the highest answer."""
+        return (0, 100) if self.points == 101 else (1, self.points)
+
 
 class Question(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A question of a questionnaire. choices : by language; empty: free text, or a number in a range."""
@@ -192,3 +197,9 @@ class StudyPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     staircase: Staircase | None = None
     exclusion: Exclusion = Exclusion()
     claim: Claim | None = None
+
+    @property
+    def trials(self) -> int:
+        """How many trials a person has at most, practice left out."""
+        block = self.staircase.trials if self.kind == "staircase" and self.staircase else 1
+        return len(self.items) * self.rounds * block

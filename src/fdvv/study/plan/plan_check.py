@@ -10,7 +10,7 @@ from pathlib import PurePosixPath
 import msgspec
 
 from fdvv.model.file import MODEL_SUFFIX, builtin_names
-from fdvv.study.plan.plan import Item, Page, Question, Stimulus, StudyPlan
+from fdvv.study.plan.plan import Item, Question, Stimulus, StudyPlan
 from fdvv.study.plan.plan_words import word_languages
 from fdvv.study.plan.schedule import LABELS
 from fdvv.study.plan.trial import EQUAL
@@ -24,25 +24,13 @@ TAKEN = {"choice", "correct", "excluded", "item", "kind", "number", "person", "r
 MOST_TRIALS = 2000
 
 
-def kind_problems(plan: StudyPlan) -> Iterator[str]:
-    """List where a plan does not fit its kind, each as "place: reason"."""
-    yield from _counts(plan)
-    yield from _references(plan)
-    yield from _ratings(plan)
-    yield from _staircase(plan)
-    if plan.kind == "2ac" and not plan.ties:
-        yield 'ties: 2ac asks "or no difference"; without ties it is kind = "2afc"'
-
-
-def _counts(plan: StudyPlan) -> Iterator[str]:
+def _kind(plan: StudyPlan) -> Iterator[str]:
+    """List where a plan does not fit its kind."""
     low, high = (3, len(LABELS)) if plan.kind == "mushra" else (2, 2)
     wanted = "exactly 2" if high == 2 else f"{low} to {high}, the reference among them"
     for item in plan.items:
         if not low <= len(item.stimuli) <= high:
             yield f"items ({item.name!r}): {plan.kind} needs {wanted} stimuli, got {len(item.stimuli)}"
-
-
-def _references(plan: StudyPlan) -> Iterator[str]:
     reasons = {
         "abx": "X is one of the two stimuli",
         "mushra": "the first stimulus is the reference, named and hidden",
@@ -51,13 +39,13 @@ def _references(plan: StudyPlan) -> Iterator[str]:
         if item.reference and plan.kind != "realism":
             reason = reasons.get(plan.kind, "nothing is compared with a third")
             yield f"items ({item.name!r}), reference: {plan.kind} has none: {reason}"
-
-
-def _ratings(plan: StudyPlan) -> Iterator[str]:
     if plan.kind == "mushra" and not plan.ratings:
         yield "ratings: mushra only rates; write [[ratings]], with points = 101 for a slider"
     if plan.kind == "staircase" and plan.ratings:
         yield "ratings: a staircase asks which one is stronger and nothing else"
+    yield from _staircase(plan)
+    if plan.kind == "2ac" and not plan.ties:
+        yield 'ties: 2ac asks "or no difference"; without ties it is kind = "2afc"'
 
 
 def _staircase(plan: StudyPlan) -> Iterator[str]:
@@ -78,8 +66,8 @@ def _staircase(plan: StudyPlan) -> Iterator[str]:
             yield f"items ({item.name!r}): {reason}"
 
 
-def language_problems(plan: StudyPlan) -> Iterator[str]:
-    """List text that is missing in a language, or there in one that is not declared, as "place: reason"."""
+def _languages(plan: StudyPlan) -> Iterator[str]:
+    """List text that is missing in a language, or there in one that is not declared."""
     if not plan.languages:
         yield 'languages: there is none; write languages = ["en"]'
     for language in plan.languages:
@@ -88,12 +76,12 @@ def language_problems(plan: StudyPlan) -> Iterator[str]:
         elif language not in word_languages() and language not in plan.question:
             known = ", ".join(word_languages())
             yield f"question: fdvv has no words in {language!r} (it has {known}); write question.{language}"
-    for place, said, needed in plan_texts(plan):
+    for place, said, needed in _texts(plan):
         if said or needed:
             yield from _missing(place, said, plan.languages)
 
 
-def plan_texts(plan: StudyPlan) -> Iterator[tuple[str, Mapping[str, object], bool]]:
+def _texts(plan: StudyPlan) -> Iterator[tuple[str, Mapping[str, object], bool]]:
     """Return every text of a plan: its place, its words by language, and whether it must be there at all."""
     yield "title", plan.title, True
     yield "question", plan.question, False
@@ -130,12 +118,12 @@ def plan_problems(plan: StudyPlan) -> tuple[str, ...]:
     return (
         *_numbers(plan, ""),
         *_names(plan),
-        *language_problems(plan),
+        *_languages(plan),
         *(problem for item in plan.items for problem in _item(plan, item)),
-        *_pages(plan.pages),
+        *_questions(plan),
         *_kept(plan),
         *_columns(plan),
-        *kind_problems(plan),
+        *_kind(plan),
         *_claim(plan),
         *_extent(plan),
     )
@@ -192,7 +180,7 @@ def _item(plan: StudyPlan, item: Item) -> Iterator[str]:
     place = f"items ({item.name!r})"
     if [s.name for s in item.stimuli] != [s.name for s in plan.items[0].stimuli]:
         yield f"{place}: its stimuli must have the names and the order of the first item's"
-    for stimulus in (*item.stimuli, *([item.reference] if item.reference else [])):
+    for stimulus in item.rendered:
         yield from _stimulus(f"{place}, {stimulus.name!r}", stimulus)
     seen: dict[Stimulus, str] = {}
     for stimulus in item.stimuli if plan.kind != "staircase" else ():
@@ -219,15 +207,15 @@ def _stimulus(place: str, stimulus: Stimulus) -> Iterator[str]:
 
 
 def _kept(plan: StudyPlan) -> Iterator[str]:
-    stimuli = [s for item in plan.items for s in (*item.stimuli, item.reference) if s]
+    stimuli = [s for item in plan.items for s in item.rendered]
     names = {n for s in stimuli for n in (s.button if is_file(s.button) else "", s.actuation) if n}
     for bare in sorted(names):
         if f"buttons/{bare}" in names:
             yield f"items: {bare!r} and 'buttons/{bare}' would be kept under one name; rename one"
 
 
-def _pages(pages: tuple[Page, ...]) -> Iterator[str]:
-    for page in pages:
+def _questions(plan: StudyPlan) -> Iterator[str]:
+    for page in plan.pages:
         for question in page.questions:
             yield from _question(f"pages ({page.name!r}), questions ({question.name!r})", question)
 
@@ -271,8 +259,7 @@ def _claim(plan: StudyPlan) -> Iterator[str]:
 
 
 def _extent(plan: StudyPlan) -> Iterator[str]:
-    size = plan.staircase.trials if plan.kind == "staircase" and plan.staircase else 1
-    count = len(plan.items) * plan.rounds * size + plan.practice
+    count = plan.trials + plan.practice
     if count > MOST_TRIALS:
         yield f"rounds: {count} trials of one person are more than {MOST_TRIALS}"
     if plan.break_every_min > 0 and plan.break_min == 0:

@@ -25,7 +25,7 @@ TEXTS = ("title", "text", "question", "low", "high")
 STUDY_FILE = "study.toml"
 """Name of the file that declares a study, in its folder."""
 
-SUFFIX = ".toml"
+SUFFIX, TEMPLATES = ".toml", resources.files("fdvv.study").joinpath("templates")
 LONGEST_NAME = 60
 NAME_LINE = re.compile(r'^name = "[^"]*"', re.MULTILINE)
 
@@ -151,9 +151,8 @@ def template_text(name: str) -> str:
 def template_buttons(name: str) -> dict[str, bytes]:
     """Return the files of buttons that a shipped study names, by their place beside it."""
     plan = read_plan_text(template_text(name), name)
-    stimuli = [s for item in plan.items for s in (*item.stimuli, item.reference) if s is not None]
-    folder = resources.files("fdvv.study").joinpath("templates")
-    return {s.button: folder.joinpath(s.button).read_bytes() for s in stimuli if is_file(s.button)}
+    buttons = [stimulus.button for item in plan.items for stimulus in item.rendered]
+    return {button: TEMPLATES.joinpath(button).read_bytes() for button in buttons if is_file(button)}
 
 
 def write_template(name: str, folder: Path, study_name: str | None = None) -> Path:
@@ -182,5 +181,4 @@ def _called(text: str, study_name: str) -> str:
 
 
 def _files() -> dict[str, Traversable]:
-    folder = resources.files("fdvv.study").joinpath("templates")
-    return {f.name.removesuffix(SUFFIX): f for f in folder.iterdir() if f.name.endswith(SUFFIX)}
+    return {f.name.removesuffix(SUFFIX): f for f in TEMPLATES.iterdir() if f.name.endswith(SUFFIX)}

@@ -88,10 +88,11 @@ def asked_texts(plan: StudyPlan, language: str) -> tuple[str, ...]:
 
 def rating_text(rating: Rating, language: str) -> str:
     """Return how each hidden rendering is rated."""
-    low, high = ("0", "100") if rating.points == 101 else ("1", str(rating.points))
-    ends = [rating.low.get(language), rating.high.get(language)]
-    scale = [f"{end} ({words})" if words else end for end, words in zip((low, high), ends, strict=True)]
-    return f"{rating.question[language]} {scale[0]} to {scale[1]}"
+    words = rating.low.get(language), rating.high.get(language)
+    low, high = (
+        f"{end} ({word})" if word else f"{end}" for end, word in zip(rating.ends, words, strict=True)
+    )
+    return f"{rating.question[language]} {low} to {high}"
 
 
 def question_line(question: Question, language: str) -> str:

@@ -86,6 +86,8 @@ class SessionState:
         """Return the state after an event. ModelError where it cannot follow."""
         if self.over:
             raise ModelError(f"the session of {self.started.person} is over")
+        if isinstance(event, SessionStarted):
+            raise ModelError(f"the session of {self.started.person} has begun already")
         return replace(_AFTER[type(event)](self, event), last_s=event.at_s)
 
 
@@ -97,10 +99,6 @@ def state_of(plan: StudyPlan, happened: Sequence[Event]) -> SessionState:
     for event in happened[1:]:
         state = state.after(event)
     return state
-
-
-def _again(state: SessionState, event: SessionStarted) -> SessionState:
-    raise ModelError(f"the session of {state.started.person} has begun already")
 
 
 def _page(state: SessionState, event: events.PageAnswered) -> SessionState:
@@ -166,10 +164,6 @@ def _break_ended(state: SessionState, event: events.BreakEnded) -> SessionState:
     return replace(state, break_since_s=None, work_since_s=None)
 
 
-def _left(state: SessionState, event: events.SessionClosed) -> SessionState:
-    return replace(state, left_s=event.at_s, open=None)
-
-
 def _resumed(state: SessionState, event: events.SessionResumed) -> SessionState:
     """Go on. Time away is no work where the session was closed in order, and a break if it was long enough.
 
@@ -183,12 +177,7 @@ def _resumed(state: SessionState, event: events.SessionResumed) -> SessionState:
     return replace(after, work_since_s=None if rested else state.work_since_s + away_s)
 
 
-def _withdrawn(state: SessionState, event: events.ParticipantWithdrew) -> SessionState:
-    return replace(state, withdrawn=True, open=None)
-
-
 _AFTER: dict[type, Callable[[SessionState, Any], SessionState]] = {
-    SessionStarted: _again,
     events.PageAnswered: _page,
     events.TrialShown: _shown,
     events.TrialAnswered: _answered,
@@ -196,9 +185,9 @@ _AFTER: dict[type, Callable[[SessionState, Any], SessionState]] = {
     events.TrialSkipped: _skipped,
     events.StaircaseConverged: _converged,
     events.BreakEnded: _break_ended,
-    events.SessionClosed: _left,
+    events.SessionClosed: lambda state, event: replace(state, left_s=event.at_s, open=None),
     events.SessionResumed: _resumed,
-    events.ParticipantWithdrew: _withdrawn,
+    events.ParticipantWithdrew: lambda state, _event: replace(state, withdrawn=True, open=None),
 }
 
 
