@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from fdvv.errors import DeviceError, InputError
+from fdvv.live.binary_finger import BinaryFinger
 from fdvv.live.press import LivePress
 from fdvv.live.press_subject import model_subject
 from fdvv.protocol.tables import Fault
@@ -21,6 +22,7 @@ from fdvv.study.stimulus.twin import PersonFrame, TwinRenderer, within_reach
 
 FD = Stimulus(name="FD", button="mx-clear", rendered="FD")
 FDVV = Stimulus(name="FDVV", button="mx-clear")
+HAND = BinaryFinger.of(model_subject(stimulus_model(FDVV, Path())))
 
 
 class Screen:
@@ -69,9 +71,9 @@ def stage(screen: Screen) -> Iterator[TwinRenderer]:
 def press(stage: TwinRenderer, screen: Screen) -> None:
     """Press to the bottom and let go, once."""
     before = screen.pressed
-    stage.down()
+    HAND.down(stage)  # type: ignore[arg-type]
     screen.wait_for(lambda: screen.deep(3.9))
-    stage.up()
+    HAND.up(stage)  # type: ignore[arg-type]
     screen.wait_for(lambda: screen.pressed > before)
 
 
@@ -109,7 +111,7 @@ def test_what_is_known_before_a_press_is_the_same_whichever_label_hides_what() -
     for labels in ({"A": FD, "B": FDVV}, {"A": FDVV, "B": FD}):
         stage = TwinRenderer(Path(), lambda _frame: None)
         stage.prepare(labels)
-        known.append((stage.travel_mm, stage.sounds, stage.label, stage.problem))
+        known.append((stage.travel_mm, stage.sounds, stage.problem))
         stage.close()
     assert known[0] == known[1]
 
@@ -121,7 +123,7 @@ def test_while_labels_change_the_hand_moves_nothing_and_the_screen_shows_nothing
         if not slept:
             time.sleep(0.03)  # a frame that was on its way is there by now
             screen.frames.clear()
-            stage.down()
+            HAND.down(stage)  # type: ignore[arg-type]
         slept.append(time_s)
         time.sleep(time_s)
         shown.append(len(screen.frames))
@@ -145,9 +147,10 @@ def test_a_fault_ends_force_and_stage_in_one_line_and_is_kept(
     stage: TwinRenderer, screen: Screen, fault: Fault
 ) -> None:
     stage.show("A")
-    stage.down()
+    HAND.down(stage)  # type: ignore[arg-type]
     screen.wait_for(lambda: screen.deep(1.0))
-    stage.fail(lambda press: press.fail(fault))
+    assert stage._run is not None
+    stage._run.ask(lambda press: press.fail(fault))
     screen.wait_for(lambda: screen.lines)
     assert fault.name.lower() in stage.problem
     with pytest.raises(DeviceError, match=fault.name.lower()) as caught:
@@ -176,16 +179,6 @@ def test_no_hand_however_wild_makes_the_rig_fail(button: str) -> None:
             press.lead(*within_reach(press.subject.travel_mm, *asked))
         press.advance(float(random.uniform(0.004, 0.03)))
     assert press.fault().fault is Fault.NONE
-
-
-def test_a_page_that_came_back_is_shown_what_goes_on(stage: TwinRenderer, screen: Screen) -> None:
-    stage.show("A")
-    screen.wait_for(lambda: screen.frames)
-    other = Screen()
-    stage.watch(other.show)
-    stage.here()
-    other.wait_for(lambda: other.frames)
-    press(stage, other)
 
 
 def test_a_label_that_is_none_is_refused_and_a_closed_stage_shows_nothing(stage: TwinRenderer) -> None:

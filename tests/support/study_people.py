@@ -92,7 +92,7 @@ class StillStage:
     on_prepare : called with what is prepared.
     """
 
-    simulated, person = True, False
+    simulated = True
 
     def __init__(
         self,

@@ -37,7 +37,7 @@ class RecordingRenderer:
     shown : stimuli of the labels that were shown since prepare().
     """
 
-    simulated, person = True, False
+    simulated = True
 
     def __init__(self, renderer: StimulusRenderer) -> None:
         self._prepared: dict[str, Stimulus] = {}
@@ -59,7 +59,7 @@ class RecordingRenderer:
 class NullRenderer:
     """Renders and presses nothing, for speed: presses are counted, no error can be judged. Simulated."""
 
-    simulated, person = True, False
+    simulated = True
 
     def __init__(self) -> None:
         self._names: dict[str, str] = {}

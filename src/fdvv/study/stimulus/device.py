@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from threading import Lock
 
 import numpy as np
 
@@ -21,10 +20,9 @@ from fdvv.protocol.tables import BoardFlag, Fault, Mode, TickFlag
 from fdvv.rendering.session_run import clear_latched
 from fdvv.rendering.tuning import tune
 from fdvv.study.plan.plan import Stimulus
-from fdvv.study.plan.trial import Rendered
 from fdvv.study.stimulus.evidence import RenderingEvidence, fault_name
 from fdvv.study.stimulus.program import TrialProgram, trial_program
-from fdvv.study.stimulus.renderer import ConstantTimeSwitch, check_label
+from fdvv.study.stimulus.renderer import ConstantTimeSwitch, EvidenceRenderer, check_label
 from fdvv.vibration.exciter import KnownExciter
 
 RemoteDevice = LinkedDevice | PressedDevice
@@ -32,7 +30,7 @@ PACE_mm_s = 100.0
 """At which a simulated finger presses, as the person of a simulated rig varies."""
 
 
-class DeviceRenderer:
+class DeviceRenderer(EvidenceRenderer):
     """A device that renders the labels of a trial, pressed by a person or, in lockstep, by a simulated one.
 
     Parameters
@@ -46,6 +44,10 @@ class DeviceRenderer:
 
     On a line only what the rig senses is known: true displacement is its position sensor's, and without a
     force sensor on the cap no error is known. Raises InputError on a device that runs no programs.
+
+    Attributes
+    ----------
+    device : that renders.
     """
 
     def __init__(
@@ -58,40 +60,24 @@ class DeviceRenderer:
         limits: Limits | None = None,
         failed: Callable[[str], None] = lambda _line: None,
     ) -> None:
-        self._device, self._rig = _remote(device), device if isinstance(device, LinkedDevice) else None
+        super().__init__()
+        self.device, self._rig = _remote(device), device if isinstance(device, LinkedDevice) else None
         self._folder, self._presses, self._exciter = folder, presses, exciter
         self._limits, self._failed = limits, failed
         self._program: TrialProgram | None = None
-        self._evidence: dict[str, RenderingEvidence] = {}
-        self._label, self._fault, self._last_tick = "", "", -1
-        self._lock, self._closed = Lock(), False
-        self._vibrates = bool(self._device.client.hello.board_flags & BoardFlag.VIBRATION)
+        self._label, self._last_tick, self._closed = "", -1, False
+        self._vibrates = bool(self.device.client.hello.board_flags & BoardFlag.VIBRATION)
         self._line: DeviceLine = (
             SimulatedLine(self._rig)
             if self._rig
-            else RealLine(self._device, self._heard, self._look, self._lost)
+            else RealLine(self.device, self._heard, self._look, self._lost)
         )
         self._switch = ConstantTimeSwitch(switch_s, self._line.now_s, self._line.wait)
 
     @property
     def simulated(self) -> bool:
         """Whether the rig is a simulated one."""
-        return self._device.info().simulated
-
-    @property
-    def person(self) -> bool:
-        """Whether a person presses."""
-        return self._rig is None
-
-    @property
-    def device(self) -> RemoteDevice:
-        """The device."""
-        return self._device
-
-    @property
-    def problem(self) -> str:
-        """In one line why the renderer has ended; "" while it has not."""
-        return self._fault
+        return self.device.info().simulated
 
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:
         """Upload the stimuli of all labels at once, and clear the record; no label is shown."""
@@ -115,24 +101,19 @@ class DeviceRenderer:
             self._press(program, label)
         self._check()
 
-    def rendered(self) -> tuple[Rendered, ...]:
-        """Return the record since prepare(); never fails, so that a fault is kept as well."""
-        with self._lock:
-            return tuple(found.rendered() for found in self._evidence.values())
-
     def close(self) -> None:
         """Fall to zero force and release the device."""
         if self._closed:
             return
         self._closed = True
-        self._fault = self._fault or "the renderer is closed; open another"
+        self.problem = self.problem or "the renderer is closed; open another"
         self._line.close()
-        self._device.close()
+        self.device.close()
 
     # -- on the line ---------------------------------------------------------------------------------------
 
     def _load(self, program: TrialProgram, evidence: dict[str, RenderingEvidence]) -> None:
-        device = self._device
+        device = self.device
         device.stop()
         clear_latched(device, lambda _line: None)
         tune(device, program.tuning)
@@ -144,14 +125,14 @@ class DeviceRenderer:
             self._program, self._evidence, self._label, self._last_tick = program, evidence, "", -1
 
     def _tell(self, event: int) -> None:
-        self._guarded(lambda: self._device.client.event(event))
+        self._guarded(lambda: self.device.client.event(event))
 
     def _guarded(self, work: Callable[[], None]) -> None:
         try:
             self._line.do(work)
         except DeviceError as error:
             self._lost(error)
-            raise DeviceError(self._fault) from error
+            raise DeviceError(self.problem) from error
 
     def _press(self, program: TrialProgram, label: str) -> None:
         assert self._rig is not None
@@ -160,7 +141,7 @@ class DeviceRenderer:
         except DeviceError as error:
             self._look()
             self._lost(error)
-            raise DeviceError(self._fault) from error
+            raise DeviceError(self.problem) from error
         telemetry, evidence = self._rig.client.telemetry.columns(), self._evidence[label]
         if (program.places(telemetry.state) != program.labels.index(label)).any():
             evidence.failed("another label")
@@ -174,7 +155,7 @@ class DeviceRenderer:
         program = self._program
         if program is None or not telemetry.tick.size:
             return
-        settings = self._device.settings()
+        settings = self.device.settings()
         t_s = np.asarray(telemetry.tick * (settings.tick_us * 1e-6), dtype=np.float64)
         force_cN = telemetry.force_cN if settings.force_gain_q14 else np.full(t_s.size, np.nan)
         places = program.places(telemetry.state)
@@ -189,7 +170,7 @@ class DeviceRenderer:
                     evidence = self._evidence[program.labels[place]]
                     evidence.take(t_s[rows], telemetry.displacement_mm[rows], force_cN[rows])
                     self._count(evidence, telemetry.part(np.isin(np.arange(t_s.size), rows)))
-        last = self._device.client.telemetry.last
+        last = self.device.client.telemetry.last
         if last is not None and last.mode == Mode.FAULT:
             self._look()
 
@@ -209,15 +190,15 @@ class DeviceRenderer:
 
         Force and place of a fault could reveal what a label hides.
         """
-        if self._fault or self._program is None:
+        if self.problem or self._program is None:
             return
-        found = self._device.fault()
+        found = self.device.fault()
         if found.fault is not Fault.NONE:
             self._note(found.fault)
-            self._end(f"{self._device.info().name}: fell to zero force: {fault_name(found.fault)}")
+            self._end(f"{self.device.info().name}: fell to zero force: {fault_name(found.fault)}")
 
     def _lost(self, error: DeviceError) -> None:
-        if not self._fault:
+        if not self.problem:
             self._note("lost")
             self._end(str(error))
 
@@ -227,18 +208,14 @@ class DeviceRenderer:
                 self._evidence[self._label].failed(fault)
 
     def _end(self, line: str) -> None:
-        self._fault = line
+        self.problem = line
         with suppress(DeviceError):  # it is gone, and at zero force by itself
-            self._device.stop()
+            self.device.stop()
         self._failed(line)
 
     def _limits_now(self) -> Limits:
-        limits = self._limits or Limits(largest_travel_mm=self._device.info().travel_limit_mm)
-        return replace(limits, settings=self._device.settings())
-
-    def _check(self) -> None:
-        if self._fault:
-            raise DeviceError(self._fault)
+        limits = self._limits or Limits(largest_travel_mm=self.device.info().travel_limit_mm)
+        return replace(limits, settings=self.device.settings())
 
 
 def _remote(device: Device) -> RemoteDevice:

@@ -21,10 +21,6 @@ class ScreenRenderer(StimulusRenderer, Protocol):
     """A renderer whose simulated finger, if it has one, is led from the screen."""
 
     @property
-    def problem(self) -> str:
-        """In one line why the renderer has ended; "" while it has not."""
-
-    @property
     def travel_mm(self) -> float:
         """Scale of the trial's drawing; 0: there is nothing to draw, the button is on the table."""
 

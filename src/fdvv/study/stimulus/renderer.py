@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from threading import Lock
 from typing import Protocol
 
 import numpy as np
 
-from fdvv.errors import InputError
+from fdvv.errors import DeviceError, InputError
 from fdvv.live.press import LiveEvent, LiveEventKind, LivePress, PACE_mm_s
 from fdvv.live.press_subject import IDEAL_RIG, PRESS_RIGS, PressSubject, learned_subject, model_subject
 from fdvv.model.file import builtin_names, load_builtin, load_model
@@ -44,43 +45,30 @@ class StimulusRenderer(Protocol):
     def simulated(self) -> bool:
         """Whether the rig is a simulated one; says nothing of who presses."""
 
-    @property
-    def person(self) -> bool:
-        """Whether a person presses; else a simulated finger does."""
-
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:
         """Prepare the stimulus of each label, and clear the record; no label is shown.
 
         Raises InputError on a stimulus that cannot be rendered, DeviceError.
         """
-        ...
 
     def show(self, label: str) -> None:
         """Render a label from now on; takes equally long, whichever it is and whichever was before.
 
         Raises InputError on a label that was not prepared, DeviceError.
         """
-        ...
 
     def rendered(self) -> tuple[Rendered, ...]:
         """Return the record since prepare(), one for every label, in the order of their names."""
-        ...
 
     def close(self) -> None:
         """Fall to zero force and release the rig; idempotent."""
-        ...
 
 
 class ConstantTimeSwitch:
     """Makes every switch between labels take equally long, whatever is done in it.
 
-    Parameters
-    ----------
-    switch_s : from request to end. clock, sleep : of time.
-
-    Attributes
-    ----------
-    late : switches whose work alone took longer; they took the next whole multiple of switch_s.
+    switch_s : from request to end; where the work alone takes longer, the next whole multiple of it.
+    clock, sleep : of time.
     """
 
     def __init__(
@@ -91,7 +79,6 @@ class ConstantTimeSwitch:
     ) -> None:
         self.switch_s, self._clock, self._sleep = switch_s, clock, sleep
         self._work_s = min(WORK_s, switch_s / 4)
-        self.late = 0
 
     def make(self, before: Callable[[], None], after: Callable[[], None] = lambda: None) -> None:
         """Do the first at once, the second near the end of the time; an error does not shorten it."""
@@ -106,7 +93,6 @@ class ConstantTimeSwitch:
     def _end(self, began_s: float) -> None:
         worked_s = self._clock() - began_s
         late = worked_s > self.switch_s + CLOCK_s
-        self.late += late
         whole = math.ceil(worked_s / self.switch_s) if late and self.switch_s else 1
         self._wait(began_s, whole * self.switch_s)
 
@@ -211,31 +197,81 @@ def stimulus_actuation(stimulus: Stimulus, folder: Path, model: FDVVModel) -> Co
     return replace(learned, outcome=replace(learned.outcome, surface=scaled))
 
 
-def keep(
-    evidence: RenderingEvidence,
-    of: PreparedStimulus,
-    press: LivePress,
-    columns: InteractiveTicks,
-    events: tuple[LiveEvent, ...],
-) -> str:
-    """Record what the rig did; on a fault, or a warning, end its force and return its name in one line.
+class EvidenceRenderer:
+    """What renderers share: evidence of every label, and why the renderer has ended.
 
-    No number goes with the name: force and place of a fault could reveal what a label hides.
+    Attributes
+    ----------
+    problem : in one line why the renderer has ended; "" while it has not.
     """
-    evidence.take(columns.t_s, columns.displacement_mm, columns.force_cN)
-    evidence.played(of.audible * sum(event.kind is LiveEventKind.VIBRATION for event in events))
-    found = press.fault()
-    if not found.faults:
-        return ""
-    evidence.failed(found.fault)
-    press.rig.core.disarm()
-    return f"the twin fell to zero force: {fault_name(found.fault)}"
+
+    def __init__(self) -> None:
+        self.problem = ""
+        self._evidence: dict[str, RenderingEvidence] = {}
+        # evidence is taken in the thread of a rig, and read in another
+        self._lock = Lock()
+
+    def rendered(self) -> tuple[Rendered, ...]:
+        """Return the record since prepare(); never fails, so that a fault is kept as well."""
+        with self._lock:
+            return tuple(found.rendered() for found in self._evidence.values())
+
+    def _check(self) -> None:
+        if self.problem:
+            raise DeviceError(self.problem)
 
 
-def announce(press: LivePress, velocity_mm_s: float) -> None:
-    """Announce the speed of the last press, on whichever label, for the next one; 0: there was none."""
-    if velocity_mm_s:
-        press.rig.announce(float(np.clip(velocity_mm_s, *PACE_mm_s)))
+class TwinLabels(EvidenceRenderer):
+    """The labels of a trial on the twin.
+
+    rig_name : shipped rig for stimuli with an actuation; without one the ideal rig renders. seed : of
+    everything random.
+    """
+
+    simulated = True
+
+    def __init__(self, folder: Path, rig_name: str, seed: int) -> None:
+        super().__init__()
+        self._folder, self._rig_name = folder, rig_name
+        self._random = np.random.default_rng(seed)
+        self._prepared: dict[str, PreparedStimulus] = {}
+        self._live: dict[str, LivePress] = {}
+        self._pace_mm_s = 0.0
+
+    def _prepare(self, labels: Mapping[str, Stimulus]) -> None:
+        found = {
+            name: prepare_stimulus(labels[name], self._folder, self._rig_name) for name in sorted(labels)
+        }
+        with self._lock:
+            self._prepared = found
+            self._evidence = {name: RenderingEvidence(name, of.name, of.model) for name, of in found.items()}
+
+    def _announce(self, press: LivePress) -> None:
+        """Announce the speed of the last press, on whichever label, for the next one."""
+        if self._pace_mm_s:
+            press.rig.announce(float(np.clip(self._pace_mm_s, *PACE_mm_s)))
+
+    def _keep(
+        self, label: str, press: LivePress, columns: InteractiveTicks, events: Sequence[LiveEvent]
+    ) -> str:
+        """Record what the rig did; on a fault, or a warning, end its force and return its name in one line.
+
+        No number goes with the name: force and place of a fault could reveal what a label hides.
+        """
+        for event in events:
+            if event.kind is LiveEventKind.PRESSED:
+                self._pace_mm_s = event.velocity_mm_s
+        heard = sum(event.kind is LiveEventKind.VIBRATION for event in events)
+        with self._lock:
+            evidence = self._evidence[label]
+            evidence.take(columns.t_s, columns.displacement_mm, columns.force_cN)
+            evidence.played(self._prepared[label].audible * heard)
+            found = press.fault()
+            if not found.faults:
+                return ""
+            evidence.failed(found.fault)
+        press.rig.core.disarm()
+        return f"the twin fell to zero force: {fault_name(found.fault)}"
 
 
 def _audible(subject: PressSubject) -> bool:

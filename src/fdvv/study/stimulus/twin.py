@@ -6,27 +6,15 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from threading import Lock
 
 import numpy as np
 
-from fdvv.errors import DeviceError
-from fdvv.live.binary_finger import BinaryFinger
 from fdvv.live.press import LiveEventKind, LivePress
 from fdvv.live.press_subject import PRESS_RIGS
 from fdvv.live.run import LiveFrame, LiveRun, SILENT_s
 from fdvv.program.program import Signal
 from fdvv.study.plan.plan import Stimulus
-from fdvv.study.plan.trial import Rendered
-from fdvv.study.stimulus.evidence import RenderingEvidence
-from fdvv.study.stimulus.renderer import (
-    ConstantTimeSwitch,
-    PreparedStimulus,
-    announce,
-    check_label,
-    keep,
-    prepare_stimulus,
-)
+from fdvv.study.stimulus.renderer import ConstantTimeSwitch, PreparedStimulus, TwinLabels, check_label
 from fdvv.twin.plant import NEAR_1_s
 from fdvv.units import FloatArray
 
@@ -116,7 +104,7 @@ def _sound(signal: Signal) -> tuple[float, tuple[object, ...]]:
     return signal.duration_s, signal.modes
 
 
-class TwinRenderer:
+class TwinRenderer(TwinLabels):
     """A simulated rig that a participant presses in the browser. Simulated.
 
     Parameters
@@ -124,15 +112,12 @@ class TwinRenderer:
     folder : of the study, where its files are.
     show : called with every frame for the participant's screen, from a thread of the renderer.
     failed : called once with one line when the rig has fallen to zero force.
-    switch_s : every change of labels takes as long. rig_name : shipped rig for stimuli with an actuation;
-        without one the ideal rig renders. seed : of everything random.
+    switch_s : every change of labels takes as long. rig_name, seed : see TwinLabels.
     clock, sleep : of time. silent_s : a page that says nothing for so long looks no more.
 
     While a change goes on the finger is lifted and no frame is shown. Any thread may lead the hand; the rest
     is for one thread at a time, and not for the one that frames come from.
     """
-
-    simulated, person = True, True
 
     def __init__(
         self,
@@ -146,26 +131,11 @@ class TwinRenderer:
         sleep: Callable[[float], None] = time.sleep,
         silent_s: float = SILENT_s,
     ) -> None:
-        self._folder, self._rig_name, self._silent_s = folder, rig_name, silent_s
-        self._show, self._failed, self._clock = show, failed, clock
-        self._switch, self._random = ConstantTimeSwitch(switch_s, clock, sleep), np.random.default_rng(seed)
-        self._prepared: dict[str, PreparedStimulus] = {}
-        self._live: dict[str, LivePress] = {}
-        self._evidence: dict[str, RenderingEvidence] = {}
-        self._sounds, self._hand = TrialSounds(), BinaryFinger(0.0)
+        super().__init__(folder, rig_name, seed)
+        self._show, self._failed, self._clock, self._silent_s = show, failed, clock, silent_s
+        self._switch, self._sounds = ConstantTimeSwitch(switch_s, clock, sleep), TrialSounds()
         self._run: LiveRun | None = None
-        self._label, self._fault, self._pace_mm_s = "", "", 0.0
-        self._lock, self._opened_s = Lock(), clock()
-
-    @property
-    def label(self) -> str:
-        """The label under the hand; "" while it changes, and before the first."""
-        return self._label
-
-    @property
-    def problem(self) -> str:
-        """In one line why the renderer has ended; "" while it has not."""
-        return self._fault
+        self._label, self._opened_s = "", clock()
 
     @property
     def travel_mm(self) -> float:
@@ -177,29 +147,17 @@ class TwinRenderer:
         """The sounds that the clicks of this trial refer to by index."""
         return self._sounds.signals
 
-    def watch(self, show: Callable[[PersonFrame], None]) -> None:
-        """Show frames to another screen from now on: the participant's page came back."""
-        with self._lock:
-            self._show = show
-
     # -- what a trial asks for -----------------------------------------------------------------------------
 
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:
         """Prepare the stimulus of each label, and clear the record; no label is shown."""
         self._check()
         self._put_away()
-        found = {
-            name: prepare_stimulus(labels[name], self._folder, self._rig_name) for name in sorted(labels)
-        }
-        seeds = self._random.integers(2**31, size=len(found)).tolist()
-        self._live = {
-            name: LivePress(of.subject, seed) for (name, of), seed in zip(found.items(), seeds, strict=True)
-        }
-        deepest = max((BinaryFinger.of(of.subject).bottom_mm for of in found.values()), default=0.0)
-        with self._lock:
-            self._prepared, self._sounds = found, TrialSounds(found.values())
-            self._hand = BinaryFinger(deepest)  # the same for every label
-            self._evidence = {n: RenderingEvidence(n, of.name, of.model) for n, of in found.items()}
+        self._prepare(labels)
+        seeds = self._random.integers(2**31, size=len(labels)).tolist()
+        found = zip(self._prepared.items(), seeds, strict=True)
+        self._live = {name: LivePress(of.subject, seed) for (name, of), seed in found}
+        self._sounds = TrialSounds(self._prepared.values())
 
     def show(self, label: str) -> None:
         """Put a label under the hand. Raises InputError on another label, DeviceError after a fault."""
@@ -211,15 +169,10 @@ class TwinRenderer:
         self._label = label
         self._check()
 
-    def rendered(self) -> tuple[Rendered, ...]:
-        """Return the record since prepare(); never fails, so that a fault is kept as well."""
-        with self._lock:
-            return tuple(found.rendered() for found in self._evidence.values())
-
     def close(self) -> None:
         """Stop the simulation; idempotent."""
         self._put_away()
-        self._fault = self._fault or "the renderer is closed; open another"
+        self.problem = self.problem or "the renderer is closed; open another"
 
     # -- what the hand does --------------------------------------------------------------------------------
 
@@ -233,14 +186,6 @@ class TwinRenderer:
     def push(self, force_cN: float, sequence: int = 0) -> None:
         """Set the force that the finger pushes with."""
         self._lead(lambda press: press.push(min(force_cN, PUSH_cN)), sequence)
-
-    def down(self, sequence: int = 0) -> None:
-        """Press to the bottom, as a key does: the same every time and for every label."""
-        self._lead(self._hand.down, sequence)
-
-    def up(self, sequence: int = 0) -> None:
-        """Release the key."""
-        self._lead(self._hand.up, sequence)
 
     def lift(self, sequence: int | None = None) -> None:
         """Lift the finger off."""
@@ -257,14 +202,9 @@ class TwinRenderer:
         if run := self._run:
             run.pause()
 
-    def fail(self, work: Callable[[LivePress], None]) -> None:
-        """Run a function on the rig, for tests that make it fail."""
-        if run := self._run:
-            run.ask(work)
-
     def _lead(self, work: Callable[[LivePress], None], sequence: int) -> None:
         run = self._run  # another thread may take it away
-        if run and self._label and not self._fault:
+        if run and self._label and not self.problem:
             run.ask(work, sequence)
 
     # -- what the rig does ---------------------------------------------------------------------------------
@@ -272,7 +212,7 @@ class TwinRenderer:
     def _begin(self, label: str) -> None:
         self._put_away()
         press = self._live[label]
-        announce(press, self._pace_mm_s)
+        self._announce(press)
         self._evidence[label].cut()
         self._run = LiveRun(
             press,
@@ -285,17 +225,11 @@ class TwinRenderer:
 
     def _seen(self, label: str, press: LivePress, seen: LiveFrame) -> None:
         """Record what was rendered and show what may be seen of it; in the run's thread."""
-        of = self._prepared[label]
-        with self._lock:
-            line = keep(self._evidence[label], of, press, seen.columns, seen.events)
-            show = self._show
-        for event in seen.events:
-            if event.kind is LiveEventKind.PRESSED:
-                self._pace_mm_s = event.velocity_mm_s
+        line = self._keep(label, press, seen.columns, seen.events)
         if line:
             self._tell(line)
         elif self._label == label and seen.columns.t_s.size:
-            show(person_frame(label, seen, of, self._sounds, self._opened_s))
+            self._show(person_frame(label, seen, self._prepared[label], self._sounds, self._opened_s))
 
     def _end(self, label: str, line: str) -> None:
         with self._lock:
@@ -303,8 +237,8 @@ class TwinRenderer:
         self._tell(f"the twin fell to zero force: {line}")
 
     def _tell(self, line: str) -> None:
-        if not self._fault:
-            self._fault = line
+        if not self.problem:
+            self.problem = line
             self._failed(line)
 
     def _put_away(self) -> None:
@@ -313,9 +247,9 @@ class TwinRenderer:
             run.close()
 
     def _check(self) -> None:
-        if self._fault:
+        if self.problem:
             self._put_away()
-            raise DeviceError(self._fault)
+        super()._check()
 
 
 def within_reach(
