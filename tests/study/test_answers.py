@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.study.plan.answers import Answers, is_answered, screen, unscreened
+from fdvv.study.plan.answers import Answers, screen
 from fdvv.study.plan.plan import Exclusion
 from tests.support.study_answers import mushra, realism
 
@@ -72,9 +72,3 @@ def test_who_does_not_find_the_hidden_reference_is_left_out() -> None:
 def test_on_a_scale_of_seven_the_rule_about_the_reference_says_nothing() -> None:
     answers = mushra()
     assert screen(replace(answers, ratings={"quality": answers.ratings["quality"] / 100 * 7})).left_out == {}
-
-
-def test_unscreened_answers_all_count() -> None:
-    whole = unscreened(screen(lacking(0.5)).answers)
-    assert whole.counts.all()
-    assert is_answered(whole).sum() == 4 * 36 - 18

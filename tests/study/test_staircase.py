@@ -10,14 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.study.plan.plan import Staircase
-from fdvv.study.plan.staircase import next_ratio, staircase_state, target_share, threshold, threshold_interval
+from fdvv.study.plan.staircase import staircase_state, target_share, threshold, threshold_interval
 
 
 def run(staircase: Staircase, answers: str) -> list[tuple[float, bool]]:
     """Answer c (correct) or w (wrong) until the staircase or the answers end."""
     history: list[tuple[float, bool]] = []
     for answer in answers:
-        ratio = next_ratio(staircase, history)
+        ratio = staircase_state(staircase, history).ratio
         if ratio is None:
             break
         history.append((ratio, answer == "c"))
@@ -50,7 +50,7 @@ def test_its_interval_holds_the_threshold_of_nearly_all_simulated_listeners() ->
     true = 0.1 * math.sqrt(2) * float(ndtri(target_share(staircase)))
     for _ in range(80):
         history: list[tuple[float, bool]] = []
-        while (ratio := next_ratio(staircase, history)) is not None:
+        while (ratio := staircase_state(staircase, history).ratio) is not None:
             history.append((ratio, bool(random.random() < ndtr(ratio / 0.1 / math.sqrt(2)))))
         low, high = threshold_interval(history, target_share(staircase))
         held += low <= true <= high
@@ -105,7 +105,7 @@ def test_it_settles_where_the_rule_says(down: int, share: float) -> None:
     random, found = np.random.default_rng(down), []
     for _ in range(20):
         history: list[tuple[float, bool]] = []
-        while (ratio := next_ratio(staircase, history)) is not None:
+        while (ratio := staircase_state(staircase, history).ratio) is not None:
             # a psychometric function from 0 to 1, that of a person who never guesses: 1 - 2^-(x / 0.1)^2
             history.append((ratio, bool(random.random() < 1 - 2.0 ** -((ratio / 0.1) ** 2))))
         found.append(threshold(staircase, history).value)

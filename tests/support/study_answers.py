@@ -8,7 +8,7 @@ import numpy as np
 
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.plan import Staircase
-from fdvv.study.plan.staircase import next_ratio
+from fdvv.study.plan.staircase import staircase_state
 from fdvv.study.plan.trial import EQUAL
 from fdvv.units import FloatArray
 
@@ -105,7 +105,7 @@ def staircase(people: int = 4, threshold: float = 0.08) -> Answers:
     rows, ratios, correct = [], [], []
     for person in range(people):
         history: list[tuple[float, bool]] = []
-        while (ratio := next_ratio(Staircase(), history)) is not None:
+        while (ratio := staircase_state(Staircase(), history).ratio) is not None:
             history.append((ratio, bool(ratio > threshold or random.random() < 0.5)))
         rows += [(f"P{person + 1:02d}", "Clear", k) for k in range(len(history))]
         ratios += [ratio for ratio, _ in history]

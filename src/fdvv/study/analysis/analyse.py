@@ -12,9 +12,10 @@ from fdvv.study.analysis.levels import threshold_over_people, threshold_results,
 from fdvv.study.analysis.multiverse import Multiverse, multiverse
 from fdvv.study.analysis.ratings import button_tests, names_of, rated_results, scale_results
 from fdvv.study.analysis.records import ChoiceResult, ClaimResult, PersonResult, StudyAnalysis
-from fdvv.study.plan.answers import Answers, Screening, is_answered, means_by, screen
+from fdvv.study.plan.answers import Answers, Screening, is_answered, screen
 from fdvv.study.plan.claim import (
     choice_claim,
+    claim_scores,
     claim_values,
     is_about_right,
     measure_of,
@@ -84,8 +85,7 @@ def _claim(answers: Answers, claim: Claim | None, registered: bool, notes: list[
     if claim is None:
         return None
     try:
-        values = claim_values(answers, claim)[answers.counts]
-        means = means_by(values, answers.person[answers.counts])
+        _, means = claim_scores(answers, claim)
         test = signed_rank(means[np.isfinite(means)])
     except ModelError as error:
         notes.append(f"The main claim cannot be tested: {error}.")

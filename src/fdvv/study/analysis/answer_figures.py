@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.report import style
+from fdvv.study.analysis.ratings import spread_of
 from fdvv.study.analysis.records import ChoiceResult
 from fdvv.study.analysis.words import button_name
 from fdvv.units import FloatArray
@@ -32,33 +33,6 @@ def say_proxy(ax: Axes, simulated: bool) -> None:
         ax.figure.figure.suptitle("simulated participants: a proxy, no evidence", **look)
 
 
-@dataclass(frozen=True, eq=False)
-class RatingBars:
-    """Mean ratings of several renderings, by button.
-
-    Attributes
-    ----------
-    buttons, stimuli : names. people : (people, buttons, stimuli) means of each person, the dots; nan missing.
-    low, high : (buttons, stimuli) interval of each mean; nan where none. scale : ends of the axis.
-    marks : one per button, written above it; empty: none.
-    """
-
-    buttons: tuple[str, ...]
-    stimuli: tuple[str, ...]
-    people: FloatArray
-    low: FloatArray
-    high: FloatArray
-    scale: tuple[float, float]
-    marks: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        shape = (len(self.buttons), len(self.stimuli))
-        if self.people.ndim != 3 or self.people.shape[1:] != shape or self.low.shape != shape:
-            raise ModelError(f"{shape} buttons and stimuli need columns of as many, got {self.people.shape}")
-        if self.marks and len(self.marks) != shape[0]:
-            raise ModelError(f"{shape[0]} buttons need as many marks, got {len(self.marks)}")
-
-
 @dataclass(frozen=True)
 class ForestRow:
     """One value with its interval; main : drawn as a diamond. A bound may be infinite or nan."""
@@ -71,24 +45,35 @@ class ForestRow:
 
 
 @style.in_house_style
-def plot_rating_bars(bars: RatingBars, rating: str, simulated: bool = False) -> Any:
+def plot_rating_bars(
+    rating: str,
+    people: FloatArray,
+    buttons: Sequence[str],
+    stimuli: Sequence[str],
+    scale: tuple[float, float],
+    marks: Mapping[str, str],
+    simulated: bool,
+) -> Any:
     """Draw mean ratings by button: thin bars are 1 SD between people, thick ones the interval of the mean.
 
-    A dot is a person. Returns the axes.
+    people : (people, buttons, stimuli) means of each person, the dots; nan missing. scale : ends of the axis.
+    marks : written above a button, by its name. Returns the axes.
     """
-    count = len(bars.stimuli)
-    ax = style.new_figure(max(6.4, 1.0 + (0.55 + 0.36 * count) * len(bars.buttons)), 4.4).add_subplot()
+    count, (low, high) = len(stimuli), scale
+    ax = style.new_figure(max(6.4, 1.0 + (0.55 + 0.36 * count) * len(buttons)), 4.4).add_subplot()
     width = 0.8 / count
-    places = np.arange(float(len(bars.buttons)))
-    for number in range(count):
-        _draw_stimulus(ax, bars, number, places + (number - (count - 1) / 2) * width, width)
-    low, high = bars.scale
+    places = np.arange(float(len(buttons)))
+    for number, stimulus in enumerate(stimuli):
+        look: Any = {"color": COLOURS[number % len(COLOURS)], "label": style.name_text(stimulus)}
+        _draw_bars(ax, people[:, :, number], places + (number - (count - 1) / 2) * width, width, scale, look)
     step = 0.08 * (high - low)
-    ax.set_ylim(low, high + step * (1.3 if bars.marks else 0.4))
-    ax.set_yticks(_ticks(low, high))
-    for place, mark in zip(places, bars.marks, strict=False):
-        ax.annotate(mark, (float(place), high + 0.5 * step), ha="center", va="bottom", fontsize=9)
-    ax.set_xticks(places, [style.wrapped(style.name_text(name), 14) for name in bars.buttons])
+    ax.set_ylim(low, high + step * (1.3 if marks else 0.4))
+    ax.set_yticks(np.arange(low, high + 0.5, 1.0 if high - low <= 12 else (high - low) / 5))
+    for place, button in zip(places, buttons, strict=True):
+        if button in marks:
+            at = (float(place), high + 0.5 * step)
+            ax.annotate(marks[button], at, ha="center", va="bottom", fontsize=9)
+    ax.set_xticks(places, [style.wrapped(style.name_text(name), 14) for name in buttons])
     ax.grid(axis="x", visible=False)
     ax.set_ylabel(rating)
     style.set_titles(ax, f"mean {style.name_text(rating)}", False)
@@ -98,28 +83,19 @@ def plot_rating_bars(bars: RatingBars, rating: str, simulated: bool = False) -> 
     return ax
 
 
-def _draw_stimulus(ax: Axes, bars: RatingBars, number: int, places: FloatArray, width: float) -> None:
-    people = bars.people[:, :, number]
-    there = np.isfinite(people).sum(axis=0)
-    some = there > 0
-    means = np.full(places.size, np.nan)
-    means[some] = np.nanmean(people[:, some], axis=0)
-    spread = np.full(places.size, np.nan)
-    spread[there > 1] = np.nanstd(people[:, there > 1], axis=0, ddof=1)
-    colour = COLOURS[number % len(COLOURS)]
-    label = style.name_text(bars.stimuli[number])
-    base = bars.scale[0]
-    ax.bar(places, means - base, 0.92 * width, base, color=colour, alpha=0.85, zorder=1.0, label=label)
+def _draw_bars(
+    ax: Axes, people: FloatArray, places: FloatArray, width: float, scale: tuple[float, float], look: Any
+) -> None:
+    """Draw one stimulus. people : (people, buttons)."""
+    spreads = [spread_of(column) for column in people.T]
+    means, sd, low, high = np.array([(one.mean, one.sd, one.low, one.high) for one in spreads]).T
+    base = scale[0]
+    ax.bar(places, means - base, 0.92 * width, base, alpha=0.85, zorder=1.0, **look)
     aside = np.linspace(-0.26, 0.26, len(people)) * width if len(people) > 1 else np.zeros(1)
     for place, column in zip(places, people.T, strict=True):
         ax.plot(place + aside, column, ".", color=style.QUIET, markersize=3.5, alpha=0.8, zorder=2.0)
-    ax.errorbar(places, means, spread, fmt="none", ecolor=style.INK, capsize=3.0, elinewidth=0.9, zorder=3.0)
-    low, high = (np.clip(ends[:, number], *bars.scale) for ends in (bars.low, bars.high))
-    ax.vlines(places, low, high, color=style.INK, linewidth=3.0, zorder=3.0)
-
-
-def _ticks(low: float, high: float) -> FloatArray:
-    return np.arange(low, high + 0.5, 1.0 if high - low <= 12 else (high - low) / 5)
+    ax.errorbar(places, means, sd, fmt="none", ecolor=style.INK, capsize=3.0, elinewidth=0.9, zorder=3.0)
+    ax.vlines(places, np.clip(low, *scale), np.clip(high, *scale), color=style.INK, linewidth=3.0, zorder=3.0)
 
 
 @style.in_house_style

@@ -32,14 +32,8 @@ def choice_results(answers: Answers, claim: Claim) -> tuple[ChoiceResult, ...]:
         for button in names_of(answers.item)
     ]
     buttons = [one for one in found if one is not None]
-    tested = [one for one in buttons if one.test is not None]
-    corrected = dict(
-        zip(
-            [one.button for one in tested],
-            holm([one.test.p_exact for one in tested if one.test]),
-            strict=True,
-        )
-    )
+    exact = {one.button: one.test.p_exact for one in buttons if one.test}
+    corrected = dict(zip(exact, holm(list(exact.values())), strict=True))
     return (whole, *(replace(one, p_holm=corrected.get(one.button)) for one in buttons))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Literal
 
@@ -155,33 +156,31 @@ def answers_csv(answers: Answers) -> str:
     """
     n = len(answers.person)
     missing = np.full(n, np.nan)
-    columns: list[list[str]] = [
-        [str(one) for one in answers.person],
-        [str(one) for one in answers.item],
-        [str(int(one)) for one in answers.round],
-        [str(one) for one in answers.choice],
-        _numbers(answers.correct),
-        _numbers(missing if answers.ratio is None else answers.ratio),
-        _numbers(missing if answers.time_s is None else answers.time_s),
-        [""] * n if answers.excluded is None else [str(one) for one in answers.excluded],
-        [str(int(answers.simulated))] * n,
+    columns: list[np.ndarray] = [
+        *(answers.person, answers.item, answers.round, answers.choice, answers.correct),
+        missing if answers.ratio is None else answers.ratio,
+        missing if answers.time_s is None else answers.time_s,
+        np.full(n, "") if answers.excluded is None else answers.excluded,
+        np.full(n, int(answers.simulated)),
+        *(column for rating in answers.ratings.values() for column in rating.T),
     ]
-    for rating in answers.ratings.values():
-        columns += [_numbers(column) for column in rating.T]
+    cells = [[cell_text(one) for one in column.tolist()] for column in columns]
+    return csv_text([one.name for one in code_book(answers).columns], zip(*cells, strict=True))
+
+
+def csv_text(heads: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
+    """Write a table as all files of a study have it: commas, a line of headings, lines end as on Unix."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(one.name for one in code_book(answers).columns)
-    writer.writerows(zip(*columns, strict=True))
+    writer.writerow(heads)
+    writer.writerows(rows)
     return stream.getvalue()
 
 
-def _numbers(column: np.ndarray) -> list[str]:
-    """Write numbers with as many digits as they have; nan is nothing."""
-    return [number_text(float(one)) for one in column]
-
-
-def number_text(value: float) -> str:
-    """Write a number with every digit it has; nothing where it is missing."""
+def cell_text(value: str | float) -> str:
+    """Write a name, or a number with every digit it has; nothing where it is missing."""
+    if isinstance(value, str):
+        return value
     value = float(value)
     if np.isnan(value):
         return ""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from dataclasses import asdict
 from pathlib import Path
@@ -14,7 +12,7 @@ import numpy as np
 
 from fdvv.io.documents import finite
 from fdvv.io.files import write_atomic
-from fdvv.study.analysis.code_book import number_text
+from fdvv.study.analysis.code_book import cell_text, csv_text
 from fdvv.study.analysis.multiverse import Multiverse
 from fdvv.study.analysis.ratings import names_of, people_means
 from fdvv.study.analysis.records import ClaimResult, RatedResult, StudyAnalysis, ThresholdResult, TimingResult
@@ -141,7 +139,7 @@ def people_csv(found: StudyAnalysis) -> str:
         for j, button in enumerate(buttons):
             for k, stimulus in enumerate(answers.stimuli):
                 heads.append(f"{rating}_{button}_{stimulus}")
-                columns.append([number_text(one) for one in means[:, j, k]])
+                columns.append([cell_text(one) for one in means[:, j, k]])
     names = (*answers.stimuli, EQUAL) if np.any(answers.choice != "") else ()
     chosen = [np.where(answers.choice == "", np.nan, answers.choice == name) for name in names]
     parts = dict(zip([f"choice_{{}}_{name}" for name in names], chosen, strict=True))
@@ -151,9 +149,6 @@ def people_csv(found: StudyAnalysis) -> str:
         means = people_means(answers, part[:, np.newaxis].astype(np.float64))
         for j, button in enumerate(buttons):
             heads.append(pattern.format(button))
-            columns.append([number_text(one) for one in means[:, j, 0]])
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow([*heads, "simulated"])
-    writer.writerows([*row, str(int(found.simulated))] for row in zip(*columns, strict=True))
-    return stream.getvalue()
+            columns.append([cell_text(one) for one in means[:, j, 0]])
+    columns.append([cell_text(found.simulated)] * len(found.screening.people))
+    return csv_text([*heads, "simulated"], zip(*columns, strict=True))

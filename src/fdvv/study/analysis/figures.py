@@ -15,14 +15,12 @@ from fdvv.report.score_figures import ScoreBars, plot_score_bars
 from fdvv.study.analysis.answer_figures import (
     PALE,
     ForestRow,
-    RatingBars,
-    plot_choices,
     plot_forest,
     plot_rating_bars,
     say_proxy,
 )
 from fdvv.study.analysis.multiverse import Multiverse
-from fdvv.study.analysis.ratings import people_means, spread_of
+from fdvv.study.analysis.ratings import people_means
 from fdvv.study.analysis.records import StudyAnalysis, ThresholdResult, TimingResult
 from fdvv.study.analysis.sentences import name_rows
 from fdvv.study.analysis.words import button_name
@@ -46,31 +44,15 @@ CHOICES = {
 
 
 def draw_ratings(found: StudyAnalysis, rating: str, scale: tuple[float, float]) -> Any:
-    """Draw mean ratings by button, marks of Holm's correction above."""
-    answers = found.screening.answers
-    shown = _shown_stimuli(found)
+    """Draw mean ratings by button, marks of Holm's correction above where two renderings are compared."""
+    answers, shown = found.screening.answers, found.stimuli
+    if found.claim is not None and found.kind != "mushra":
+        shown = found.claim.claim.less, found.claim.claim.more
     columns = answers.ratings[rating][:, [answers.stimuli.index(name) for name in shown]]
+    tests = () if found.rated else [one for one in found.tests if one.rating == rating and one.test.n > 1]
+    marks = {one.button: stars(one.p_holm) for one in tests}
     means = people_means(answers, columns)
-    spreads = [[spread_of(means[:, i, j]) for j in range(len(shown))] for i in range(len(found.buttons))]
-    marks = {one.button: stars(one.p_holm) for one in found.tests if one.rating == rating and one.test.n > 1}
-    if found.rated:
-        marks = {}
-    bars = RatingBars(
-        found.buttons,
-        shown,
-        means,
-        np.array([[one.low for one in row] for row in spreads]),
-        np.array([[one.high for one in row] for row in spreads]),
-        scale,
-        tuple(marks.get(name, "") for name in found.buttons) if marks else (),
-    )
-    return plot_rating_bars(bars, rating, found.simulated)
-
-
-def _shown_stimuli(found: StudyAnalysis) -> tuple[str, ...]:
-    if found.claim is None or found.kind == "mushra":
-        return found.stimuli
-    return found.claim.claim.less, found.claim.claim.more
+    return plot_rating_bars(rating, means, found.buttons, shown, scale, marks, found.simulated)
 
 
 def scale_around(answers: Answers, rating: str) -> tuple[float, float]:
@@ -82,11 +64,6 @@ def scale_around(answers: Answers, rating: str) -> tuple[float, float]:
     if low >= 0 and high <= 100:
         return 0.0, 100.0 if high > 10 else math.ceil(high) or 1.0
     return math.floor(low), math.ceil(high)
-
-
-def draw_choices(found: StudyAnalysis) -> Any:
-    """Draw what was chosen, all buttons and each."""
-    return plot_choices(name_rows(found), found.simulated)
 
 
 def draw_distances(found: StudyAnalysis) -> Any:
@@ -110,11 +87,6 @@ def draw_people(found: StudyAnalysis) -> Any:
     middle = ForestRow("all people", 100 * whole.split, math.nan, math.nan, True)
     axis = f"answers for {whole.more}, ties as halves (%)"
     return plot_forest([*rows, middle], axis, "person by person", 50.0, found.simulated)
-
-
-def draw_tracks(found: StudyAnalysis) -> Any:
-    """Draw the first staircases."""
-    return plot_tracks(found.thresholds[:MOST_TRACKS], found.simulated, len(found.buttons) > 1)
 
 
 def draw_thresholds(found: StudyAnalysis) -> Any:
@@ -150,21 +122,16 @@ def _sd(scores: FloatArray) -> FloatArray:
     return scores.std(axis=0, ddof=1) if len(scores) > 1 else np.zeros(scores.shape[1])
 
 
-def draw_multiverse(found: Multiverse, registered: bool, claim: str, simulated: bool) -> Any:
-    """Draw the specification curve, the registered specification marked."""
-    marked = "as registered" if registered else "main analysis (not registered)"
-    return plot_specifications(found, f"{claim} (%)", marked, simulated)
-
-
 @style.in_house_style
 def plot_tracks(tracks: Sequence[ThresholdResult], simulated: bool = False, by_button: bool = False) -> Any:
-    """Draw every staircase as a small panel: filled where the answer was right, open where it was wrong.
+    """Draw the first staircases as small panels: filled where the answer was right, open where it was wrong.
 
     The dashed line is the threshold. All share one logarithmic scale. by_button : name the button too.
     Returns the array of axes.
     """
     if not tracks:
         raise ModelError("a figure of staircases needs at least one")
+    tracks = tracks[:MOST_TRACKS]
     columns = min(3, len(tracks))
     rows = -(-len(tracks) // columns)
     fig = style.new_figure(max(6.4, 3.1 * columns), 0.6 + 2.2 * rows)

@@ -10,7 +10,7 @@ import numpy as np
 from fdvv.stats.effect_size import CONFIDENCE
 from fdvv.stats.rank_tests import signed_ranks
 from fdvv.stats.share import sign_test, wilson
-from fdvv.study.plan.answers import Answers, groups_by, is_answered, means_by, unscreened
+from fdvv.study.plan.answers import Answers, groups_by, is_answered, means_by
 from fdvv.study.plan.claim import CHOICE, CORRECT, claim_values, measure_of, measured_by
 from fdvv.study.plan.plan import Claim
 from fdvv.units import FloatArray
@@ -61,17 +61,19 @@ class Multiverse:
         return next(one for one in self.specifications if one.registered)
 
     @property
+    def _alike(self) -> list[Specification]:
+        side = np.sign(self.registered.share - 0.5)
+        return [one for one in self.specifications if np.sign(one.share - 0.5) == side]
+
+    @property
     def agreeing(self) -> int:
         """How many have a share on the same side of one half as the registered one."""
-        side = np.sign(self.registered.share - 0.5)
-        return sum(bool(np.sign(one.share - 0.5) == side) for one in self.specifications)
+        return len(self._alike)
 
     @property
     def significant(self) -> int:
         """How many agree and are significant."""
-        side = np.sign(self.registered.share - 0.5)
-        agree = [one for one in self.specifications if np.sign(one.share - 0.5) == side]
-        return sum(one.p < self.alpha for one in agree)
+        return sum(one.p < self.alpha for one in self._alike)
 
 
 def multiverse(answers: Answers, claim: Claim) -> Multiverse:
@@ -98,7 +100,7 @@ def _key(one: Specification) -> tuple[str, ...]:
 
 
 def _exclusions(answers: Answers) -> dict[str, Answers]:
-    everyone = unscreened(answers)
+    everyone = replace(answers, excluded=None)
     whole = [
         person
         for person in dict.fromkeys(answers.person.tolist())

@@ -36,14 +36,9 @@ def people_means(answers: Answers, columns: FloatArray) -> FloatArray:
     for i, person in enumerate(people):
         for j, button in enumerate(buttons):
             rows = (answers.person == person) & (answers.item == button) & answers.counts
-            found[i, j] = column_means(columns[rows])
+            count = np.isfinite(columns[rows]).sum(axis=0)
+            found[i, j] = np.nansum(columns[rows], axis=0) / np.where(count, count, np.nan)
     return found
-
-
-def column_means(rows: FloatArray) -> FloatArray:
-    """Average the rows that are there, column by column; nan where there is none."""
-    count = np.isfinite(rows).sum(axis=0)
-    return np.asarray(np.nansum(rows, axis=0) / np.where(count, count, np.nan))
 
 
 def spread_of(values: FloatArray) -> Spread:

@@ -15,8 +15,10 @@ from fdvv.report.prose import listed
 from fdvv.report.report import Section, render_html, write_report
 from fdvv.report.svg import figure_svg
 from fdvv.study.analysis import figures, sentences, tables
+from fdvv.study.analysis.answer_figures import plot_choices
 from fdvv.study.analysis.export import PROXY
 from fdvv.study.analysis.records import StudyAnalysis
+from fdvv.study.analysis.sentences import name_rows
 from fdvv.study.analysis.words import fixed, listing, many, people_text
 from fdvv.study.plan.plan import StudyPlan
 
@@ -213,7 +215,7 @@ def _choices(found: StudyAnalysis) -> list[Section]:
     choices = Section(
         "Right answers" if whole.more == "right" else "Choices",
         (sentences.choice_sentence(whole), *sentences.choice_asides(whole)),
-        (figure_svg(figures.draw_choices(found), "What was chosen, by button"),),
+        (figure_svg(plot_choices(name_rows(found), found.simulated), "What was chosen, by button"),),
         (tables.choices_table(found),),
     )
     distances = Section(
@@ -228,10 +230,8 @@ def _choices(found: StudyAnalysis) -> list[Section]:
 def _thresholds(found: StudyAnalysis) -> list[Section]:
     if not found.thresholds:
         return []
-    svgs = (
-        figure_svg(figures.draw_thresholds(found), "Thresholds"),
-        figure_svg(figures.draw_tracks(found), "Staircases"),
-    )
+    tracks = figures.plot_tracks(found.thresholds, found.simulated, len(found.buttons) > 1)
+    svgs = (figure_svg(figures.draw_thresholds(found), "Thresholds"), figure_svg(tracks, "Staircases"))
     texts = (
         *sentences.threshold_sentences(found),
         "In the staircases a filled dot is a right answer, an open one a wrong one, the dashed line the "
@@ -260,7 +260,8 @@ def _multiverse(found: StudyAnalysis) -> list[Section]:
     if found.multiverse is None or found.claim is None:
         return []
     claim = "right answers" if found.claim.measure == "correct" else f"share for {found.claim.claim.more}"
-    figure = figures.draw_multiverse(found.multiverse, found.claim.registered, claim, found.simulated)
+    marked = "as registered" if found.claim.registered else "main analysis (not registered)"
+    figure = figures.plot_specifications(found.multiverse, f"{claim} (%)", marked, found.simulated)
     svg = figure_svg(figure, "The main claim under every reasonable analysis")
     texts = sentences.multiverse_sentences(found.multiverse)
     return [Section("Does it depend on the analysis?", texts, (svg,))]

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -17,10 +14,10 @@ import numpy as np
 from fdvv.errors import InputError, ModelError
 from fdvv.io.files import write_atomic
 from fdvv.rendering.session import now
-from fdvv.study.analysis.code_book import write_answers
+from fdvv.study.analysis.code_book import csv_text, write_answers
 from fdvv.study.files.chained_log import ChainedLog, read_chained
 from fdvv.study.files.layout import PEOPLE, SCHEDULE_FILE, SEALED_FILE, SESSION_FILE, UNSEALED
-from fdvv.study.files.people import Person, Schedule, SealedTrial, open_schedule, people_of
+from fdvv.study.files.people import Person, SealedTrial, open_schedule, people_of
 from fdvv.study.files.seal import KeyHolder
 from fdvv.study.plan.answers import Answers, screen
 from fdvv.study.plan.events import PageAnswered, StaircaseConverged, TrialAnswered, Value, event_of
@@ -112,24 +109,27 @@ class UnsealedPerson:
     pages: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
 
 
-def unseal_person(
-    plan: StudyPlan,
-    person: Person,
-    schedule: Schedule,
-    session: Sequence[dict[str, Any]],
-    sealed: Sequence[dict[str, Any]],
-    keeper: KeyHolder,
-    damaged: bool = False,
-) -> UnsealedPerson:
+def _person(folder: Path, plan: StudyPlan, person: Person, keeper: KeyHolder) -> UnsealedPerson | None:
     """Join a person's schedule with the records of both logs.
 
-    damaged : the logs are not as they were written: nothing of them counts. InputError on a record that none
-    of the study's programs wrote.
+    None of whom nothing is kept, or whose schedule is not there to be read. Where the logs are not as they
+    were written, nothing of them counts. InputError on a record that none of the study's programs wrote.
     """
-    rendered = [_sealed(record, keeper, person.name) for record in sealed]
+    own = folder / PEOPLE / person.name
+    if person.state == "deleted":
+        return None
+    try:
+        schedule = open_schedule(own / SCHEDULE_FILE, keeper)
+    except InputError:
+        return None  # reported by verify, and on record
+    key = bytes.fromhex(schedule.key)
+    session, sealed = read_chained(own / SESSION_FILE, key), read_chained(own / SEALED_FILE, key)
+    damaged = bool(session.problems or sealed.problems)
+    boxes = [keeper.unlock(record["sealed"], f"{person.name}/{SEALED_FILE}") for record in sealed.records]
+    rendered = [msgspec.json.decode(box, type=SealedTrial) for box in boxes]
     found = {one.number: one for one in rendered}  # of those of one number the last one counts
     try:
-        events = [event_of(record) for record in session]
+        events = [event_of(record) for record in session.records]
     except ModelError as error:
         raise InputError(person.name, "session", str(error), "install the fdvv that ran the study") from error
     answers = {event.number: event.answer for event in events if isinstance(event, TrialAnswered)}
@@ -145,10 +145,6 @@ def unseal_person(
         tuple(row for row in rows if row.trial.practice and row.answer),
         {event.name: event.values for event in events if isinstance(event, PageAnswered)},
     )
-
-
-def _sealed(record: Mapping[str, Any], keeper: KeyHolder, name: str) -> SealedTrial:
-    return msgspec.json.decode(keeper.unlock(record["sealed"], f"{name}/sealed.jsonl"), type=SealedTrial)
 
 
 def _row(
@@ -222,26 +218,10 @@ def unseal_folder(
     people = [found for person in people_of(log.records) if (found := _person(folder, plan, person, keeper))]
     answers = answers_of(plan, people)
     write_answers(folder / UNSEALED, answers, plan)
-    write_atomic(folder / UNSEALED / RENDERED_FILE, _table(RENDERED, _rendered(people)))
-    write_atomic(
-        folder / UNSEALED / PAGES_FILE, _table(("person", "page", "question", "answer"), _pages(people))
-    )
+    write_atomic(folder / UNSEALED / RENDERED_FILE, csv_text(RENDERED, _rendered(people)))
+    heads = ("person", "page", "question", "answer")
+    write_atomic(folder / UNSEALED / PAGES_FILE, csv_text(heads, _pages(people)))
     return answers
-
-
-def _person(folder: Path, plan: StudyPlan, person: Person, keeper: KeyHolder) -> UnsealedPerson | None:
-    """Unseal one person; None of whom nothing is kept, or whose schedule is not there to be read."""
-    own = folder / PEOPLE / person.name
-    if person.state == "deleted":
-        return None
-    try:
-        schedule = open_schedule(own / SCHEDULE_FILE, keeper)
-    except InputError:
-        return None  # reported by verify, and on record
-    key = bytes.fromhex(schedule.key)
-    session, sealed = read_chained(own / SESSION_FILE, key), read_chained(own / SEALED_FILE, key)
-    damaged = bool(session.problems or sealed.problems)
-    return unseal_person(plan, person, schedule, session.records, sealed.records, keeper, damaged)
 
 
 def _rendered(people: Sequence[UnsealedPerson]) -> Iterator[Sequence[object]]:
@@ -257,15 +237,8 @@ def _labels(row: UnsealedTrial) -> Iterator[Sequence[object]]:
     for one in row.rendered:
         errors = [error for error in one.error_cN if error is not None]
         yield (
-            *(
-                row.person,
-                trial.number,
-                int(trial.practice),
-                trial.item,
-                trial.round,
-                one.label,
-                one.stimulus,
-            ),
+            *(row.person, trial.number, int(trial.practice), trial.item, trial.round),
+            *(one.label, one.stimulus),
             "" if row.ratio != row.ratio else f"{row.ratio:.6g}",
             *(sum(label == one.label for _, label in answer.switches), one.presses),
             f"{max(errors):.3f}" if errors else "",
@@ -283,11 +256,3 @@ def _pages(people: Sequence[UnsealedPerson]) -> Iterator[Sequence[object]]:
         for page, values in one.pages.items():
             for question, value in values.items():
                 yield one.person.name, page, question, "" if value is None else value
-
-
-def _table(heads: Sequence[str], rows: Iterator[Sequence[object]]) -> str:
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(heads)
-    writer.writerows(rows)
-    return stream.getvalue()

@@ -142,11 +142,6 @@ def screen(answers: Answers, rule: Exclusion | None = None) -> Screening:
     )
 
 
-def unscreened(answers: Answers) -> Answers:
-    """Return all answers back, as if no rule left any out."""
-    return replace(answers, excluded=None)
-
-
 def _reason(answers: Answers, rows: np.ndarray, valid: np.ndarray, rule: Exclusion) -> str:
     """Return why a person does not count; "" where they do."""
     reasons = Counter[str]([] if answers.excluded is None else answers.excluded[rows].tolist())

@@ -63,7 +63,8 @@ class StaircaseState:
 
     Attributes
     ----------
-    ratio : of the next trial; None where it has ended. turns : ratios at which it turned round, in order.
+    ratio : difference of force that the next trial has, as a ratio of the standard; None where it has ended.
+    turns : ratios at which it turned round, in order.
     """
 
     ratio: float | None
@@ -71,7 +72,7 @@ class StaircaseState:
 
 
 def staircase_state(staircase: Staircase, history: Sequence[tuple[float, bool]]) -> StaircaseState:
-    """Follow a staircase over (ratio, correct) of its trials, in order.
+    """Follow a staircase over (ratio, correct) of its trials so far, in order, practice left out.
 
     So many correct answers in a row as ``down`` says make the difference smaller, each wrong one larger, by
     the step that belongs to the turns so far. A wrong answer at the largest difference changes nothing.
@@ -89,14 +90,6 @@ def staircase_state(staircase: Staircase, history: Sequence[tuple[float, bool]])
         ratio = min(shown / step if correct else shown * step, LARGEST_ratio)
     ended = len(turns) >= staircase.reversals or len(history) >= staircase.trials
     return StaircaseState(None if ended else ratio, tuple(turns[: staircase.reversals]))
-
-
-def next_ratio(staircase: Staircase, history: Sequence[tuple[float, bool]]) -> float | None:
-    """Return the difference of force that the next trial has, as a ratio of the standard; None: it has ended.
-
-    history : (ratio, correct) of the trials of this staircase so far, practice left out.
-    """
-    return staircase_state(staircase, history).ratio
 
 
 def threshold(staircase: Staircase, history: Sequence[tuple[float, bool]]) -> Estimate:

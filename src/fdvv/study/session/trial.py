@@ -13,7 +13,7 @@ from fdvv.errors import DeviceError, ModelError
 from fdvv.study.files.people import SealedTrial
 from fdvv.study.plan.plan import Stimulus, StudyPlan
 from fdvv.study.plan.session import SessionState
-from fdvv.study.plan.staircase import next_ratio
+from fdvv.study.plan.staircase import staircase_state
 from fdvv.study.plan.trial import Rendered, StudyTrial, TrialAnswer
 from fdvv.study.stimulus.renderer import StimulusRenderer
 
@@ -63,10 +63,10 @@ def staircase_ratio(
     for one in schedule:
         answered = state.answers.get(one.number)
         if answered and not one.practice and (one.item, one.round) == (trial.item, trial.round):
-            ratio = next_ratio(plan.staircase, history)
+            ratio = staircase_state(plan.staircase, history).ratio
             assert ratio is not None
             history.append((ratio, answered.answer.choice == one.correct))
-    return next_ratio(plan.staircase, history)
+    return staircase_state(plan.staircase, history).ratio
 
 
 def sealed_bytes(trial: SealedTrial) -> bytes:
