@@ -151,14 +151,12 @@ def preview_title(plan: StudyPlan) -> str:
 
 
 def preview_summary(plan: StudyPlan) -> str:
-    """Return in a line what the study is."""
     languages = ", ".join(plan.languages)
     kind = f"kind {plan.kind}, {plan.people} people planned"
     return f"Study {plan.name!r}, {kind}, in {languages}. Nothing is drawn yet."
 
 
 def preview_html(review: StudyReview) -> str:
-    """Return the preview as one HTML page."""
     plan = review.plan
     return render_html(preview_title(plan), preview_summary(plan), preview_sections(review))
 

@@ -81,7 +81,6 @@ def code_book(answers: Answers, plan: StudyPlan | None = None) -> CodeBook:
 
 
 def code_book_text(book: CodeBook) -> str:
-    """Write a code book as JSON."""
     return pretty(msgspec.to_builtins(book)) + "\n"
 
 
@@ -97,7 +96,6 @@ def read_code_book(path: Path) -> CodeBook:
 
 
 def rating_column(rating: str, stimulus: str) -> str:
-    """Name the column of a rating."""
     return f"{rating}_{stimulus}"
 
 

@@ -137,7 +137,6 @@ def coded(word: str, asked: ColumnMap) -> str:
 
 
 def is_missing(word: str, asked: ColumnMap) -> bool:
-    """Return whether a cell says that there is nothing."""
     return word in asked.missing or word.lower() in MISSING
 
 
@@ -151,7 +150,6 @@ class CellReader:
     decimal_comma: bool
 
     def wrong(self, line: int, place: int, reason: str, remedy: str) -> InputError:
-        """Make the error that a cell cannot be used."""
         return InputError(self.path, f"line {line}, column {self.heads[place]!r}", reason, remedy)
 
     def number(self, line: int, row: Sequence[str], place: int | None) -> float:

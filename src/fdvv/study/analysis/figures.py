@@ -76,7 +76,6 @@ def draw_distances(found: StudyAnalysis) -> Any:
 
 
 def draw_people(found: StudyAnalysis) -> Any:
-    """Draw every person's share, and that of all."""
     rows = [
         ForestRow(one.person, 100 * one.share, math.nan, math.nan)
         for one in found.people
@@ -90,7 +89,6 @@ def draw_people(found: StudyAnalysis) -> Any:
 
 
 def draw_thresholds(found: StudyAnalysis) -> Any:
-    """Draw every threshold with its interval, and the mean over people."""
     several = len(found.buttons) > 1
     rows = [
         ForestRow(
@@ -110,7 +108,6 @@ def _percent(value: float | None) -> float:
 
 
 def draw_timing(found: TimingResult, simulated: bool) -> Any:
-    """Draw mean scores by level."""
     panels = [
         ScoreBars(level, found.buttons, found.scores[:, :, i], _sd(found.scores[:, :, i]))
         for i, level in enumerate(found.levels)

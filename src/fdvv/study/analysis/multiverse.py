@@ -57,7 +57,6 @@ class Multiverse:
 
     @property
     def registered(self) -> Specification:
-        """The specification fixed beforehand."""
         return next(one for one in self.specifications if one.registered)
 
     @property

@@ -99,12 +99,10 @@ class ClaimResult:
 
     @property
     def supported(self) -> bool:
-        """Whether the answers support the claim."""
         return self.test.p_exact < self.claim.alpha and self.test.effect > 0
 
     @property
     def opposed(self) -> bool:
-        """Whether they say the opposite."""
         return self.test.p_exact < self.claim.alpha and self.test.effect < 0
 
 

@@ -99,7 +99,6 @@ def _proxy(found: StudyAnalysis) -> str:
 
 
 def method_paragraphs(found: StudyAnalysis) -> tuple[str, ...]:
-    """Return how everything in the report was computed, as far as it is in it."""
     texts = []
     if found.tests or found.rated or found.preference:
         texts.append(
@@ -171,7 +170,6 @@ def _marked(section: Section, simulated: bool) -> Section:
 
 
 def study_summary(found: StudyAnalysis) -> str:
-    """Return the main result in a few sentences."""
     texts = [sentences.claim_sentence(found.claim)] if found.claim else []
     texts += [sentences.choice_sentence(found.preference)] if found.preference else []
     texts += [sentences.rated_sentence(found.rated[0])] if found.rated else []

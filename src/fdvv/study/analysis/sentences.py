@@ -38,7 +38,6 @@ HALF = 0.5
 
 
 def claim_sentence(found: ClaimResult) -> str:
-    """Return the main claim and what the answers say of it."""
     claim, test = found.claim, found.test
     stated = "stated before the first person" if found.registered else "not registered beforehand"
     text = f"Main claim ({stated}): {_claimed(found)}."
@@ -64,7 +63,6 @@ def _claimed(found: ClaimResult) -> str:
 
 
 def choice_sentence(one: ChoiceResult) -> str:
-    """Return what was chosen of all answers."""
     n = one.share.n
     text = (
         f"Of {many(n, 'answer')}, {one.more_count} ({percent(one.share.share)}; {interval_of(one.interval)})"
@@ -178,7 +176,6 @@ def name_rows(found: StudyAnalysis) -> tuple[ChoiceResult, ...]:
 
 
 def rated_sentence(one: RatedResult) -> str:
-    """Return what Friedman's test and the pairs say of all renderings."""
     where = f"over all buttons, {one.rating}" if not one.button else f"{one.button}, {one.rating}"
     means = [f"{name} {fixed(spread.mean, 1)}" for name, spread in one.spreads.items()]
     text = f"Means, {where}: {', '.join(means)}."
@@ -199,7 +196,6 @@ def rated_sentence(one: RatedResult) -> str:
 
 
 def threshold_sentences(found: StudyAnalysis) -> tuple[str, ...]:
-    """Return the threshold over people, and how many staircases have none."""
     texts = []
     one = found.threshold
     without = sum(math.isnan(t.threshold.value) for t in found.thresholds)

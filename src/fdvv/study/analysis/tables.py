@@ -12,7 +12,6 @@ from fdvv.study.analysis.words import button_name, fixed, percent, rule_text, sh
 
 
 def ratings_table(tests: tuple[ButtonTest, ...]) -> Table:
-    """List the tests of one rating."""
     rows = []
     for one in tests:
         test = one.test
@@ -36,7 +35,6 @@ def ratings_table(tests: tuple[ButtonTest, ...]) -> Table:
 
 
 def choices_table(found: StudyAnalysis) -> Table:
-    """List shares of all buttons and each."""
     whole = name_rows(found)[0]
     ties = whole.equal_count > 0
     rows = []
@@ -53,7 +51,6 @@ def choices_table(found: StudyAnalysis) -> Table:
 
 
 def distances_table(found: StudyAnalysis) -> Table:
-    """List d' by every rule."""
     rows = [
         (
             button_name(one), rule_text(d), fixed(d.d), span(d.low, d.high),
@@ -70,7 +67,6 @@ def distances_table(found: StudyAnalysis) -> Table:
 
 
 def rated_table(one: RatedResult) -> Table:
-    """List the pairs of all renderings."""
     rows = tuple(
         (
             f"{p.first} − {p.second}", str(p.test.n), fixed(p.test.z), short_p(p.test.p_exact),
@@ -86,7 +82,6 @@ def rated_table(one: RatedResult) -> Table:
 
 
 def thresholds_table(found: StudyAnalysis) -> Table:
-    """List every staircase."""
     rows = tuple(
         (
             one.person, one.button, str(one.ratios.size), fixed(100 * one.threshold.value, 1),
@@ -120,7 +115,6 @@ def timing_tables(found: TimingResult) -> tuple[Table, ...]:
 
 
 def people_table(found: StudyAnalysis) -> Table:
-    """List every person: what they did and what they say."""
     ratings = list(found.people[0].differences)
     choices = found.preference is not None
     timed = not all(math.isnan(one.median_s) for one in found.people)

@@ -21,7 +21,6 @@ def many(count: int, one: str, more: str = "") -> str:
 
 
 def people_text(count: int) -> str:
-    """Write a number of people."""
     return many(count, "person", "people")
 
 
@@ -36,7 +35,6 @@ def fixed(value: float, digits: int = 2) -> str:
 
 
 def percent(share: float, digits: int = 2) -> str:
-    """Write a share in percent."""
     return f"{fixed(100 * share, digits)}{NBSP}%"
 
 
@@ -55,7 +53,6 @@ def exact_p(p: float) -> str:
 
 
 def short_p(p: float | None) -> str:
-    """Write a p for a table."""
     return "–" if p is None or math.isnan(p) else exact_p(p).removeprefix("p = ").removeprefix("p ")
 
 
@@ -99,7 +96,6 @@ def distance_text(one: DPrime) -> str:
 
 
 def rule_text(one: DPrime) -> str:
-    """Name the rule of a d'."""
     return {
         "2ac, profile likelihood": "2-AC, answers counted as independent",
         "2ac, mixed model, Wald": "2-AC, people counted as people",
@@ -113,7 +109,6 @@ def rule_text(one: DPrime) -> str:
 
 
 def button_name(one: ChoiceResult) -> str:
-    """Name the row of a table of choices."""
     return "all buttons" if one.button == ALL_BUTTONS else one.button
 
 

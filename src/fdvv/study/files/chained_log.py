@@ -48,7 +48,6 @@ class LogHead(Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def text(self) -> str:
-        """The text as its file holds it."""
         return json.dumps({"lines": self.lines, "chain": self.chain, "next": self.next}) + "\n"
 
 
@@ -75,7 +74,6 @@ class ChainRead:
 
 
 def head_path(path: Path) -> Path:
-    """Return the path of a log's head file."""
     return path.with_suffix(HEAD_SUFFIX)
 
 

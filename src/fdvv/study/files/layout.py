@@ -44,7 +44,6 @@ class Frozen(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def text(self) -> str:
-        """The text as its file holds it."""
         return pretty(msgspec.to_builtins(self)) + "\n"
 
 
@@ -69,7 +68,6 @@ def fingerprint_of(sha256: str) -> str:
 
 
 def digest(data: bytes | str) -> str:
-    """Return the SHA-256 of a file's content."""
     return hashlib.sha256(data.encode() if isinstance(data, str) else data).hexdigest()
 
 

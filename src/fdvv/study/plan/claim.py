@@ -40,7 +40,6 @@ def usual_claim(answers: Answers) -> Claim | None:
 
 
 def measured_by(claim: Claim, measure: str) -> Claim:
-    """Return the same claim on another measure."""
     return structs.replace(claim, measure=measure)
 
 

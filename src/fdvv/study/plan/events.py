@@ -157,7 +157,6 @@ EVENTS: dict[str, type[Event]] = {kind.word: kind for kind in get_args(Event)}
 
 
 def record_of(event: Event) -> dict[str, Any]:
-    """Return the journal's record of an event: an object with one key."""
     return {event.word: msgspec.to_builtins(event)}
 
 
@@ -171,7 +170,6 @@ def event_of(record: dict[str, Any]) -> Event:
 
 
 def face_of(plan: StudyPlan, trial: StudyTrial) -> TrialFace:
-    """Return what may be seen of a trial."""
     labels = set(trial.labels) | ({"X"} if _names_x(plan, trial.item) else set())
     ordered = tuple(sorted(labels, key=lambda label: (label != "X", label)))
     return TrialFace(trial.number, trial.item, trial.round, ordered, trial.practice)

@@ -51,7 +51,6 @@ def equal_text(plan: StudyPlan, language: str) -> str:
 
 
 def offers_equal(plan: StudyPlan) -> bool:
-    """Return whether "equal" may be answered."""
     return plan.kind == "2ac" or (plan.ties and plan.kind in KINDS_WITH_TIES)
 
 
@@ -66,7 +65,6 @@ def _said(part: str, kind: str, language: str) -> str:
 
 
 def task_text(plan: StudyPlan) -> str:
-    """Return what a trial is."""
     names = [stimulus.name for stimulus in plan.items[0].stimuli]
     rendered = [item.reference is not None for item in plan.items]
     x = "rendered too" if all(rendered) else "rendered for some buttons" if any(rendered) else "a real button"
@@ -80,14 +78,12 @@ def task_text(plan: StudyPlan) -> str:
 
 
 def asked_texts(plan: StudyPlan, language: str) -> tuple[str, ...]:
-    """Return what is asked in a trial, in a language of the study."""
     answers = " / ".join(filter(None, ("A", "B", equal_text(plan, language))))
     asked = [f"{question_text(plan, language)}" + (f" {answers}" if asks_choice(plan) else "")]
     return (*asked, *(rating_text(rating, language) for rating in plan.ratings))
 
 
 def rating_text(rating: Rating, language: str) -> str:
-    """Return how each hidden rendering is rated."""
     words = rating.low.get(language), rating.high.get(language)
     low, high = (
         f"{end} ({word})" if word else f"{end}" for end, word in zip(rating.ends, words, strict=True)
@@ -96,7 +92,6 @@ def rating_text(rating: Rating, language: str) -> str:
 
 
 def question_line(question: Question, language: str) -> str:
-    """Return what a question of a page asks and which answers it takes."""
     if question.choices:
         answers = " / ".join(question.choices[language])
     elif question.low is not None or question.high is not None:
@@ -109,7 +104,6 @@ def question_line(question: Question, language: str) -> str:
 
 
 def stimulus_text(stimulus: Stimulus) -> str:
-    """Return what a stimulus renders."""
     text = f"{stimulus.button}, {stimulus.rendered}"
     if stimulus.force_ratio != 1.0:
         text += f", {stimulus.force_ratio:g} times the force"
@@ -125,7 +119,6 @@ def reference_text(plan: StudyPlan, item: Item) -> str:
 
 
 def exclusion_texts(plan: StudyPlan) -> tuple[str, ...]:
-    """Return what will not count."""
     rules = plan.exclusion
     texts = [f"a trial in which half the presses of a rendering missed by over {rules.error_cN:g} cN, rms"]
     if rules.presses:
@@ -144,7 +137,6 @@ def exclusion_texts(plan: StudyPlan) -> tuple[str, ...]:
 
 
 def claim_text(plan: StudyPlan) -> str:
-    """Return what is tested."""
     claim = plan.claim
     if claim is None:
         rule = plan.staircase
@@ -160,7 +152,6 @@ def claim_text(plan: StudyPlan) -> str:
 
 
 def staircase_texts(plan: StudyPlan) -> Iterator[str]:
-    """Return how a staircase goes."""
     rule = plan.staircase
     if rule:
         steps = ", then ".join(f"{step:g}" for step in rule.steps_ratio)

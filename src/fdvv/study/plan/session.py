@@ -70,7 +70,6 @@ class SessionState:
 
     @property
     def trials_left(self) -> int:
-        """How many trials may still be shown."""
         return sum(self._is_left(trial) for trial in self.started.trials)
 
     def _is_left(self, trial: TrialFace) -> bool:

@@ -144,7 +144,6 @@ class ReconnectableRenderer:
         return SealedTrial(trial.number, trial.ratio, rendered)
 
     def replace(self, renderer: StimulusRenderer) -> None:
-        """Close this renderer and use another."""
         self.drop()
         self._renderer = renderer
 
@@ -180,11 +179,9 @@ class TrialWatch:
         return bool(self._switches)
 
     def begin(self) -> None:
-        """Note that a trial is shown now."""
         self._shown_s, self._switches = self._clock(), []
 
     def gone_to(self, label: str) -> None:
-        """Note that a label is asked for."""
         self._switches.append((self._since_s(), label))
 
     def whole(self, answer: TrialAnswer, evidence: SealedTrial) -> TrialAnswer:

@@ -46,12 +46,10 @@ class RecordingRenderer:
         self.rendered, self.close = renderer.rendered, renderer.close
 
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:
-        """Prepare the stimuli of the labels."""
         self._renderer.prepare(labels)
         self._prepared, self.shown = dict(labels), {}
 
     def show(self, label: str) -> None:
-        """Render a label."""
         self._renderer.show(label)
         self.shown[label] = self._prepared[label]
 
@@ -66,16 +64,13 @@ class NullRenderer:
         self._presses: dict[str, int] = {}
 
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:
-        """Prepare the stimuli of the labels."""
         self._names = {label: stimulus.name for label, stimulus in labels.items()}
         self._presses = dict.fromkeys(self._names, 0)
 
     def show(self, label: str) -> None:
-        """Count one press."""
         self._presses[label] += 1
 
     def rendered(self) -> tuple[Rendered, ...]:
-        """Return the presses, without any force."""
         return tuple(
             Rendered(label, name, self._presses[label], (None,) * self._presses[label])
             for label, name in sorted(self._names.items())
@@ -116,12 +111,10 @@ class SimulatedParticipant:
         return tuple(found)
 
     def takes_s(self) -> float:
-        """Return how long it takes for a trial."""
         spread = self._settings.trial_spread_ratio * float(self._random.standard_normal())
         return self._settings.trial_s * float(np.exp(spread))
 
     def answer(self, item_name: str) -> TrialAnswer:
-        """Answer the trial whose labels were shown."""
         item = next(item for item in self._plan.items if item.name == item_name)
         places = self._ranked(item)
         first, second = places[0], places[1]
@@ -180,7 +173,6 @@ class SimulatedParticipant:
 
 @lru_cache(maxsize=4096)
 def difference_of(first: Stimulus, second: Stimulus, folder: Path, senses: Senses) -> PerceivedDifference:
-    """Return how far two stimuli of a study are apart."""
     return perceived_difference(_features(first, folder, senses), _features(second, folder, senses), senses)
 
 

@@ -92,11 +92,9 @@ class SimulatedPeople:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The shape that all of them have."""
         return self.sharpness.shape
 
     def felt_JND(self, difference: PerceivedDifference) -> FloatArray:
-        """Return how large a difference is for each of them."""
         force = self.sharpness**2 * (difference.force_JND**2 + difference.speed_JND**2)
         return np.asarray(np.sqrt(force + self._vibration_squared(difference)))
 

@@ -27,11 +27,9 @@ class SimulatedClock:
         self._now_s = begin_s
 
     def __call__(self) -> float:
-        """Return the time in seconds."""
         return self._now_s
 
     def skip(self, by_s: float) -> None:
-        """Let time pass."""
         self._now_s += max(0.0, by_s)
 
 
@@ -101,7 +99,6 @@ def _report_percent(progress: Progress, done: int, total: int, part: float) -> N
 
 
 def finished(study: Study) -> tuple[str, ...]:
-    """Return the names of the people who have finished."""
     return tuple(person.name for person in study.people() if person.state == "finished")
 
 

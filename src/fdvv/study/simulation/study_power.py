@@ -111,7 +111,6 @@ class StudyPower:
     given_JND: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """Return it for JSON."""
         return {
             "simulated": True,
             "study": self.plan.name,

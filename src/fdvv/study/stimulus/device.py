@@ -76,7 +76,6 @@ class DeviceRenderer(EvidenceRenderer):
 
     @property
     def simulated(self) -> bool:
-        """Whether the rig is a simulated one."""
         return self.device.info().simulated
 
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:

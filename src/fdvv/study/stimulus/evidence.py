@@ -47,7 +47,6 @@ class RenderingEvidence:
 
     @property
     def presses(self) -> int:
-        """How many presses are over."""
         return len(self._errors)
 
     def take(self, t_s: FloatArray, displacement_mm: FloatArray, force_cN: FloatArray) -> None:
@@ -69,7 +68,6 @@ class RenderingEvidence:
         self._kept = [kept if self._down else kept[:, kept[0] >= kept[0, -1] - LEAD_s]]
 
     def played(self, vibrations: int) -> None:
-        """Count vibrations that were played."""
         self._vibrations += vibrations
 
     def failed(self, fault: Fault | str) -> None:
@@ -87,7 +85,6 @@ class RenderingEvidence:
         self._kept, self._down = [], False
 
     def rendered(self) -> Rendered:
-        """Return the record."""
         return Rendered(
             self._label,
             self._stimulus,
@@ -105,7 +102,6 @@ class RenderingEvidence:
 
 
 def fault_name(fault: Fault | str) -> str:
-    """Return a fault's name as it is recorded and reported."""
     return fault.name.lower() if isinstance(fault, Fault) else fault
 
 

@@ -49,7 +49,6 @@ class SimulatedFingerRenderer(TwinLabels):
         self._presses, self._switch = presses, ConstantTimeSwitch(switch_s, clock, sleep)
 
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:
-        """Prepare the stimulus of each label, and clear the record."""
         self._check()
         self._live = {}
         self._prepare(labels)
@@ -74,7 +73,6 @@ class SimulatedFingerRenderer(TwinLabels):
         return self._live[label]
 
     def close(self) -> None:
-        """Release the twin."""
         self._live = {}
         self.problem = self.problem or "the renderer is closed; open another"
 

@@ -72,7 +72,6 @@ class TrialSounds:
         self._places: Mapping[object, int] = {_sound(one): place for place, one in enumerate(self.signals)}
 
     def place(self, signal: Signal) -> int:
-        """Return the index of a label's signal in the list."""
         return self._places[_sound(signal)]
 
 
@@ -184,21 +183,17 @@ class TwinRenderer(TwinLabels):
         self._lead(lambda press: press.lead(*led), sequence)
 
     def push(self, force_cN: float, sequence: int = 0) -> None:
-        """Set the force that the finger pushes with."""
         self._lead(lambda press: press.push(min(force_cN, PUSH_cN)), sequence)
 
     def lift(self, sequence: int | None = None) -> None:
-        """Lift the finger off."""
         if run := self._run:
             run.ask(LivePress.lift, sequence)
 
     def here(self) -> None:
-        """Note that the page is looked at."""
         if run := self._run:
             run.here()
 
     def pause(self) -> None:
-        """Note that the page is not looked at."""
         if run := self._run:
             run.pause()
 
