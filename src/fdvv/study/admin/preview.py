@@ -13,17 +13,8 @@ import msgspec
 from fdvv.report.report import Section, Table, render_html
 from fdvv.stats.orders import williams_orders
 from fdvv.study.admin.review import StudyReview
+from fdvv.study.plan import plan_words
 from fdvv.study.plan.plan import Item, Page, StudyPlan
-from fdvv.study.plan.plan_words import (
-    asked_texts,
-    claim_text,
-    exclusion_texts,
-    question_line,
-    reference_text,
-    staircase_texts,
-    stimulus_text,
-    task_text,
-)
 from fdvv.study.plan.schedule import item_orders
 
 TRIAL_s = {
@@ -134,13 +125,14 @@ def preview_sections(review: StudyReview) -> tuple[Section, ...]:
     """Return a study in sections of text and tables. For a plan without problems."""
     plan, summary = review.plan, summarise_plan(review.plan)
     notes = (*review.notes, *summary.notes)
+    trial = (plan_words.task_text(plan), *plan_words.staircase_texts(plan))
     return (
         Section("A person", _person(plan, summary), (), (_pages(plan),) if plan.pages else ()),
-        Section("A trial", (task_text(plan), *staircase_texts(plan)), (), (_asked(plan),)),
+        Section("A trial", trial, (), (_asked(plan),)),
         Section("Buttons", (), (), (_items(review),)),
         Section("Orders", _order_texts(plan, summary), (), _orders(plan)),
-        Section("What will not count", tuple(f"– {text}" for text in exclusion_texts(plan))),
-        Section("The claim", (claim_text(plan),)),
+        Section("What will not count", tuple(f"– {text}" for text in plan_words.exclusion_texts(plan))),
+        Section("The claim", (plan_words.claim_text(plan),)),
         *([Section("To think about", tuple(f"– {note}" for note in notes))] if notes else ()),
     )
 
@@ -209,7 +201,7 @@ def _page_rows(plan: StudyPlan, page: Page) -> list[tuple[str, str, str]]:
     text = " ".join(page.text.get(language, "").split())
     lines = [text[:EXCERPT] + "…" if len(text) > EXCERPT else text] if text else []
     lines += ["asks for agreement"] if page.when == "consent" else []
-    lines += [question_line(question, language) for question in page.questions]
+    lines += [plan_words.question_line(question, language) for question in page.questions]
     rows = enumerate(lines or [page.title[language]])
     return [("" if i else page.name, "" if i else page.when, line) for i, line in rows]
 
@@ -217,7 +209,7 @@ def _page_rows(plan: StudyPlan, page: Page) -> list[tuple[str, str, str]]:
 def _asked(plan: StudyPlan) -> Table:
     rows = []
     for language in plan.languages:
-        lines = asked_texts(plan, language)
+        lines = plan_words.asked_texts(plan, language)
         rows += [(language if not i else "", line) for i, line in enumerate(lines)]
     return Table(("language", "asked"), tuple(rows), "What is asked in every trial.")
 
@@ -231,9 +223,9 @@ def _items(review: StudyReview) -> Table:
 
 
 def _item_rows(review: StudyReview, item: Item) -> list[tuple[str, str, str, str]]:
-    x = reference_text(review.plan, item)
+    x = plan_words.reference_text(review.plan, item)
     rows = [("X", x)] if x else []
-    rows += [(stimulus.name, stimulus_text(stimulus)) for stimulus in item.stimuli]
+    rows += [(stimulus.name, plan_words.stimulus_text(stimulus)) for stimulus in item.stimuli]
     apart = review.differences_cN.get(item.name)
     text = "" if apart is None else f"{apart:.1f}"
     return [(item.name if not i else "", *row, text if not i else "") for i, row in enumerate(rows)]

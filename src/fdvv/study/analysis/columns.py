@@ -141,22 +141,27 @@ def is_missing(word: str, asked: ColumnMap) -> bool:
 
 
 @dataclass(frozen=True)
-class CellReader:
-    """Reads cells of a file, and names line and column where it cannot."""
+class Row:
+    """One line of a file, whose cells are read by the place of their column, None where there is none.
+
+    heads : of the columns. cells : of the line.
+    """
 
     path: Path
     heads: Sequence[str]
     asked: ColumnMap
     decimal_comma: bool
+    line: int
+    cells: Sequence[str]
 
-    def wrong(self, line: int, place: int, reason: str, remedy: str) -> InputError:
-        return InputError(self.path, f"line {line}, column {self.heads[place]!r}", reason, remedy)
+    def wrong(self, place: int, reason: str, remedy: str) -> InputError:
+        return InputError(self.path, f"line {self.line}, column {self.heads[place]!r}", reason, remedy)
 
-    def number(self, line: int, row: Sequence[str], place: int | None) -> float:
+    def number(self, place: int | None) -> float:
         """Read a number; nan where there is none."""
-        if place is None or is_missing(row[place], self.asked):
+        if place is None or is_missing(self.cells[place], self.asked):
             return np.nan
-        word = row[place].replace(",", ".") if self.decimal_comma else row[place]
+        word = self.cells[place].replace(",", ".") if self.decimal_comma else self.cells[place]
         if word.lower() in (*YES, *NO):
             return float(word.lower() in YES)
         try:
@@ -165,9 +170,9 @@ class CellReader:
             found = np.inf
         if not np.isfinite(found):
             remedy = "correct it, or name a word for a missing value: --missing WORD"
-            raise self.wrong(line, place, f"{row[place]!r} is not a number", remedy)
+            raise self.wrong(place, f"{self.cells[place]!r} is not a number", remedy)
         return found
 
-    def word(self, row: Sequence[str], place: int | None) -> str:
+    def word(self, place: int | None) -> str:
         """Read a name; "" where there is none."""
-        return "" if place is None else coded(row[place], self.asked)
+        return "" if place is None else coded(self.cells[place], self.asked)

@@ -14,7 +14,7 @@ from fdvv.errors import InputError
 from fdvv.io.files import read_limited
 from fdvv.io.text import decode_lines, sniff_separator
 from fdvv.study.analysis.code_book import ANSWERS_FILE, CODE_BOOK_FILE, CodeBook, read_code_book
-from fdvv.study.analysis.columns import NO, TIMING, YES, CellReader, ColumnMap, Layout, layout_of
+from fdvv.study.analysis.columns import NO, TIMING, YES, ColumnMap, Layout, Row, layout_of
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.trial import EQUAL
 from fdvv.units import FloatArray
@@ -25,6 +25,9 @@ ONE_ITEM = "all"
 """Name of the button where there is no column of items."""
 UNSEALED = "unsealed"
 """Folder below a study's where unsealing puts answers."""
+
+TrialKey = tuple[str, str, int, int]
+"""Person, item, round and, of a staircase, whose rounds have many trials, the line."""
 
 
 @dataclass
@@ -68,16 +71,16 @@ def _read(
     rows = _filled(path, reader)
     _, heads = next(rows)
     layout = layout_of(heads, asked, book, path)
-    cells = CellReader(path, heads, asked, decimal_comma)
-    trials: dict[tuple[str, str, int, int], _Trial] = {}
+    trials: dict[TrialKey, _Trial] = {}
     rounds: dict[tuple[str, ...], int] = {}
     simulated = asked.simulated
-    for line, row in rows:
-        if len(row) != len(heads):
-            reason = f"{len(row)} cells under {len(heads)} headings"
+    for line, cells in rows:
+        if len(cells) != len(heads):
+            reason = f"{len(cells)} cells under {len(heads)} headings"
             raise InputError(path, f"line {line}", reason, "check separators and quotes")
-        _take(cells, layout, line, row, trials, rounds)
-        simulated |= cells.number(line, row, layout.roles.get("simulated")) == 1.0
+        row = Row(path, heads, asked, decimal_comma, line, cells)
+        _take(row, layout, trials, rounds)
+        simulated |= row.number(layout.roles.get("simulated")) == 1.0
     if not trials:
         raise InputError(path, "whole file", "it holds headings and no answer", REMEDY)
     found = list(trials.values())
@@ -95,50 +98,41 @@ def _filled(path: Path, reader: Iterator[list[str]]) -> Iterator[tuple[int, list
 
 
 def _take(
-    cells: CellReader,
-    layout: Layout,
-    line: int,
-    row: list[str],
-    trials: dict[tuple[str, str, int, int], _Trial],
-    rounds: dict[tuple[str, ...], int],
+    row: Row, layout: Layout, trials: dict[TrialKey, _Trial], rounds: dict[tuple[str, ...], int]
 ) -> None:
     roles = layout.roles
-    person = row[roles["person"]]
+    person = row.cells[roles["person"]]
     if not person:
-        raise cells.wrong(line, roles["person"], "nobody is named", "fill it in, or delete the line")
-    item = row[roles["item"]] if "item" in roles else ONE_ITEM
-    stimulus = cells.word(row, roles.get("stimulus"))
+        raise row.wrong(roles["person"], "nobody is named", "fill it in, or delete the line")
+    item = row.cells[roles["item"]] if "item" in roles else ONE_ITEM
+    stimulus = row.word(roles.get("stimulus"))
     seen = rounds[person, item, stimulus] = rounds.get((person, item, stimulus), -1) + 1
-    number = cells.number(line, row, roles.get("round"))
+    number = row.number(roles.get("round"))
     # a round of a staircase has many trials, as many as it takes
-    step = not np.isnan(cells.number(line, row, roles.get("ratio")))
-    key = (person, item, seen if np.isnan(number) else int(number), line if step else 0)
+    step = not np.isnan(row.number(roles.get("ratio")))
+    key = (person, item, seen if np.isnan(number) else int(number), row.line if step else 0)
     if key in trials and not layout.long:
         reason = f"{person} has a second row of {item}, round {key[2]}"
-        raise InputError(cells.path, f"line {line}", reason, "give every trial of a person its own round")
+        raise InputError(row.path, f"line {row.line}", reason, "give every trial of a person its own round")
     trial = trials.setdefault(key, _Trial(*key[:3]))
-    _fill(cells, layout, line, row, trial, stimulus)
+    _fill(row, layout, trial, stimulus)
 
 
-def _fill(
-    cells: CellReader, layout: Layout, line: int, row: list[str], trial: _Trial, stimulus: str
-) -> None:  # fmt: skip
+def _fill(row: Row, layout: Layout, trial: _Trial, stimulus: str) -> None:
     roles = layout.roles
-    trial.choice = cells.word(row, roles.get("choice")) or trial.choice
+    trial.choice = row.word(roles.get("choice")) or trial.choice
     for name in ("correct", "ratio", "time_s"):
         if name in roles:
-            setattr(trial, name, cells.number(line, row, roles[name]))
+            setattr(trial, name, row.number(roles[name]))
     if "correct" in roles and trial.correct not in (0.0, 1.0) and not np.isnan(trial.correct):
-        raise cells.wrong(line, roles["correct"], f"{trial.correct:g} is neither 1 nor 0", "code it so")
-    trial.excluded = _reason(row[roles["excluded"]]) if "excluded" in roles else trial.excluded
+        raise row.wrong(roles["correct"], f"{trial.correct:g} is neither 1 nor 0", "code it so")
+    trial.excluded = _reason(row.cells[roles["excluded"]]) if "excluded" in roles else trial.excluded
     for rating, places in layout.ratings.items():
         for named, place in places.items():
             key = (rating, named or stimulus)
             if key in trial.ratings:
-                raise cells.wrong(
-                    line, place, f"{key[1]} is rated twice in one trial", "tell the rounds apart"
-                )
-            trial.ratings[key] = cells.number(line, row, place)
+                raise row.wrong(place, f"{key[1]} is rated twice in one trial", "tell the rounds apart")
+            trial.ratings[key] = row.number(place)
 
 
 def _reason(word: str) -> str:

@@ -26,40 +26,42 @@ PREFERENCE_TASTE_ratio = 1.0
 """Of liking: people's tastes differ as much as they agree. Assumed."""
 
 
-def perceived_distances(
-    people: SimulatedPeople, distances_JND: FloatArray, random: np.random.Generator
+def _seeming(
+    kind: StudyKind,
+    people: SimulatedPeople,
+    between_JND: FloatArray,
+    to_reference_JND: FloatArray,
+    random: np.random.Generator,
 ) -> FloatArray:
-    """Return how far from the reference each stimulus seems, (people..., trials..., stimuli).
+    """Return how strong, or how close to the reference, each stimulus seems, (people..., trials..., stimuli).
 
-    distances_JND : the same shape, as they are. The reference is felt once in a trial, with its own noise;
-    all differences are taken to lie on one axis (the differencing rule, Macmillan and Creelman 2005).
+    The reference is felt once in a trial, with its own noise; all differences are taken to lie on one axis
+    (the differencing rule, Macmillan and Creelman 2005). A person's taste leans to the first stimulus by a
+    part of how far the first two are apart.
     """
     noise = people.settings.noise_JND
-    own = random.standard_normal(distances_JND.shape)
-    reference = random.standard_normal((*distances_JND.shape[:-1], 1))
-    return np.asarray(np.abs(distances_JND + noise * (own - reference)))
+    if kind in NO_REFERENCE:
+        both = np.stack([between_JND, np.zeros_like(between_JND)], axis=-1)
+        seeming = both + noise * random.standard_normal(both.shape)
+    else:
+        own = random.standard_normal(to_reference_JND.shape)
+        reference = random.standard_normal((*to_reference_JND.shape[:-1], 1))
+        seeming = -np.abs(to_reference_JND + noise * (own - reference))
+    # in the other kinds something is right, and what X is, or hides, does not hang on taste
+    tastes_ratio = {"realism": people.settings.taste_ratio, "preference": PREFERENCE_TASTE_ratio}
+    apart_JND = np.abs(between_JND)
+    seeming[..., 0] += tastes_ratio.get(kind, 0.0) * _over(people.taste, apart_JND) * apart_JND
+    return np.asarray(seeming)
 
 
-def leant(
-    people: SimulatedPeople, strengths_JND: FloatArray, between_JND: FloatArray, taste_ratio: float
-) -> FloatArray:
-    """Add to the first stimulus what a person's taste leans to it: a part of how far the first two are apart.
-
-    between_JND : the shape of the strengths without stimuli.
-    """
-    moved = strengths_JND.copy()
-    moved[..., 0] += taste_ratio * _over(people.taste, between_JND) * between_JND
-    return moved
-
-
-def choices(
-    people: SimulatedPeople, strengths_JND: FloatArray, ties: bool, random: np.random.Generator
+def _choices(
+    people: SimulatedPeople, seeming_JND: FloatArray, ties: bool, random: np.random.Generator
 ) -> np.ndarray:
     """Choose the stronger of two, by place, or EQUAL_INDEX; (people..., trials...).
 
     A lapse is answered by chance, among all answers that are offered.
     """
-    apart = strengths_JND[..., 0] - strengths_JND[..., 1]
+    apart = seeming_JND[..., 0] - seeming_JND[..., 1]
     chosen = np.where(apart > 0, 0, 1)
     if ties:
         chosen = np.where(np.abs(apart) < _over(people.criterion_JND, apart), EQUAL_INDEX, chosen)
@@ -68,32 +70,29 @@ def choices(
     return np.asarray(np.where(lapsed, blind, chosen))
 
 
-def ratings_of_distances(
-    people: SimulatedPeople, perceived_JND: FloatArray, points: int, random: np.random.Generator
+def _ratings(
+    kind: StudyKind,
+    people: SimulatedPeople,
+    seeming_JND: FloatArray,
+    points: int,
+    random: np.random.Generator,
 ) -> FloatArray:
-    """Rate how close each stimulus seems, on a scale of so many points."""
-    quality = np.exp(-np.clip(perceived_JND, 0.0, None) / people.settings.rating_drop_JND)
-    return on_scale(people, quality, points, random)
+    """Rate how strong, or how close to the reference, each stimulus seems, on a scale of so many points."""
+    drop_JND = people.settings.rating_drop_JND
+    if kind in NO_REFERENCE:
+        # the middle of the scale for strength 0
+        return _on_scale(people, 0.5 + 0.5 * np.tanh(seeming_JND / drop_JND), points, random)
+    apart = -seeming_JND
+    if kind == "mushra":
+        apart = apart - apart.min(axis=-1, keepdims=True)
+    rated = _on_scale(people, np.exp(-np.clip(apart, 0.0, None) / drop_JND), points, random)
+    if kind != "mushra":
+        return rated
+    # one of them is the reference, so what seems closest is given the top
+    return np.where(apart == 0.0, float(points if points != SLIDER else SLIDER - 1), rated)
 
 
-def ratings_with_top(
-    people: SimulatedPeople, perceived_JND: FloatArray, points: int, random: np.random.Generator
-) -> FloatArray:
-    """Rate as MUSHRA has it: one of them is the reference, so what seems closest is given the top."""
-    beyond = perceived_JND - perceived_JND.min(axis=-1, keepdims=True)
-    rated = ratings_of_distances(people, beyond, points, random)
-    return np.where(beyond == 0.0, float(points if points != SLIDER else SLIDER - 1), rated)
-
-
-def ratings_of_strengths(
-    people: SimulatedPeople, perceived_JND: FloatArray, points: int, random: np.random.Generator
-) -> FloatArray:
-    """Rate how strong each stimulus seems: the middle of the scale for strength 0."""
-    quality = 0.5 + 0.5 * np.tanh(perceived_JND / people.settings.rating_drop_JND)
-    return on_scale(people, quality, points, random)
-
-
-def on_scale(
+def _on_scale(
     people: SimulatedPeople, quality: FloatArray, points: int, random: np.random.Generator
 ) -> FloatArray:
     """Put 0 to 1 on a scale: 1 to points, or a slider of 0 to 100 where there are 101."""
@@ -142,37 +141,10 @@ def proxy_trials(
     points : of each rating scale. hidden : abx: the place of what X is, (people..., trials...).
     """
     right = np.zeros(between_JND.shape, dtype=np.int64) if hidden is None else hidden
-    if kind in NO_REFERENCE:
-        seeming = _strengths(kind, people, between_JND, random)
-        ratings = tuple(ratings_of_strengths(people, seeming, one, random) for one in points)
-    else:
-        if kind == "abx":
-            places = np.arange(to_reference_JND.shape[-1])
-            to_reference_JND = np.abs(between_JND)[..., None] * (places != right[..., None])
-        seeming = _closeness(kind, people, between_JND, to_reference_JND, random)
-        rate = ratings_with_top if kind == "mushra" else ratings_of_distances
-        ratings = tuple(rate(people, -seeming, one, random) for one in points)
-    chosen = choices(people, seeming, ties and kind not in FORCED, random)
+    if kind == "abx":
+        places = np.arange(to_reference_JND.shape[-1])
+        to_reference_JND = np.abs(between_JND)[..., None] * (places != right[..., None])
+    seeming = _seeming(kind, people, between_JND, to_reference_JND, random)
+    ratings = tuple(_ratings(kind, people, seeming, one, random) for one in points)
+    chosen = _choices(people, seeming, ties and kind not in FORCED, random)
     return ProxyTrials(chosen, chosen == right, ratings)
-
-
-def _strengths(
-    kind: StudyKind, people: SimulatedPeople, between_JND: FloatArray, random: np.random.Generator
-) -> FloatArray:
-    both = np.stack([between_JND, np.zeros_like(between_JND)], axis=-1)
-    seeming = both + people.settings.noise_JND * random.standard_normal(both.shape)
-    taste_ratio = PREFERENCE_TASTE_ratio if kind == "preference" else 0.0
-    return leant(people, seeming, np.abs(between_JND), taste_ratio)
-
-
-def _closeness(
-    kind: StudyKind,
-    people: SimulatedPeople,
-    between_JND: FloatArray,
-    to_reference_JND: FloatArray,
-    random: np.random.Generator,
-) -> FloatArray:
-    seeming = -perceived_distances(people, to_reference_JND, random)
-    # what X is, or hides, does not hang on taste
-    taste_ratio = people.settings.taste_ratio if kind == "realism" else 0.0
-    return leant(people, seeming, np.abs(between_JND), taste_ratio)

@@ -13,15 +13,9 @@ from fdvv.study.plan.plan import Item, Page, Question, Stimulus, StudyPlan
 from fdvv.study.plan.trial import EQUAL, Rendered, TrialAnswer
 from fdvv.study.simulation.judgement import proxy_trials
 from fdvv.study.simulation.people import ProxySettings, draw_people
-from fdvv.study.simulation.perception import (
-    HapticFeatures,
-    PerceivedDifference,
-    Senses,
-    haptic_features,
-    perceived_difference,
-)
-from fdvv.study.simulation.study_power import reference_of
-from fdvv.study.stimulus.renderer import StimulusRenderer, stimulus_model
+from fdvv.study.simulation.perception import PerceivedDifference, Senses, perceived_difference
+from fdvv.study.simulation.study_power import reference_of, stimulus_features
+from fdvv.study.stimulus.renderer import StimulusRenderer
 
 SAID = "simulated participant"
 """Answer to questions that ask for free text."""
@@ -105,10 +99,10 @@ class SimulatedParticipant:
 
     def order(self, labels: tuple[str, ...]) -> tuple[str, ...]:
         """Return in which order it goes to a trial's labels: X first, each once, then some again."""
-        found = list(labels)
+        found = labels
         while self._random.uniform() < AGAIN_ratio:
-            found.append(labels[int(self._random.integers(len(labels)))])
-        return tuple(found)
+            found += (labels[int(self._random.integers(len(labels)))],)
+        return found
 
     def takes_s(self) -> float:
         spread = self._settings.trial_spread_ratio * float(self._random.standard_normal())
@@ -150,10 +144,8 @@ class SimulatedParticipant:
             return choices[int(self._random.integers(len(choices)))]
         if question.low is None and question.high is None:
             return SAID
-        low = question.low if question.low is not None else question.high
-        high = question.high if question.high is not None else question.low
-        assert low is not None
-        assert high is not None
+        ends = [end for end in (question.low, question.high) if end is not None]
+        low, high = ends[0], ends[-1]
         return float(np.clip(np.rint(self._random.uniform(low, high)), low, high))
 
     def _ranked(self, item: Item) -> list[str]:
@@ -176,6 +168,5 @@ def difference_of(first: Stimulus, second: Stimulus, folder: Path, senses: Sense
     return perceived_difference(_features(first, folder, senses), _features(second, folder, senses), senses)
 
 
-@lru_cache(maxsize=1024)
-def _features(stimulus: Stimulus, folder: Path, senses: Senses) -> HapticFeatures:
-    return haptic_features(stimulus_model(stimulus, folder), senses)
+# the files of a frozen study do not change
+_features = lru_cache(maxsize=1024)(stimulus_features)

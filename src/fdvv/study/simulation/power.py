@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -68,7 +69,7 @@ class PowerDesign:
     def of_size(self, difference_JND: float) -> PowerDesign:
         """Return the same design with one difference for all items."""
         effects = tuple(ItemEffect.of_size(one.item, difference_JND) for one in self.effects)
-        return PowerDesign(self.kind, effects, self.rounds, self.ties, self.alpha, self.points)
+        return replace(self, effects=effects)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,9 +127,9 @@ def _answered(design: PowerDesign, people: SimulatedPeople, random: np.random.Ge
 
 
 def _scored(design: PowerDesign, trials: ProxyTrials) -> FloatArray:
-    if design.points is not None:
-        return np.asarray((trials.ratings[0][..., 0] - trials.ratings[0][..., 1]).mean(axis=(1, 2)))
-    return np.asarray(_spoken(trials).mean(axis=(1, 2)))
+    if design.points is None:
+        return np.asarray(_spoken(trials).mean(axis=(1, 2)))
+    return np.asarray((trials.ratings[0][..., 0] - trials.ratings[0][..., 1]).mean(axis=(1, 2)))
 
 
 def _spoken(trials: ProxyTrials) -> FloatArray:
@@ -212,10 +213,7 @@ def power_table(
         raise ModelError("power needs at least 2 people and 4 simulated studies")
 
     def simulated(of: PowerDesign, stream: int, repeats: int, label: str) -> SimulatedScores:
-        def report(done: int, total: int) -> None:
-            progress(label, done, total)
-
-        return simulate_scores(of, counts[-1], repeats, seed, stream, settings, report)
+        return simulate_scores(of, counts[-1], repeats, seed, stream, settings, partial(progress, label))
 
     felt = simulated(design, 0, studies, "people who feel what the proxy says")
     nothing = simulated(design.of_size(0.0), 1, studies, "people who feel no difference")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 from fdvv.errors import InputError, ModelError
 from fdvv.study.admin.study import Study
@@ -89,13 +88,12 @@ def simulate_study(
         number = len(study.people())
         renderer = SimulatedFingerRenderer(study.folder, seed=seed + number) if pressed else NullRenderer()
         simulated = SimulatedParticipant(study.plan, study.folder, renderer, number, seed, settings)
-        report = partial(_report_percent, progress, done, total)
+
+        def report(part: float, done: int = done) -> None:
+            progress(round(100 * (done + part)), 100 * total)
+
         sessions.append(_session(study, simulated, report))
     return SimulatedStudy(tuple(sessions), finished(study), pressed)
-
-
-def _report_percent(progress: Progress, done: int, total: int, part: float) -> None:
-    progress(round(100 * (done + part)), 100 * total)
 
 
 def finished(study: Study) -> tuple[str, ...]:

@@ -65,7 +65,8 @@ def claim_of(plan: StudyPlan) -> Claim:
 def _effect(plan: StudyPlan, item: Item, claim: Claim, folder: Path, senses: Senses) -> ItemEffect:
     more, less = (_named(plan, item, name) for name in (claim.more, claim.less))
     reference = reference_of(plan, item, more)
-    of_more, of_less, of_reference = (_features(one, folder, senses) for one in (more, less, reference))
+    compared = (more, less, reference)
+    of_more, of_less, of_reference = (stimulus_features(one, folder, senses) for one in compared)
     return ItemEffect(
         item.name,
         perceived_difference(of_more, of_less, senses),
@@ -74,7 +75,7 @@ def _effect(plan: StudyPlan, item: Item, claim: Claim, folder: Path, senses: Sen
     )
 
 
-def _features(stimulus: Stimulus, folder: Path, senses: Senses) -> HapticFeatures:
+def stimulus_features(stimulus: Stimulus, folder: Path, senses: Senses) -> HapticFeatures:
     return haptic_features(stimulus_model(stimulus, folder), senses)
 
 

@@ -75,30 +75,6 @@ class TrialSounds:
         return self._places[_sound(signal)]
 
 
-def person_frame(
-    label: str, seen: LiveFrame, of: PreparedStimulus, sounds: TrialSounds, opened_s: float
-) -> PersonFrame:
-    """Return what a participant may see and hear of a live frame."""
-    columns, later_s = seen.columns, seen.zero_s - opened_s
-    rows = np.diff(np.floor(columns.t_s / ROW_s + 1e-6), prepend=-1.0) > 0
-    rows[-1:] = True
-    clicks = tuple(
-        PersonClick(e.t_s + later_s, sounds.place(of.subject.signals[e.number]), e.velocity_mm_s)
-        for e in seen.events
-        if e.kind is LiveEventKind.VIBRATION and of.audible
-    )
-    return PersonFrame(
-        label,
-        columns.t_s[rows] + later_s,
-        columns.displacement_mm[rows],
-        int(columns.key[-1]) if columns.key.size else 0,
-        clicks,
-        sum(e.kind is LiveEventKind.PRESSED for e in seen.events),
-        seen.sequence,
-        seen.dropped_s,
-    )
-
-
 def _sound(signal: Signal) -> tuple[float, tuple[object, ...]]:
     return signal.duration_s, signal.modes
 
@@ -224,7 +200,28 @@ class TwinRenderer(TwinLabels):
         if line:
             self._tell(line)
         elif self._label == label and seen.columns.t_s.size:
-            self._show(person_frame(label, seen, self._prepared[label], self._sounds, self._opened_s))
+            self._show(self._frame(label, seen))
+
+    def _frame(self, label: str, seen: LiveFrame) -> PersonFrame:
+        """Return what a participant may see and hear of a live frame."""
+        of, columns, later_s = self._prepared[label], seen.columns, seen.zero_s - self._opened_s
+        rows = np.diff(np.floor(columns.t_s / ROW_s + 1e-6), prepend=-1.0) > 0
+        rows[-1:] = True
+        clicks = tuple(
+            PersonClick(e.t_s + later_s, self._sounds.place(of.subject.signals[e.number]), e.velocity_mm_s)
+            for e in seen.events
+            if e.kind is LiveEventKind.VIBRATION and of.audible
+        )
+        return PersonFrame(
+            label,
+            columns.t_s[rows] + later_s,
+            columns.displacement_mm[rows],
+            int(columns.key[-1]) if columns.key.size else 0,
+            clicks,
+            sum(e.kind is LiveEventKind.PRESSED for e in seen.events),
+            seen.sequence,
+            seen.dropped_s,
+        )
 
     def _end(self, label: str, line: str) -> None:
         with self._lock:
