@@ -12,13 +12,7 @@ from fdvv.errors import ModelError
 from fdvv.report import style
 from fdvv.report.prose import stars
 from fdvv.report.score_figures import ScoreBars, plot_score_bars
-from fdvv.study.analysis.answer_figures import (
-    PALE,
-    ForestRow,
-    plot_forest,
-    plot_rating_bars,
-    say_proxy,
-)
+from fdvv.study.analysis.answer_figures import PALE, ForestRow, plot_forest, plot_rating_bars, say_proxy
 from fdvv.study.analysis.multiverse import Multiverse
 from fdvv.study.analysis.ratings import people_means
 from fdvv.study.analysis.records import StudyAnalysis, ThresholdResult, TimingResult
