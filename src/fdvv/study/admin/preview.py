@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from typing import Any
@@ -14,7 +14,7 @@ from fdvv.report.report import Section, Table, render_html
 from fdvv.stats.orders import williams_orders
 from fdvv.study.admin.review import StudyReview
 from fdvv.study.plan import plan_words
-from fdvv.study.plan.plan import Item, Page, StudyPlan
+from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.schedule import item_orders
 
 TRIAL_s = {
@@ -192,43 +192,41 @@ def _break_text(plan: StudyPlan, summary: PlanSummary) -> str:
 
 
 def _pages(plan: StudyPlan) -> Table:
-    rows = [row for page in plan.pages for row in _page_rows(plan, page)]
+    language, rows = plan.languages[0], list[tuple[str, ...]]()
+    for page in plan.pages:
+        text = " ".join(page.text.get(language, "").split())
+        lines = [text[:EXCERPT] + "…" if len(text) > EXCERPT else text] if text else []
+        lines += ["asks for agreement"] if page.when == "consent" else []
+        lines += [plan_words.question_line(question, language) for question in page.questions]
+        rows += _named([page.name, page.when], [[line] for line in lines or [page.title[language]]])
     return Table(("page", "when", "what is on it"), tuple(rows), "Pages outside the trials.")
 
 
-def _page_rows(plan: StudyPlan, page: Page) -> list[tuple[str, str, str]]:
-    language = plan.languages[0]
-    text = " ".join(page.text.get(language, "").split())
-    lines = [text[:EXCERPT] + "…" if len(text) > EXCERPT else text] if text else []
-    lines += ["asks for agreement"] if page.when == "consent" else []
-    lines += [plan_words.question_line(question, language) for question in page.questions]
-    rows = enumerate(lines or [page.title[language]])
-    return [("" if i else page.name, "" if i else page.when, line) for i, line in rows]
+def _named(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[tuple[str, ...]]:
+    """Put names before the first of some rows, and blanks before the others."""
+    return [(*(names if i == 0 else [""] * len(names)), *row) for i, row in enumerate(rows)]
 
 
 def _asked(plan: StudyPlan) -> Table:
-    rows = []
+    rows = list[tuple[str, ...]]()
     for language in plan.languages:
-        lines = plan_words.asked_texts(plan, language)
-        rows += [(language if not i else "", line) for i, line in enumerate(lines)]
+        rows += _named([language], [[line] for line in plan_words.asked_texts(plan, language)])
     return Table(("language", "asked"), tuple(rows), "What is asked in every trial.")
 
 
 def _items(review: StudyReview) -> Table:
-    rows = [row for item in review.plan.items for row in _item_rows(review, item)]
+    rows = list[tuple[str, ...]]()
+    for item in review.plan.items:
+        x = plan_words.reference_text(review.plan, item)
+        what = [["X", x]] if x else []
+        what += [[stimulus.name, plan_words.stimulus_text(stimulus)] for stimulus in item.stimuli]
+        rows += _named([item.name], what)
     if not review.differences_cN:
-        return Table(("button", "what", "rendered"), tuple(row[:3] for row in rows), MEANT)
+        return Table(("button", "what", "rendered"), tuple(rows), MEANT)
+    apart = {name: f"{value:.1f}" for name, value in review.differences_cN.items()}
     caption = f"{MEANT} Apart: rms difference of force of the two nearest, both strokes at 50 to 200 mm/s."
-    return Table(("button", "what", "rendered", "apart (cN)"), tuple(rows), caption)
-
-
-def _item_rows(review: StudyReview, item: Item) -> list[tuple[str, str, str, str]]:
-    x = plan_words.reference_text(review.plan, item)
-    rows = [("X", x)] if x else []
-    rows += [(stimulus.name, plan_words.stimulus_text(stimulus)) for stimulus in item.stimuli]
-    apart = review.differences_cN.get(item.name)
-    text = "" if apart is None else f"{apart:.1f}"
-    return [(item.name if not i else "", *row, text if not i else "") for i, row in enumerate(rows)]
+    columns = ("button", "what", "rendered", "apart (cN)")
+    return Table(columns, tuple((*row, apart.get(row[0], "")) for row in rows), caption)
 
 
 def _order_texts(plan: StudyPlan, summary: PlanSummary) -> tuple[str, ...]:

@@ -49,7 +49,11 @@ def _result(
     halves = means_by(found, person)
     tested = halves[np.isfinite(halves)]
     several = tested.size > 1
-    people_share = _people_share(found, person) if several else None
+    # less, equal and more of every person, (people, 3)
+    _, places = np.unique(person, return_inverse=True)
+    counts: FloatArray = np.stack([np.bincount(places, found == one) for one in (-1.0, 0.0, 1.0)], axis=1)
+    given = counts[counts.any(axis=1)]
+    people_share = clustered_share(given[:, 2], given.sum(axis=1).astype(int)) if several else None
     test: SignedRank | None = signed_rank(tested / 2) if several else None
     return ChoiceResult(
         button=button,
@@ -66,20 +70,8 @@ def _result(
         test=test,
         sign=sign_test(tested),
         p_holm=None,
-        d=_distances(answers.kind, right, _people_counts(found, person), people_share),
+        d=_distances(answers.kind, right, counts, people_share),
     )
-
-
-def _people_share(values: FloatArray, person: np.ndarray) -> Share:
-    there = np.isfinite(values)
-    _, places = np.unique(person[there], return_inverse=True)
-    return clustered_share(np.bincount(places, values[there] == 1.0), np.bincount(places))
-
-
-def _people_counts(values: FloatArray, person: np.ndarray) -> FloatArray:
-    """Count less, equal and more of every person, (people, 3)."""
-    _, places = np.unique(person, return_inverse=True)
-    return np.column_stack([np.bincount(places, values == one) for one in (-1.0, 0.0, 1.0)])
 
 
 def _distances(kind: str, right: bool, counts: FloatArray, people: Share | None) -> tuple[DPrime, ...]:

@@ -102,15 +102,13 @@ def _percent(value: float | None) -> float:
 
 
 def draw_timing(found: TimingResult, simulated: bool) -> Any:
+    several = len(found.scores) > 1
+    sd = found.scores.std(axis=0, ddof=1) if several else np.zeros(found.scores.shape[1:])
     panels = [
-        ScoreBars(level, found.buttons, found.scores[:, :, i], _sd(found.scores[:, :, i]))
+        ScoreBars(level, found.buttons, found.scores[:, :, i], sd[:, i])
         for i, level in enumerate(found.levels)
     ]
     return plot_score_bars(panels, found.measure_text, simulated=simulated)
-
-
-def _sd(scores: FloatArray) -> FloatArray:
-    return scores.std(axis=0, ddof=1) if len(scores) > 1 else np.zeros(scores.shape[1])
 
 
 @style.in_house_style

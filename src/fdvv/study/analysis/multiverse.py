@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import product
+from operator import attrgetter
 
 import numpy as np
 
@@ -90,12 +91,9 @@ def multiverse(answers: Answers, claim: Claim) -> Multiverse:
             for unit, ties in product((PERSON, CELL, TRIAL), (SPLIT, DROPPED)):
                 found += _tested(exclusions, measure, unit, ties, values, keys)
     chosen = (PLANNED, first, PERSON, SPLIT, RANKS)
-    marked = [replace(one, registered=_key(one) == chosen) for one in found]
+    key = attrgetter("exclusions", "measure", "unit", "ties", "test")
+    marked = [replace(one, registered=key(one) == chosen) for one in found]
     return Multiverse(tuple(sorted(marked, key=lambda one: one.share)), claim.alpha)
-
-
-def _key(one: Specification) -> tuple[str, ...]:
-    return one.exclusions, one.measure, one.unit, one.ties, one.test
 
 
 def _exclusions(answers: Answers) -> dict[str, Answers]:

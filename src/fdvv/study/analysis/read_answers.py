@@ -52,8 +52,9 @@ def read_answers(path: Path, columns: ColumnMap | None = None) -> Answers:
     headings are not fdvv's mapped. Raises InputError that names line and column.
     """
     path, asked = _table(Path(path)), columns or ColumnMap()
-    book = _book_beside(path)
-    if book is not None:
+    book, beside = None, path.with_name(CODE_BOOK_FILE)
+    if path.name == ANSWERS_FILE and beside.is_file():
+        book = read_code_book(beside)
         stimuli = asked.stimuli or book.stimuli
         simulated = asked.simulated or book.simulated
         asked = replace(asked, kind=asked.kind or book.kind, stimuli=stimuli, simulated=simulated)
@@ -201,8 +202,3 @@ def _table(path: Path) -> Path:
             return place
     remedy = "unseal the study first: fdvv study unseal, or name a CSV"
     raise InputError(path, "folder", f"it holds no {ANSWERS_FILE}", remedy)
-
-
-def _book_beside(path: Path) -> CodeBook | None:
-    book = path.with_name(CODE_BOOK_FILE)
-    return read_code_book(book) if path.name == ANSWERS_FILE and book.is_file() else None

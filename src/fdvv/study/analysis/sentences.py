@@ -78,7 +78,8 @@ def choice_asides(one: ChoiceResult) -> tuple[str, ...]:
     """Return what depends on how answers and ties are counted."""
     texts = []
     if one.people_share is not None:
-        texts.append(f"Were all answers independent, the interval would be {_bounds(one)}.")
+        bounds = f"{fixed(100 * one.share.low, 1)} to {percent(one.share.high, 1)}"
+        texts.append(f"Were all answers independent, the interval would be {bounds}.")
     if one.dropped is not None:
         texts.append(
             f"With ties split the share is {percent(one.split)}, with ties dropped "
@@ -88,10 +89,6 @@ def choice_asides(one: ChoiceResult) -> tuple[str, ...]:
         counted = f"{people_text(one.sign.plus)} more often for {one.more}, {one.sign.minus} for {one.less}"
         texts.append(f"Person by person: {counted}, {one.sign.zeros} even; {test_text(one.test)}.")
     return tuple(texts)
-
-
-def _bounds(one: ChoiceResult) -> str:
-    return f"{fixed(100 * one.share.low, 1)} to {percent(one.share.high, 1)}"
 
 
 def button_sentence(one: ButtonTest) -> str:

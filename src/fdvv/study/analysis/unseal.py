@@ -42,17 +42,13 @@ def trial_reason(rule: Exclusion, rendered: Sequence[Rendered]) -> str:
     fewest = min(one.presses for one in rendered)
     if fewest < rule.presses:
         return f"a rendering was pressed {fewest} times, fewer than {rule.presses}"
-    worst = max(_typical_cN(one) for one in rendered)
+    known = [[error for error in one.error_cN if error is not None] for one in rendered]
+    worst = max(float(np.median(errors)) if errors else 0.0 for errors in known)
     if worst > rule.error_cN:
         return (
             f"half the presses of a rendering missed its force by {worst:.1f} cN, more than {rule.error_cN:g}"
         )
     return ""
-
-
-def _typical_cN(one: Rendered) -> float:
-    errors = [error for error in one.error_cN if error is not None]
-    return float(np.median(errors)) if errors else 0.0
 
 
 def exclude_people(answers: Answers, labels: Sequence[str], rule: Exclusion) -> Answers:
@@ -218,17 +214,18 @@ def unseal_folder(
     people = [found for person in people_of(log.records) if (found := _person(folder, plan, person, keeper))]
     answers = answers_of(plan, people)
     write_answers(folder / UNSEALED, answers, plan)
-    write_atomic(folder / UNSEALED / RENDERED_FILE, csv_text(RENDERED, _rendered(people)))
-    heads = ("person", "page", "question", "answer")
-    write_atomic(folder / UNSEALED / PAGES_FILE, csv_text(heads, _pages(people)))
+    # labels of a trial that is still to be answered stay sealed
+    trials = [row for one in people for row in (*one.practice, *one.rows) if row.answer]
+    labels = (label for row in trials for label in _labels(row))
+    write_atomic(folder / UNSEALED / RENDERED_FILE, csv_text(RENDERED, labels))
+    pages = (
+        (one.person.name, page, question, "" if value is None else value)
+        for one in people
+        for page, values in one.pages.items()
+        for question, value in values.items()
+    )
+    write_atomic(folder / UNSEALED / PAGES_FILE, csv_text(("person", "page", "question", "answer"), pages))
     return answers
-
-
-def _rendered(people: Sequence[UnsealedPerson]) -> Iterator[Sequence[object]]:
-    for one in people:
-        for row in (*one.practice, *one.rows):
-            # labels of a trial that is still to be answered stay sealed
-            yield from _labels(row) if row.answer else ()
 
 
 def _labels(row: UnsealedTrial) -> Iterator[Sequence[object]]:
@@ -249,10 +246,3 @@ def _labels(row: UnsealedTrial) -> Iterator[Sequence[object]]:
 
 def _numbers(values: Sequence[float | None]) -> str:
     return " ".join("nan" if value is None else f"{value:.3f}" for value in values)
-
-
-def _pages(people: Sequence[UnsealedPerson]) -> Iterator[Sequence[object]]:
-    for one in people:
-        for page, values in one.pages.items():
-            for question, value in values.items():
-                yield one.person.name, page, question, "" if value is None else value

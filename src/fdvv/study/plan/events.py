@@ -170,13 +170,11 @@ def event_of(record: dict[str, Any]) -> Event:
 
 
 def face_of(plan: StudyPlan, trial: StudyTrial) -> TrialFace:
-    labels = set(trial.labels) | ({"X"} if _names_x(plan, trial.item) else set())
+    labels = set(trial.labels)
+    if plan.kind == "mushra" or any(one.name == trial.item and one.reference for one in plan.items):
+        labels.add("X")
     ordered = tuple(sorted(labels, key=lambda label: (label != "X", label)))
     return TrialFace(trial.number, trial.item, trial.round, ordered, trial.practice)
-
-
-def _names_x(plan: StudyPlan, item: str) -> bool:
-    return plan.kind == "mushra" or any(one.name == item and one.reference for one in plan.items)
 
 
 def choices_of(plan: StudyPlan) -> tuple[str, ...]:

@@ -122,7 +122,8 @@ def exclusion_texts(plan: StudyPlan) -> tuple[str, ...]:
     rules = plan.exclusion
     texts = [f"a trial in which half the presses of a rendering missed by over {rules.error_cN:g} cN, rms"]
     if rules.presses:
-        texts.append(f"a trial in which a rendering was pressed less than {_times(rules.presses)}")
+        times = "once" if rules.presses == 1 else f"{rules.presses} times"
+        texts.append(f"a trial in which a rendering was pressed less than {times}")
     if rules.fault:
         texts.append("a trial in which the device fell into a fault")
     texts.append(f"a person who then lacks more than {100 * rules.share_missing:g} % of the trials")
@@ -163,7 +164,3 @@ def staircase_texts(plan: StudyPlan) -> Iterator[str]:
             f"Ends at {rule.reversals} turns or {rule.trials} trials; "
             f"the first {rule.dropped} turns do not count."
         )
-
-
-def _times(count: int) -> str:
-    return "once" if count == 1 else f"{count} times"

@@ -81,13 +81,10 @@ def item_orders(
         random = np.random.default_rng() if random is None else random
         return tuple(tuple(int(i) for i in random.permutation(count)) for _ in range(plan.rounds))
     rows = williams_orders(count)
-    return tuple(rows[i] for i in _rows(len(rows), plan.rounds, person_index))
-
-
-def _rows(count: int, rounds: int, person: int) -> list[int]:
-    repeat = count // math.gcd(rounds, count)
-    begin = person * rounds + person // repeat
-    return [(begin + i) % count for i in range(rounds)]
+    # after so many people the rows would come round in step with the rounds: one more is skipped
+    repeat = len(rows) // math.gcd(plan.rounds, len(rows))
+    begin = person_index * plan.rounds + person_index // repeat
+    return tuple(rows[(begin + i) % len(rows)] for i in range(plan.rounds))
 
 
 def _assignments(plan: StudyPlan, item: Item, random: np.random.Generator) -> list[list[Assignment]]:
@@ -109,22 +106,19 @@ def _permuted(names: Sequence[str], random: np.random.Generator) -> Assignment:
 def _pairs(
     plan: StudyPlan, names: Sequence[str], count: int, random: np.random.Generator
 ) -> list[Assignment]:
-    second = balanced(count, random)
-    if plan.kind != "abx":
-        return [_pair(plan, names, "AB"[side]) for side in second]
-    hidden = balanced(count, random)
-    return [_abx(names, names[x], "AB"[side]) for x, side in zip(hidden, second, strict=True)]
-
-
-def _pair(plan: StudyPlan, names: Sequence[str], label: str) -> Assignment:
+    """Draw pairs: of two stimuli, what A and B hide; in ABX, what X is, and which of A and B is the same."""
     first, second = names
-    labels = {"A": second, "B": first} if label == "A" else {"A": first, "B": second}
-    return labels, label if plan.kind in ("2afc", "2ac", "staircase") else ""
-
-
-def _abx(names: Sequence[str], x: str, right: str) -> Assignment:
-    other = names[1] if x == names[0] else names[0]
-    return {"A": x if right == "A" else other, "B": other if right == "A" else x, "X": x}, right
+    sides = balanced(count, random)  # where the second stimulus, or in ABX what X is, hides
+    right = plan.kind in ("2afc", "2ac", "staircase")
+    if plan.kind != "abx":
+        hides = [{"A": second, "B": first}, {"A": first, "B": second}]
+        return [(hides[side], "AB"[side] if right else "") for side in sides]
+    found: list[Assignment] = []
+    for x, side in zip(balanced(count, random), sides, strict=True):
+        same, other = names[x], names[1 - x]
+        hidden = {"A": other, "B": same} if side else {"A": same, "B": other}
+        found.append(({**hidden, "X": same}, "AB"[side]))
+    return found
 
 
 def balanced(count: int, random: np.random.Generator) -> list[int]:

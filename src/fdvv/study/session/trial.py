@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Sequence
+from itertools import islice
 from typing import TypeVar
 
 import msgspec
@@ -87,17 +88,15 @@ def sealed_bytes(trial: SealedTrial) -> bytes:
 def _short(one: Rendered, presses: int) -> Rendered:
     count = len(one.error_cN)
     even = np.unique(np.linspace(0, count - 1, min(count, presses)).astype(int)).tolist()
+    # other letters than those of ASCII need more bytes than one
+    plain = ("".join(c if c.isascii() and c.isprintable() else "?" for c in text) for text in one.faults)
+    faults = tuple(text[:_FAULT] for text in islice(plain, _FAULTS))
     return msgspec.structs.replace(
         one,
         error_cN=tuple(_number(one.error_cN[i]) for i in even),
         velocity_mm_s=tuple(_number(one.velocity_mm_s[i]) for i in even if i < len(one.velocity_mm_s)),
-        faults=tuple(_plain(fault[:_FAULT]) for fault in one.faults[:_FAULTS]),
+        faults=faults,
     )
-
-
-def _plain(text: str) -> str:
-    # other letters need more bytes than one
-    return "".join(letter if letter.isascii() and letter.isprintable() else "?" for letter in text)
 
 
 def _number(value: float | None) -> float | None:

@@ -114,20 +114,13 @@ def haptic_features(
     """
     senses = senses or Senses()
     place_mm = (np.arange(BINS) + 0.5) / BINS * model.travel_mm
-    rows = [
-        model.force_cN(place_mm[None, :], senses.paces_mm_s[:, None], _served(model, stroke))
-        for stroke in Stroke
-    ]
+    opposite = {Stroke.PRESS: Stroke.RELEASE, Stroke.RELEASE: Stroke.PRESS}
+    served = [stroke if model.of(stroke) else opposite[stroke] for stroke in Stroke]
+    rows = [model.force_cN(place_mm[None, :], senses.paces_mm_s[:, None], stroke) for stroke in served]
     force_cN = force_ratio * np.clip(np.stack(rows), 0.0, None)
-    return HapticFeatures(
-        np.log1p(force_cN / senses.floor_cN) / senses.weber_ratio,
-        np.asarray(
-            [
-                vibration_above_threshold(model.vibration(stroke, senses.pace_mm_s), senses)
-                for stroke in Stroke
-            ]
-        ),
-    )
+    vibrations = [model.vibration(stroke, senses.pace_mm_s) for stroke in Stroke]
+    above = np.asarray([vibration_above_threshold(one, senses) for one in vibrations])
+    return HapticFeatures(np.log1p(force_cN / senses.floor_cN) / senses.weber_ratio, above)
 
 
 def perceived_difference(
@@ -178,11 +171,6 @@ def _lasting_s(decay_1_s: float, duration_s: float) -> float:
     if decay_1_s == 0.0:
         return duration_s
     return -math.expm1(-2 * decay_1_s * duration_s) / (2 * decay_1_s)
-
-
-def _served(model: FDVVModel, stroke: Stroke) -> Stroke:
-    other = Stroke.RELEASE if stroke is Stroke.PRESS else Stroke.PRESS
-    return stroke if model.of(stroke) else other
 
 
 def _pooled(apart: FloatArray, senses: Senses) -> float:

@@ -81,7 +81,9 @@ class DeviceRenderer(EvidenceRenderer):
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:
         """Upload the stimuli of all labels at once, and clear the record; no label is shown."""
         self._check()
-        program = trial_program(labels, self._folder, self._limits_now(), self._exciter)
+        limits = self._limits or Limits(largest_travel_mm=self.device.info().travel_limit_mm)
+        limits = replace(limits, settings=self.device.settings())
+        program = trial_program(labels, self._folder, limits, self._exciter)
         evidence = {
             name: RenderingEvidence(name, labels[name].name, model)
             for name, model in zip(program.labels, program.models, strict=True)
@@ -211,10 +213,6 @@ class DeviceRenderer(EvidenceRenderer):
         with suppress(DeviceError):  # it is gone, and at zero force by itself
             self.device.stop()
         self._failed(line)
-
-    def _limits_now(self) -> Limits:
-        limits = self._limits or Limits(largest_travel_mm=self.device.info().travel_limit_mm)
-        return replace(limits, settings=self.device.settings())
 
 
 def _remote(device: Device) -> RemoteDevice:

@@ -54,9 +54,10 @@ class RenderingEvidence:
         if not t_s.size:
             return
         rows = np.stack([t_s, displacement_mm, force_cN])
-        self._kept.append(_thinned(rows))
+        self._kept.append(rows[:, ::STILL_ROWS] if np.ptp(rows[1]) < STILL_mm else rows)
         if self._down and rows[1].min() > DEEP_mm:
-            self._kept = _halved(self._kept)
+            if sum(piece.shape[1] for piece in self._kept) > MOST_ROWS:
+                self._kept = [np.hstack(self._kept)[:, ::2]]
             return
         kept = np.hstack(self._kept)
         while (found := _next_press(kept)) is not None:
@@ -142,13 +143,3 @@ def judged(model: FDVVModel, rows: FloatArray) -> tuple[float | None, float | No
         off.append(felt.release_cN - intended_press(model, up).release_cN)
     error_cN = float(np.sqrt(np.nanmean(np.stack([one[counts] for one in off]) ** 2)))
     return round(error_cN, 4), speed_mm_s
-
-
-def _halved(kept: list[FloatArray]) -> list[FloatArray]:
-    if sum(rows.shape[1] for rows in kept) <= MOST_ROWS:
-        return kept
-    return [np.hstack(kept)[:, ::2]]
-
-
-def _thinned(rows: FloatArray) -> FloatArray:
-    return rows[:, ::STILL_ROWS] if np.ptp(rows[1]) < STILL_mm else rows

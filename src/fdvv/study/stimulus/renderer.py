@@ -88,13 +88,10 @@ class ConstantTimeSwitch:
             self._wait(began_s, self.switch_s - self._work_s)
             after()
         finally:
-            self._end(began_s)
-
-    def _end(self, began_s: float) -> None:
-        worked_s = self._clock() - began_s
-        late = worked_s > self.switch_s + CLOCK_s
-        whole = math.ceil(worked_s / self.switch_s) if late and self.switch_s else 1
-        self._wait(began_s, whole * self.switch_s)
+            worked_s = self._clock() - began_s
+            late = worked_s > self.switch_s + CLOCK_s
+            whole = math.ceil(worked_s / self.switch_s) if late and self.switch_s else 1
+            self._wait(began_s, whole * self.switch_s)
 
     def _wait(self, began_s: float, until_s: float) -> None:
         self._sleep(max(0.0, began_s + until_s - self._clock()))
@@ -165,9 +162,7 @@ def prepare_stimulus(
     return PreparedStimulus(stimulus.name, model, subject, _audible(subject))
 
 
-@lru_cache(maxsize=256)
-def _ideal(model: FDVVModel) -> PressSubject:
-    return model_subject(model)
+_ideal = lru_cache(maxsize=256)(model_subject)
 
 
 def stimulus_actuation(stimulus: Stimulus, folder: Path, model: FDVVModel) -> CompensationResult:
