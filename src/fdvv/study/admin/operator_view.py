@@ -11,7 +11,7 @@ from fdvv.errors import InputError
 from fdvv.study.files.folder import StudyFolder
 from fdvv.study.files.layout import PEOPLE, SESSION_FILE
 from fdvv.study.files.people import Person, PersonState
-from fdvv.study.plan.session import SessionState, Step, StepKind, next_step
+from fdvv.study.plan.session import StepKind, next_step
 from fdvv.study.session.log import read_session
 
 
@@ -20,13 +20,10 @@ class PersonView(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     Attributes
     ----------
-    person, language, simulated, state : see Person. kind, page, item : of the step that is due; "" where that
-        is unknown: the session has not started, or was deleted. trial : which, from 0; -1: none.
-    left_s : of a break. answered, trials : of those that count; of a staircase trials is the most there can
-        be. progress : see Step.
-    again : trials that had to be shown again. skipped : that were given up, for the device went away in them
-        again and again. interruptions : of the device. resumptions : of the session.
-    open : it was not closed in order since. last_s : when something happened last, seconds since 1970 UTC.
+    person, language, simulated, state : see Person. kind, page : of the step that is due; None and "" where
+        that is unknown: the session has not started, or was deleted.
+    answered, trials : of those that count; of a staircase trials is the most there can be.
+    interruptions : of the device. resumptions : of the session.
     problem : why the journal cannot be read; empty if it can.
     """
 
@@ -36,18 +33,10 @@ class PersonView(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     state: PersonState
     kind: StepKind | None = None
     page: str = ""
-    item: str = ""
-    trial: int = -1
-    left_s: float = 0.0
     answered: int = 0
     trials: int = 0
-    progress: float = 0.0
-    again: int = 0
-    skipped: int = 0
     interruptions: int = 0
     resumptions: int = 0
-    open: bool = False
-    last_s: float = 0.0
     problem: str = ""
 
 
@@ -79,25 +68,16 @@ def _person_view(study: StudyFolder, person: Person, now_s: float) -> PersonView
         state = read_session(study.folder / PEOPLE / person.name / SESSION_FILE, study.plan)
     except (InputError, OSError) as error:
         return structs.replace(about, problem=str(error))
-    return about if state is None else _with_state(about, state, next_step(state, now_s))
-
-
-def _with_state(about: PersonView, state: SessionState, step: Step) -> PersonView:
+    if state is None:
+        return about
+    step = next_step(state, now_s)
     counted = [trial.number for trial in state.started.trials if not trial.practice]
     return structs.replace(
         about,
         kind=step.kind,
         page=step.page,
-        item=step.item,
-        trial=step.number,
-        left_s=step.left_s,
         answered=sum(number in state.answers for number in counted),
         trials=len(counted),
-        progress=step.progress,
-        again=sum(attempts - 1 for attempts in state.attempts.values()),
-        skipped=len(state.skipped),
         interruptions=state.interruptions,
         resumptions=state.resumptions,
-        open=state.left_s is None,
-        last_s=state.last_s,
     )

@@ -20,18 +20,7 @@ from fdvv.study.analysis.unseal import unseal_folder
 from fdvv.study.files import layout
 from fdvv.study.files.chained_log import ChainedLog, head_path, open_when_free, read_chained
 from fdvv.study.files.folder import StudyFolder, study_problems
-from fdvv.study.files.layout import (
-    FROZEN_FILE,
-    KEEPER_FILE,
-    LOG_FILE,
-    PEOPLE,
-    SCHEDULE_FILE,
-    SEALED_FILE,
-    SESSION_FILE,
-    UNSEALED,
-    Frozen,
-    digest,
-)
+from fdvv.study.files.layout import LOG_FILE, PEOPLE, SESSION_FILE, Frozen, digest
 from fdvv.study.files.people import (
     EVERYBODY,
     Schedule,
@@ -111,14 +100,14 @@ class Study(StudyFolder):
             raise InputError(
                 folder / STUDY_FILE, "plan", problem, "change it: it could not be run as it says"
             )
-        if (folder / FROZEN_FILE).exists() or (folder / PEOPLE).exists():
+        if (folder / layout.FROZEN_FILE).exists() or (folder / PEOPLE).exists():
             raise InputError(folder, "study", "was frozen before", "declare a new study in another folder")
         layout.keep_files(plan, folder)
         paths = [folder / STUDY_FILE, *(layout.kept_path(folder, name) for name in layout.named_files(plan))]
         files = {path.relative_to(folder).as_posix(): digest(layout.content(path)) for path in paths}
         seal, keeper = new_key_holder(passphrase, cost)
-        write_atomic(folder / KEEPER_FILE, keeper)
-        files[KEEPER_FILE] = digest(keeper)
+        write_atomic(folder / layout.KEEPER_FILE, keeper)
+        files[layout.KEEPER_FILE] = digest(keeper)
         builtins = {name: layout.builtin_digest(name) for name in layout.named_builtins(plan)}
         frozen = Frozen(files=files, builtins=builtins, seal=seal.text, fdvv=fdvv.__version__, when=now())
         return self._begin_log(frozen)
@@ -130,7 +119,7 @@ class Study(StudyFolder):
         with ChainedLog.create(log_path, {"study": sha256}) as log:
             log.write({"frozen": {"when": frozen.when, "sha256": sha256, "fdvv": frozen.fdvv}})
         # last of all: before it is there, nothing is frozen
-        write_atomic(self.folder / FROZEN_FILE, frozen.text)
+        write_atomic(self.folder / layout.FROZEN_FILE, frozen.text)
         sync_folder(self.folder)
         return layout.fingerprint_of(sha256)
 
@@ -176,7 +165,7 @@ class Study(StudyFolder):
         if self.person(person).state in ("withdrawn", "deleted"):
             raise InputError(person, "person", "has withdrawn", "enrol somebody else")
         self.require_whole(person)
-        return open_schedule(self.person_folder(person) / SCHEDULE_FILE, key)
+        return open_schedule(self.person_folder(person) / layout.SCHEDULE_FILE, key)
 
     def session_log(self, schedule: Schedule) -> ChainedLog:
         """Open the plain log of a person's session, to read and append. InputError, OSError."""
@@ -184,12 +173,14 @@ class Study(StudyFolder):
 
     def sealed_log(self, schedule: Schedule) -> ChainedLog:
         """Open the log of what was rendered in a person's trials, each sealed. InputError."""
-        return ChainedLog(self.person_folder(schedule.person) / SEALED_FILE, bytes.fromhex(schedule.key))
+        return ChainedLog(
+            self.person_folder(schedule.person) / layout.SEALED_FILE, bytes.fromhex(schedule.key)
+        )
 
     def finished(self, person: str) -> None:
         """Record that a person is done, with the ends of their logs: from now on none of it can be cut."""
         folder = self.person_folder(person)
-        ends = {name: read_chained(folder / name).chain for name in (SESSION_FILE, SEALED_FILE)}
+        ends = {name: read_chained(folder / name).chain for name in (SESSION_FILE, layout.SEALED_FILE)}
         with self._log() as log:
             log.write({"finished": {"when": now(), "person": person, "ends": ends}})
 
@@ -219,7 +210,7 @@ class Study(StudyFolder):
             if state != "deleted" and (delete or state != "withdrawn"):
                 # first on record: a process that is killed in between leaves files that verify reports
                 log.write({"withdrawn": {"when": now(), "person": person, "deleted": delete}})
-            for left in (own, self.folder / UNSEALED) if delete else ():
+            for left in (own, self.folder / layout.UNSEALED) if delete else ():
                 _wipe(left)
 
     def unseal(
@@ -259,10 +250,10 @@ def _keep_person(folder: Path, schedule: Schedule, text: str, consent: str) -> N
     building = folder.with_name(f".{schedule.person}.new")
     for left in (building, folder):  # of an enrolment that was killed before it was logged
         shutil.rmtree(left, ignore_errors=True)
-    write_atomic(building / SCHEDULE_FILE, text)
+    write_atomic(building / layout.SCHEDULE_FILE, text)
     logs: dict[str, Mapping[str, str]] = {
         SESSION_FILE: {"log": "session", "consent": consent},
-        SEALED_FILE: {"log": "sealed"},
+        layout.SEALED_FILE: {"log": "sealed"},
     }
     for name, own in logs.items():
         about = {"study": schedule.study, "person": schedule.person, **own}

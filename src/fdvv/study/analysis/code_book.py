@@ -11,8 +11,9 @@ from typing import Literal
 import msgspec
 import numpy as np
 
-from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.documents import Kind, pretty
 from fdvv.io.files import read_limited, write_atomic
+from fdvv.study.files.layout import read_record
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.trial import EQUAL
@@ -86,13 +87,7 @@ def code_book_text(book: CodeBook) -> str:
 
 def read_code_book(path: Path) -> CodeBook:
     """Read a code book. InputError."""
-    return read_document(
-        read_limited(path, LARGEST_bytes, KIND.remedy),
-        path,
-        KIND,
-        lambda data: msgspec.json.decode(data, type=CodeBook),
-        lambda _place: None,
-    )
+    return read_record(read_limited(path, LARGEST_bytes, KIND.remedy), path, KIND, CodeBook)
 
 
 def rating_column(rating: str, stimulus: str) -> str:

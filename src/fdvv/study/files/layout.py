@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeVar
 
 import msgspec
 from msgspec import Struct
@@ -18,6 +18,7 @@ from fdvv.study.plan.plan import StudyPlan
 FROZEN_FILE, KEEPER_FILE, LOG_FILE = "frozen.json", "keeper.json", "study.jsonl"
 BUTTONS, PEOPLE, UNSEALED = "buttons", "people", "unsealed"
 SESSION_FILE, SCHEDULE_FILE, SEALED_FILE = "session.jsonl", "schedule.json", "sealed.jsonl"
+Record = TypeVar("Record")
 LARGEST_bytes = 64_000_000
 SMALLER = "name a smaller file"
 REMEDY = "take the study's folder from a backup, or declare a new study"
@@ -53,8 +54,12 @@ def read_frozen(folder: Path) -> tuple[Frozen, str] | None:
     if not path.exists():
         return None
     data = content(path)
-    decode = msgspec.json.Decoder(Frozen).decode
-    return read_document(data, path, FROZEN, decode, lambda _: None), digest(data)
+    return read_record(data, path, FROZEN, Frozen), digest(data)
+
+
+def read_record(data: str | bytes, source: object, kind: Kind, record: type[Record]) -> Record:
+    """Read a document that holds a record. InputError."""
+    return read_document(data, source, kind, msgspec.json.Decoder(record).decode, lambda _: None)
 
 
 def content(path: Path) -> bytes:

@@ -10,10 +10,10 @@ import msgspec
 from msgspec import Struct
 
 from fdvv.errors import InputError
-from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.documents import Kind, pretty
 from fdvv.rendering.session import now
 from fdvv.study.files.chained_log import ChainedLog
-from fdvv.study.files.layout import LOG_FILE, REMEDY, content
+from fdvv.study.files.layout import LOG_FILE, REMEDY, content, read_record
 from fdvv.study.files.seal import CODE_COST, Cost, KeyHolder, SealingKey, lock_with_code, unlock_with_code
 from fdvv.study.plan.trial import Rendered, StudyTrial
 
@@ -137,8 +137,7 @@ def room_bytes(schedule: Schedule) -> int:
 
 def open_schedule(path: Path, key: str | KeyHolder) -> Schedule:
     """Open a schedule with its person's code, or with the key holder's key. InputError on a wrong one."""
-    decode = msgspec.json.Decoder(LockedSchedule).decode
-    found = read_document(content(path), path, SCHEDULE, decode, lambda _: None)
+    found = read_record(content(path), path, SCHEDULE, LockedSchedule)
     if isinstance(key, str):
         return msgspec.json.decode(unlock_with_code(found.locked, key, path), type=Schedule)
     return msgspec.json.decode(key.unlock(found.sealed, path), type=Schedule)

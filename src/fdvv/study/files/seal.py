@@ -18,7 +18,8 @@ import msgspec
 from msgspec import Meta, Struct
 
 from fdvv.errors import BuildError, InputError
-from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.documents import Kind, pretty
+from fdvv.study.files.layout import read_record
 
 ROOM_bytes = 8192
 """Data are padded to a multiple of it by default."""
@@ -98,9 +99,7 @@ class KeyHolder:
     @classmethod
     def open(cls, text: str | bytes, passphrase: str, source: object = "keeper.json") -> KeyHolder:
         """Open keeper.json. InputError on another file, and on a wrong passphrase."""
-        file = read_document(
-            text, source, KEEPER, lambda data: msgspec.json.decode(data, type=KeyHolderFile), lambda _: None
-        )
+        file = read_record(text, source, KEEPER, KeyHolderFile)
         private = _unlocked(file.locked, _words(passphrase), source)
         if private is None:
             raise InputError(

@@ -34,7 +34,7 @@ class SessionState:
         shown. open : the trial that is shown, or None.
     converged : item and round of staircases that have ended.
     work_since_s : since when the person works without a break. break_since_s : when a break began that has
-        not ended. left_s : when the session was closed. last_s : when anything happened last.
+        not ended. left_s : when the session was closed.
     declined, withdrawn : it is over. interruptions, resumptions : how often.
     falls : how often the device went away while a trial was felt, by number. skipped : trials given up for
         that.
@@ -50,7 +50,6 @@ class SessionState:
     work_since_s: float | None = None
     break_since_s: float | None = None
     left_s: float | None = None
-    last_s: float = 0.0
     declined: bool = False
     withdrawn: bool = False
     interruptions: int = 0
@@ -87,14 +86,14 @@ class SessionState:
             raise ModelError(f"the session of {self.started.person} is over")
         if isinstance(event, SessionStarted):
             raise ModelError(f"the session of {self.started.person} has begun already")
-        return replace(_AFTER[type(event)](self, event), last_s=event.at_s)
+        return _AFTER[type(event)](self, event)
 
 
 def state_of(plan: StudyPlan, happened: Sequence[Event]) -> SessionState:
     """Return the state after events. ModelError where one cannot follow the ones before."""
     if not happened or not isinstance(happened[0], SessionStarted):
         raise ModelError("a session begins with its trials")
-    state = SessionState(plan, happened[0], last_s=happened[0].at_s)
+    state = SessionState(plan, happened[0])
     for event in happened[1:]:
         state = state.after(event)
     return state

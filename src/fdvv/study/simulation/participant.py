@@ -110,19 +110,19 @@ class SimulatedParticipant:
 
     def answer(self, item_name: str) -> TrialAnswer:
         item = next(item for item in self._plan.items if item.name == item_name)
-        places = self._ranked(item)
+        places, shown = self._ranked(item), self.renderer.shown
         first, second = places[0], places[1]
-        reference = self.renderer.shown.get("X") or reference_of(self._plan, item, self._stimulus(first))
-        to_reference = [self._apart(self._stimulus(label), reference) for label in places]
+        reference = shown.get("X") or reference_of(self._plan, item, shown[first])
+        to_reference = [self._apart(shown[label], reference) for label in places]
         trials = proxy_trials(
             self._plan.kind,
             self._people,
-            self._apart(self._stimulus(first), self._stimulus(second))[..., None],
+            self._apart(shown[first], shown[second])[..., None],
             np.stack(to_reference, axis=-1)[:, None, :],
             self._random,
             self._plan.ties,
             tuple(rating.points for rating in self._plan.ratings),
-            np.asarray([[int(self._stimulus(first).name != reference.name)]]),
+            np.asarray([[int(shown[first].name != reference.name)]]),
         )
         chosen = int(trials.chosen[0, 0])
         asked = self._plan.kind != "mushra"
@@ -153,11 +153,9 @@ class SimulatedParticipant:
         counted = item.stimuli[1].name if claim is None else claim.more
         rival = item.stimuli[0].name if claim is None else claim.less
         ranks = {counted: 0, rival: 1}
-        labels = sorted(label for label in self.renderer.shown if label != "X")
-        return sorted(labels, key=lambda label: ranks.get(self._stimulus(label).name, 2))
-
-    def _stimulus(self, label: str) -> Stimulus:
-        return self.renderer.shown[label]
+        shown = self.renderer.shown
+        labels = sorted(label for label in shown if label != "X")
+        return sorted(labels, key=lambda label: ranks.get(shown[label].name, 2))
 
     def _apart(self, first: Stimulus, second: Stimulus) -> np.ndarray:
         return self._people.felt_JND(difference_of(first, second, self._folder, self._settings.senses))
