@@ -19,24 +19,8 @@ from fdvv.study.analysis.answer_figures import plot_choices
 from fdvv.study.analysis.export import PROXY
 from fdvv.study.analysis.records import StudyAnalysis
 from fdvv.study.analysis.sentences import name_rows
-from fdvv.study.analysis.words import fixed, listing, many, people_text
+from fdvv.study.analysis.words import fixed, listing, many, people_text, report_texts
 from fdvv.study.plan.plan import StudyPlan
-
-KINDS = {
-    "realism": "which of two hidden renderings is closer to a named reference, or neither",
-    "abx": "strict ABX: which of two renderings is the hidden X",
-    "2afc": "two-alternative forced choice",
-    "2ac": "two alternatives, with no difference allowed (2-AC)",
-    "preference": "paired preference",
-    "mushra": "ratings of all renderings, the named reference and anchors hidden among them",
-    "staircase": "a transformed up-down staircase",
-    "timing": "scores of timing by button and level",
-}
-
-BARS = (
-    "Thin error bars are 1 SD between people, thick ones the 95 % interval of the mean; a dot is a person's "
-    "mean. *** p < .001, ** p < .01, * p < .05, n.s. not significant (exact, Holm's correction)."
-)
 
 
 def data_paragraphs(found: StudyAnalysis) -> tuple[str, ...]:
@@ -52,7 +36,7 @@ def data_paragraphs(found: StudyAnalysis) -> tuple[str, ...]:
     answered = part if missing else whole
     trials = (
         f"{people} met {many(len(found.buttons), 'button')} ({listing(found.buttons)}). Task: "
-        f"{KINDS.get(found.kind, found.kind)}. {answered}"
+        f"{report_texts()['task'].get(found.kind, found.kind)}. {answered}"
     )
     return tuple(filter(None, [trials, _left_out(found), _time(found), *found.notes, _proxy(found)]))
 
@@ -99,37 +83,14 @@ def _proxy(found: StudyAnalysis) -> str:
 
 
 def method_paragraphs(found: StudyAnalysis) -> tuple[str, ...]:
-    texts = []
-    if found.tests or found.rated or found.preference:
-        texts.append(
-            "Wilcoxon's signed-rank tests compare people's means over rounds; who does not differ is left "
-            "out before ranking. Z carries the correction for ties and none for continuity, as SPSS prints "
-            "it; the exact p counts all turns of the signs, with ties as they are, and decides what is "
-            "called significant, after Holm's correction over buttons, at .05."
-        )
-    if found.preference is not None:
-        texts.append(
-            "Intervals of shares count people: Clopper and Pearson's of as many answers as the spread "
-            "between people leaves (Korn and Graubard 1998); of one person Wilson's, answers "
-            "counted as independent. d′ is Thurstone's, by maximum likelihood; where answers may be equal, "
-            "with τ, the difference that is still called equal (2-AC), and the interval of the profile "
-            "likelihood; with people counted as people, a mixed model in which each has an own d′."
-        )
-    if found.thresholds:
-        texts.append(
-            "A threshold is the geometric mean of the ratios at which a staircase turned round, the first "
-            "turns left out (Levitt 1971); over people, the geometric mean with Student's interval on the "
-            "logarithm."
-        )
-    if found.timing is not None:
-        texts.append("Scores are averaged over rounds; people are what is counted.")
-    if found.multiverse is not None:
-        texts.append(
-            "In the last figure every estimate is the share of answers for the claim, so that choices and "
-            "ratings lie on one axis: a rating counts for the rendering that it puts higher, a tie as one "
-            "half."
-        )
-    return tuple(texts)
+    there = {
+        "tests": found.tests or found.rated or found.preference,
+        "shares": found.preference,
+        "thresholds": found.thresholds,
+        "timing": found.timing,
+        "multiverse": found.multiverse,
+    }
+    return tuple(report_texts()["method"][name] for name, results in there.items() if results)
 
 
 def write_study_report(
@@ -199,7 +160,7 @@ def _ratings(found: StudyAnalysis, plan: StudyPlan | None) -> list[Section]:
                 *(sentences.button_sentence(one) for one in tests),
                 *filter(None, [sentences.smallest_sentence(tests)]),
                 *(sentences.scale_sentence(one) for one in found.scales if one.rating == rating),
-                *([BARS] if several else []),
+                *([report_texts()["error_bars"]] if several else []),
             )
             listed_tables = (tables.ratings_table(tests),) if several else ()
         sections.append(Section(f"Ratings: {rating}", texts, (svg,), listed_tables))

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import math
+import tomllib
 from collections.abc import Sequence
+from importlib import resources
+from typing import Any
 
 from fdvv.report.prose import listed, p_text
 from fdvv.stats.rank_tests import SignedRank
@@ -95,17 +99,14 @@ def distance_text(one: DPrime) -> str:
     return f"d′ = {fixed(one.d)} {span(one.low, one.high)}{tau}"
 
 
+@functools.cache
+def report_texts() -> dict[str, Any]:
+    """Return the fixed words of a report: tasks, rules, methods; see report.toml."""
+    return tomllib.loads(resources.files("fdvv.study").joinpath("report.toml").read_text(encoding="utf-8"))
+
+
 def rule_text(one: DPrime) -> str:
-    return {
-        "2ac, profile likelihood": "2-AC, answers counted as independent",
-        "2ac, mixed model, Wald": "2-AC, people counted as people",
-        "2ac, profile likelihood of the answers that people leave": "2-AC, people counted as people",
-        "2afc, Clopper-Pearson": "2-AFC, answers counted as independent",
-        "2afc, korn-graubard": "2-AFC, people counted as people",
-        "abx, differencing, Clopper-Pearson": "ABX by differencing, answers counted as independent",
-        "abx, independent, Clopper-Pearson": "ABX by independent observations, answers independent",
-        "abx, korn-graubard": "ABX by differencing, people counted as people",
-    }.get(one.method, one.method)
+    return str(report_texts()["rule"].get(one.method, one.method))
 
 
 def button_name(one: ChoiceResult) -> str:
