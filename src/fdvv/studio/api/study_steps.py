@@ -31,7 +31,7 @@ def step_message(plan: StudyPlan, state: SessionState, language: str, step: Step
         (page,) = (one for one in plan.pages if one.name == step.page)
         form = form_message(page, language)
     elif step.kind in ("practice", "trial"):
-        task = task_message(plan, state, language, state.started.trials[step.number])
+        task = task_message(plan, language, state.started.trials[step.number], step)
     left_s = step.left_s if step.kind == "break" else None
     return StudyStep(step.kind, round(step.progress, 4), form, task, left_s)
 
@@ -48,15 +48,11 @@ def form_message(page: Page, language: str) -> StudyForm:
     )
 
 
-def task_message(plan: StudyPlan, state: SessionState, language: str, face: TrialFace) -> StudyTask:
-    """Return a trial; `of` is 0 for a staircase, whose end is not known."""
-    alike = [one.number for one in state.started.trials if one.practice == face.practice]
-    known = face.practice or plan.kind != "staircase"
-    at = 1 + sum(number in state.answers for number in alike)
+def task_message(plan: StudyPlan, language: str, face: TrialFace, step: Step) -> StudyTask:
     return StudyTask(
-        face.number,
-        at,
-        len(alike) if known else 0,
+        step.number,
+        step.at,
+        step.of,
         face.item,
         question_text(plan, language),
         face.labels,

@@ -183,6 +183,7 @@ def device_problems(plan: StudyPlan, folder: Path, limits: Limits | None = None)
 
 def _strongest(plan: StudyPlan, item: Item) -> tuple[Stimulus, ...]:
     rendered = item.rendered
+    # a staircase makes its second stimulus stronger, up to this: then it must still be renderable
     if plan.kind == "staircase" and len(item.stimuli) > 1:
         force_ratio = rendered[1].force_ratio * (1.0 + LARGEST_ratio)
         rendered = (rendered[0], structs.replace(rendered[1], force_ratio=force_ratio), *rendered[2:])

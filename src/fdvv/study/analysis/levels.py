@@ -27,6 +27,7 @@ def threshold_results(answers: Answers, staircase: Staircase | None) -> tuple[Th
         return ()
     counted = answers.counts & np.isfinite(answers.ratio) & np.isfinite(answers.correct)
     keys = list(zip(answers.person.tolist(), answers.item.tolist(), answers.round.tolist(), strict=True))
+    # rounds of one trial each: all of a person's trials of a button are one staircase
     if len(set(keys)) == len(keys):
         keys = [(person, button, 0) for person, button, _ in keys]
     found = []

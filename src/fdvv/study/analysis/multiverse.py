@@ -150,6 +150,7 @@ def _units(values: FloatArray, unit: str, keys: tuple[np.ndarray, ...]) -> tuple
         there = np.isfinite(values)
         return values[there], signs[there]
     by = keys[:1] if unit == PERSON else keys
+    # where each person has one button, cells are people, and counted already
     if unit == CELL and len(np.unique(groups_by(*keys))) == len(np.unique(keys[0])):
         return np.empty(0), np.empty(0)
     means, shares = means_by(values, *by), means_by(signs, *by)

@@ -82,6 +82,7 @@ def read_chained(path: Path, key: bytes = b"") -> ChainRead:
     key : marks are verified with it; empty: they are not. A log that another process writes at the
     moment is read again until its head no longer changes.
     """
+    # a writer changes the head with every line; that one does so during 20 readings in a row does not happen
     for _ in range(20):
         before = bytes_of(head_path(path))
         found = _read(path, key, before)

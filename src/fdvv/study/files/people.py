@@ -131,6 +131,7 @@ def room_bytes(schedule: Schedule) -> int:
             for trial in schedule.trials
         ),
     )
+    # locking puts the length before the data, in four bytes
     whole = len(msgspec.json.encode(public)) + 4
     return whole + -whole % STEP_bytes
 

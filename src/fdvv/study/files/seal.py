@@ -192,6 +192,7 @@ def _stretched(words: bytes, salt: bytes, cost: Cost) -> bytes:
 
 
 def _padded(data: bytes, room_bytes: int) -> bytes:
+    # the first four bytes tell where the data end and the padding begins
     whole = len(data) + 4
     return len(data).to_bytes(4, "big") + data + bytes(-whole % room_bytes)
 

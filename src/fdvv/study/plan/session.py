@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from msgspec import Struct
+from msgspec import Struct, structs
 
 from fdvv.errors import ModelError
 from fdvv.study.plan import events
@@ -138,6 +138,7 @@ def _interrupted(state: SessionState, event: events.TrialInterrupted) -> Session
     due = state.next_trial
     if due is None or due.number != event.number:
         raise ModelError(f"trial {event.number} is not the next one")
+    # only where a label had been felt can its rendering be why the device went away
     falls = {**state.falls, event.number: state.falls.get(event.number, 0) + event.felt}
     return replace(state, open=None, interruptions=state.interruptions + 1, falls=falls)
 
@@ -200,7 +201,6 @@ class Step(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     at, of : which it is, from 1, among the trials that count or among those of practice; of is 0 where a
         staircase may end before.
     left_s : seconds of the break that are left; 0: the person may go on.
-    answered, trials : how many trials are done with, and how many there are at most, practice included.
     progress : from 0 to 1, of pages and trials.
     """
 
@@ -213,53 +213,41 @@ class Step(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     at: int = 0
     of: int = 0
     left_s: float = 0.0
-    answered: int = 0
-    trials: int = 0
     progress: float = 0.0
 
 
 def next_step(state: SessionState, now_s: float) -> Step:
     """Return the step that is due: consent, pages before, practice, trials and breaks, pages after."""
+    trials = len(state.started.trials)
+    done, whole = trials - state.trials_left + len(state.pages), trials + len(state.plan.pages)
+    return structs.replace(_due(state, now_s), progress=done / whole if whole else 1.0)
+
+
+def _due(state: SessionState, now_s: float) -> Step:
     if state.over:
-        return _step(state, "withdrawn" if state.withdrawn else "declined")
-    page = state.next_page("consent", "before")
-    if page:
-        return _step(state, "page", page=page)
+        return Step(kind="withdrawn" if state.withdrawn else "declined")
+    if page := state.next_page("consent", "before"):
+        return Step(kind="page", page=page)
     if state.next_trial and state.break_since_s is not None:
-        return _step(state, "break", left_s=_break_left_s(state, now_s))
+        whole_s = 60.0 * state.plan.break_min
+        # a clock that was set back does not make a break longer than it is
+        left_s = min(whole_s, max(0.0, state.break_since_s + whole_s - now_s))
+        return Step(kind="break", left_s=left_s)
     if state.next_trial:
         return _trial_step(state, state.next_trial)
     page = state.next_page("after")
-    return _step(state, "page", page=page) if page else _step(state, "done")
+    return Step(kind="page", page=page) if page else Step(kind="done")
 
 
 def _trial_step(state: SessionState, trial: TrialFace) -> Step:
-    kind: StepKind = "practice" if trial.practice else "trial"
-    again = trial.number in state.attempts and state.open != trial.number
     alike = [one for one in state.started.trials if one.practice == trial.practice]
     sure = trial.practice or state.plan.kind != "staircase"
-    return _step(
-        state,
-        kind,
+    return Step(
+        kind="practice" if trial.practice else "trial",
         number=trial.number,
         item=trial.item,
         labels=trial.labels,
-        again=again,
+        again=trial.number in state.attempts and state.open != trial.number,
         at=1 + sum(one.number in state.answers for one in alike),
         of=len(alike) if sure else 0,
     )
-
-
-def _break_left_s(state: SessionState, now_s: float) -> float:
-    assert state.break_since_s is not None
-    whole_s = 60.0 * state.plan.break_min
-    # a clock that was set back does not make a break longer than it is
-    return min(whole_s, max(0.0, state.break_since_s + whole_s - now_s))
-
-
-def _step(state: SessionState, kind: StepKind, **about: object) -> Step:
-    trials = len(state.started.trials)
-    answered = trials - state.trials_left
-    done, whole = answered + len(state.pages), trials + len(state.plan.pages)
-    counts = {"answered": answered, "trials": trials, "progress": done / whole if whole else 1.0}
-    return Step(kind=kind, **counts, **about)  # type: ignore[arg-type]

@@ -25,7 +25,9 @@ SEALED_BYTES = 16_384
 """Of every trial: its length does not show how many presses or faults there were."""
 
 Result = TypeVar("Result")
+# a label's names and faults, and the two numbers of a press, take no more than so many bytes as JSON
 _LABEL_BYTES, _PRESS_BYTES = 1_200, 22
+# that holds because numbers, faults and their lengths are bounded
 _LARGEST, _FAULTS, _FAULT = 99_999.0, 6, 40
 
 

@@ -56,6 +56,7 @@ class RenderingEvidence:
         rows = np.stack([t_s, displacement_mm, force_cN])
         self._kept.append(rows[:, ::STILL_ROWS] if np.ptp(rows[1]) < STILL_mm else rows)
         if self._down and rows[1].min() > DEEP_mm:
+            # a button that is held down for minutes must not fill the memory
             if sum(piece.shape[1] for piece in self._kept) > MOST_ROWS:
                 self._kept = [np.hstack(self._kept)[:, ::2]]
             return

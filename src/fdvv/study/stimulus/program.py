@@ -53,6 +53,7 @@ class TrialProgram:
 
     def places(self, state: IntArray) -> IntArray:
         """Return the label that each state that the device reports belongs to, by place; -1 at rest."""
+        # state 0 is rest; every label has two states after it: key up, key down
         return np.where(state == 0, -1, (state - 1) // 2)
 
 
@@ -92,6 +93,7 @@ def _part(stimulus: Stimulus, folder: Path, weight_cN: float, place: int) -> _Pa
     learned = stimulus_actuation(stimulus, folder, model) if stimulus.actuation else None
     program = button_program(model, learned.surface if learned else None)
     tuning = learned.outcome.tuning if learned else UNTUNED
+    # what was learned on the rig carries the cap's weight already
     carried_cN = 0.0 if learned else weight_cN
     press, release = (
         _carried(surface, f"{place} {stroke}", carried_cN)
