@@ -11,24 +11,25 @@ from fdvv.errors import ModelError
 from fdvv.report.svg import figure_of
 from fdvv.stats.effect_size import Estimate
 from fdvv.stats.share import share, sign_test
-from fdvv.study.analysis.answer_figures import (
-    ForestRow,
-    RatingBars,
-    plot_choices,
-    plot_forest,
-    plot_rating_bars,
-)
+from fdvv.study.analysis.answer_figures import ForestRow, plot_choices, plot_forest, plot_rating_bars
 from fdvv.study.analysis.figures import plot_specifications, plot_tracks
 from fdvv.study.analysis.multiverse import Multiverse, Specification
 from fdvv.study.analysis.records import ChoiceResult, ThresholdResult
+from fdvv.units import FloatArray
 
 PROXY = "simulated participants: a proxy, no evidence"
 
 
-def bars(people: int = 5, marks: tuple[str, ...] = ("***", "n.s.")) -> RatingBars:
-    values = np.random.default_rng(1).uniform(2, 6, (people, 2, 2))
-    means = values.mean(axis=0)
-    return RatingBars(("Clear", "Red"), ("FD", "FDVV"), values, means - 0.3, means + 0.3, (1.0, 7.0), marks)
+MARKS = {"Clear": "***", "Red": "n.s."}
+
+
+def ratings(people: int = 5) -> FloatArray:
+    return np.random.default_rng(1).uniform(2, 6, (people, 2, 2))
+
+
+def bars(people: FloatArray, marks: dict[str, str], simulated: bool = False) -> Any:
+    names = ("Clear", "Red"), ("FD", "FDVV")
+    return plot_rating_bars("realism", people, *names, (1.0, 7.0), marks, simulated)
 
 
 def above(drawn: Any) -> str:
@@ -61,17 +62,16 @@ def track(person: str, ratios: list[float], correct: list[float], threshold: flo
 
 
 def test_rating_bars_reach_the_means_from_the_low_end_of_the_scale() -> None:
-    given = bars()
-    ax = plot_rating_bars(given, "realism")
+    given = ratings()
+    ax = bars(given, MARKS)
     tops = [bar.get_y() + bar.get_height() for bar in ax.patches]
-    assert_allclose(sorted(tops), np.sort(given.people.mean(axis=0).ravel()))
+    assert_allclose(sorted(tops), np.sort(given.mean(axis=0).ravel()))
     assert {bar.get_y() for bar in ax.patches} == {1.0}
     assert [text.get_text() for text in ax.texts] == ["***", "n.s."]
 
 
 def test_one_person_has_a_bar_and_no_spread() -> None:
-    given = bars(1, ())
-    ax = plot_rating_bars(given, "realism")
+    ax = bars(ratings(1), {})
     assert len(ax.patches) == 4
     spreads = [one for one in ax.containers if isinstance(one, ErrorbarContainer)]
     drawn = [segment for one in spreads for segment in one[2][0].get_segments() if len(segment)]
@@ -124,19 +124,19 @@ def test_a_specification_curve_marks_the_registered_one_in_both_panels() -> None
 
 def test_every_figure_of_simulated_answers_says_that_they_are_no_evidence() -> None:
     drawn = [
-        plot_rating_bars(bars(), "realism", True),
+        bars(ratings(), MARKS, True),
         plot_choices([choice("", 4, 1, 5)], True),
         plot_forest([ForestRow("P1", 1.0, 0.2, 2.0)], "d′", "distance", simulated=True),
         plot_tracks([track("P1", [0.3, 0.2], [1.0, 1.0], 0.2)], True),
         plot_specifications(multiverse(), "share (%)", "as registered", True),
     ]
     assert [above(one) for one in drawn] == [PROXY] * 5
-    assert above(plot_rating_bars(bars(), "realism")) == ""
+    assert above(bars(ratings(), MARKS)) == ""
 
 
 def test_what_does_not_fit_together_is_refused() -> None:
-    with pytest.raises(ModelError, match="as many marks"):
-        bars(5, ("*",))
+    with pytest.raises(ModelError, match="columns of as many"):
+        bars(ratings()[:, :, :1], MARKS)
     with pytest.raises(ModelError, match="at least one row"):
         plot_choices([])
     with pytest.raises(ModelError, match="at least one row"):

@@ -60,6 +60,9 @@ def plot_rating_bars(
     marks : written above a button, by its name. Returns the axes.
     """
     count, (low, high) = len(stimuli), scale
+    if people.ndim != 3 or people.shape[1:] != (len(buttons), count):
+        shape = len(buttons), count
+        raise ModelError(f"{shape} buttons and stimuli need columns of as many, got {people.shape}")
     ax = style.new_figure(max(6.4, 1.0 + (0.55 + 0.36 * count) * len(buttons)), 4.4).add_subplot()
     width = 0.8 / count
     places = np.arange(float(len(buttons)))
