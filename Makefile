@@ -24,7 +24,7 @@ $(VENV)/.ready: pyproject.toml $(wildcard extras/*/pyproject.toml) constraints.t
 	@touch $@
 
 # the library, and the Python tables of the protocol
-src/fdvv/_native/$(LIBRARY): $(VENV)/.ready $(NATIVE) $(wildcard protocol/*.toml) tools/make_protocol.py hatch_build.py
+src/fdvv/_native/$(LIBRARY): $(VENV)/.ready $(NATIVE) protocol/fdvv.toml tools/make_protocol.py hatch_build.py
 	$(BIN)/python hatch_build.py
 
 demo: setup ## Fit, compensate on the simulated rig and write demo/report.html
@@ -103,4 +103,4 @@ newcomer: ## Type what the README says, in an empty folder and a clean environme
 	PYTHON="$(PYTHON)" bash tools/newcomer.sh
 
 clean: ## Remove what was built
-	rm -rf $(VENV) build dist demo .mypy_cache .ruff_cache .pytest_cache src/fdvv/_native/$(LIBRARY) src/fdvv/protocol/{,strip_}tables.py
+	rm -rf $(VENV) build dist demo .mypy_cache .ruff_cache .pytest_cache src/fdvv/_native/$(LIBRARY) src/fdvv/protocol/tables.py

@@ -150,16 +150,16 @@ def glibc_needs(path: Path) -> set[tuple[int, int]]:
     return {(int(a), int(b)) for a, b in re.findall(rb"\0GLIBC_(\d+)\.(\d+)", path.read_bytes())}
 
 
-def write_protocol_tables() -> list[Path]:
-    """Write fdvv.protocol.tables and fdvv.protocol.strip_tables from protocol/*.toml; return their paths."""
+def write_protocol_tables() -> Path:
+    """Write fdvv.protocol.tables from protocol/fdvv.toml; return its path."""
     spec = importlib.util.spec_from_file_location("make_protocol", PROTOCOL)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module  # dataclasses look their module up
     spec.loader.exec_module(module)
-    paths: list[Path] = module.write_tables()
-    return paths
+    path: Path = module.write_tables()
+    return path
 
 
 try:
@@ -178,12 +178,12 @@ else:
 
         def initialize(self, version: str, build_data: dict[str, Any]) -> None:
             built = compile_native()
-            files = [*built, *write_protocol_tables()]
+            files = [*built, write_protocol_tables()]
             build_data["artifacts"] += [path.relative_to(ROOT).as_posix() for path in files]
             build_data["pure_python"] = False
             build_data["tag"] = f"py3-none-{platform_tag(built)}"
 
 
 if __name__ == "__main__":
-    for path in (*write_protocol_tables(), *compile_native()):
+    for path in (write_protocol_tables(), *compile_native()):
         sys.stdout.write(f"{path}\n")

@@ -1,8 +1,8 @@
-"""Turn protocol/*.toml into the C headers of firmware/core and the Python tables of src/fdvv/protocol.
+"""Turn protocol/*.toml into the C headers of firmware/core and the Python tables of fdvv and fdvv-strip.
 
-fdvv.toml becomes protocol.h and tables.py; strip.toml, whose `stem` is part of every name made from it,
-strip_protocol.h and strip_tables.py. The headers are committed. hatch_build.py writes the tables; it loads
-this file by its path, so only the standard library is imported.
+fdvv.toml becomes protocol.h and fdvv.protocol.tables; strip.toml, whose `stem` is part of every name made
+from it, strip_protocol.h and fdvv_strip.tables. All but fdvv.protocol.tables are committed; hatch_build.py
+writes that. It loads this file by its path, so only the standard library is imported.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ HEADER = ROOT / "firmware" / "core" / "protocol.h"
 TABLES = ROOT / "src" / "fdvv" / "protocol" / "tables.py"
 STRIP_SOURCE = ROOT / "protocol" / "strip.toml"
 STRIP_HEADER = ROOT / "firmware" / "core" / "strip_protocol.h"
-STRIP_TABLES = ROOT / "src" / "fdvv" / "protocol" / "strip_tables.py"
+STRIP_TABLES = ROOT / "extras" / "fdvv-strip" / "src" / "fdvv_strip" / "tables.py"
 SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4}
 C_TYPES = {kind: f"{'u' if kind[0] == 'u' else ''}int{kind[1:]}_t" for kind in SIZES}
 NOTES = ("about", "class")
@@ -277,6 +277,7 @@ def _py_messages(source: dict[str, Any], structs: dict[str, list[Field]]) -> lis
     lines = ["", "", f"class {enum}(IntEnum):", '    """Numbers of the messages."""', ""]
     for name, body in source["messages"].items():
         lines += [f"    {name.upper()} = 0x{body['id']:02X}", f'    """{_sentence(body["about"])}"""']
+    lines += [""]
     for key in ("fields", "reply"):
         title = stem_of(source).upper() + ("REQUEST_BYTES" if key == "fields" else "REPLY_BYTES")
         lines += ["", f"{title} = {{"]
@@ -309,18 +310,19 @@ def _py_field(field: Field, defaults: dict[str, int]) -> str:
     return f"    {field.name}: {kind}" + (" = 0" if field.name.startswith("spare") else "")
 
 
-def write_tables() -> list[Path]:
-    """Write the Python tables of both definitions; return their paths."""
-    for definition, path in ((SOURCE, TABLES), (STRIP_SOURCE, STRIP_TABLES)):
-        _write(path, tables(_load(definition)))
-    return [TABLES, STRIP_TABLES]
+def write_tables() -> Path:
+    """Write the Python tables that the build makes; return their path."""
+    _write(TABLES, tables(_load(SOURCE)))
+    return TABLES
 
 
-def write_headers() -> list[Path]:
-    """Write the C headers of both definitions; return their paths."""
-    for definition, path in ((SOURCE, HEADER), (STRIP_SOURCE, STRIP_HEADER)):
-        _write(path, header(_load(definition)))
-    return [HEADER, STRIP_HEADER]
+def write_committed() -> list[Path]:
+    """Write the C headers of both definitions and the strip's Python tables; return their paths."""
+    strip = _load(STRIP_SOURCE)
+    _write(HEADER, header(_load(SOURCE)))
+    _write(STRIP_HEADER, header(strip))
+    _write(STRIP_TABLES, tables(strip))
+    return [HEADER, STRIP_HEADER, STRIP_TABLES]
 
 
 def _load(path: Path) -> dict[str, Any]:
@@ -334,5 +336,5 @@ def _write(path: Path, text: str) -> None:
 
 
 if __name__ == "__main__":
-    for written in (*write_headers(), *write_tables()):
+    for written in (*write_committed(), write_tables()):
         sys.stdout.write(f"{written.relative_to(ROOT)}\n")

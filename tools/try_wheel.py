@@ -28,6 +28,7 @@ EXTRAS = {
     "optuna": (["optimize", "run", "--folder", "run", "--trials", "1"], "fdvv[optimize]"),
     "serialx": (["device", "info", "--device", "serial:none"], "fdvv[serial]"),
     "fdvv_rig": (["hardware", "parts"], "fdvv-rig"),
+    "fdvv_strip": (["device", "strip", "--strip", "host"], "fdvv-strip"),
     "fdvv_switch": (["mechanism", "mx-red"], "fdvv-switch"),
     "fdvv_m0": (["device", "info", "--device", "emulated"], "fdvv-m0"),
 }

@@ -11,16 +11,19 @@ from fdvv.errors import BuildError
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-Kind = Literal["commands", "engines", "pair_engines", "devices"]
-"""What an extra can add: a click command, an engine of ``fdvv optimize`` or a board in lockstep."""
+Kind = Literal["commands", "device_commands", "engines", "pair_engines", "devices", "presenters"]
+"""What an extra can add: a click command of ``fdvv`` or of ``fdvv device``, an engine of ``fdvv optimize``, a
+board in lockstep, or what presents the rounds of ``fdvv optimize`` to a person."""
 
 KNOWN = MappingProxyType(
     {
         ("commands", "hardware"): "fdvv-rig",
         ("commands", "mechanism"): "fdvv-switch",
+        ("device_commands", "strip"): "fdvv-strip",
         ("engines", "botorch"): "fdvv-botorch",
         ("pair_engines", "preference-botorch"): "fdvv-botorch",
         ("devices", "emulated"): "fdvv-m0",
+        ("presenters", "strip"): "fdvv-strip",
     }
 )
 """The package that brings a name, installed or not: what an error tells a person to install."""

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from fdvv.device.strip_library import LibraryStrip
+from fdvv_strip.library import LibraryStrip
 from tests.cli.conftest import Ran
 
 Run = Callable[..., Ran]

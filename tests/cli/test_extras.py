@@ -1,4 +1,4 @@
-"""Commands, engines and devices of extras: found without importing them, and named where they are absent."""
+"""What extras add: found without importing them, and named where they are absent."""
 
 from __future__ import annotations
 
@@ -27,6 +27,8 @@ def bare(monkeypatch: pytest.MonkeyPatch) -> None:
         (["hardware", "parts"], "fdvv-rig"),
         (["mechanism", "mx-red"], "fdvv-switch"),
         (["device", "info", "--device", "emulated"], "fdvv-m0"),
+        (["device", "strip", "--strip", "host"], "fdvv-strip"),
+        (["optimize", "run", "--folder", "run", "--strip", "host"], "fdvv-strip"),
     ],
 )
 def test_what_an_absent_extra_brings_is_refused_with_what_to_install(
@@ -52,6 +54,7 @@ def test_help_lists_the_commands_that_are_installed(fdvv: Run) -> None:
     shown = fdvv("--help").out
     assert "compensate" in shown
     assert "mechanism" not in shown
+    assert "LED strip" not in fdvv("device", "--help").out
 
 
 def test_help_imports_no_extra() -> None:

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.strip import LedPointingTask, StripStart
 from fdvv.device.twin import SimulatedPerson
 from fdvv.model.file import load_builtin
 from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.people.user import SimulatedUser
-from fdvv.optimize.run.strip import play_on_strip, played_presser
 from fdvv.optimize.tasks import TemporalPointing
 from fdvv.program.button import compile_button
 from fdvv_m0.board import EmulatedBoard
+from fdvv_strip.board import LedPointingTask, StripStart
+from fdvv_strip.run import play_on_strip, played_presser
 
 from ._m0 import CONTROLLER
 from ._m0 import build as build_controller

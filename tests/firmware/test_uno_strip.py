@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from fdvv.device.strip import LedPointingTask, StripResult, StripRound
 from fdvv.errors import DeviceError
-from fdvv.protocol.strip_tables import STRIP_HOST_TIMEOUT_MS, StripLed, StripMode
+from fdvv_strip.board import LedPointingTask, StripResult, StripRound
+from fdvv_strip.tables import STRIP_HOST_TIMEOUT_MS, StripLed, StripMode
 
 from ._simavr import build_board, require_tools, say
 from ._uno_strip import CYCLES_us, StripFrame, UnoStrip, build_strip_emulator

@@ -86,7 +86,9 @@ def test_the_wheel_works_alone_without_extras_and_without_the_repository(
     )
     assert (ran.returncode, ran.stderr) == (0, "")
     # the extras are really away, else nothing was proven of them
-    extras = "fdvv[plot], fdvv[study], fdvv[optimize], fdvv[serial], fdvv-rig, fdvv-switch, fdvv-m0"
+    extras = (
+        "fdvv[plot], fdvv[study], fdvv[optimize], fdvv[serial], fdvv-rig, fdvv-strip, fdvv-switch, fdvv-m0"
+    )
     assert extras in ran.stdout
     where = "import fdvv; print(fdvv.__file__)"
     found = subprocess.run(

@@ -67,11 +67,7 @@ class MainGroup(click.Group):
         if cmd_name in COMMANDS:
             return ui.imported(COMMANDS[cmd_name][0], cmd_name)
         # lists every installed distribution: not worth its time for a command of ours
-        if cmd_name not in extras.names("commands"):
-            return None
-        found = extras.load("commands", cmd_name)
-        assert isinstance(found, click.Command)
-        return found
+        return ui.extra_command("commands", cmd_name)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):

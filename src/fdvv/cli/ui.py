@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from fdvv import extras
 from fdvv.errors import InputError
 
 if TYPE_CHECKING:
@@ -54,23 +55,37 @@ def imported(module: str, name: str) -> click.Command:
     return found
 
 
+def extra_command(kind: extras.Kind, name: str) -> click.Command | None:
+    """Import a command of an extra; None if no extra has it, BuildError if the extra is not installed."""
+    if name not in extras.names(kind):
+        return None
+    found = extras.load(kind, name)
+    assert isinstance(found, click.Command)
+    return found
+
+
 class LazyGroup(click.Group):
     """A group that imports some of its commands when they are asked for: they load much that others do not.
 
-    modules : by the command's name, see ``imported``.
+    modules : by the command's name, see ``imported``. extra : kind of commands that extras add to it, if any.
     """
 
-    def __init__(self, *args: Any, modules: Mapping[str, str], **kwargs: Any) -> None:
+    def __init__(
+        self, *args: Any, modules: Mapping[str, str], extra: extras.Kind | None = None, **kwargs: Any
+    ) -> None:
         super().__init__(*args, **kwargs)
-        self.modules = modules
+        self.modules, self.extra = modules, extra
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return sorted([*super().list_commands(ctx), *self.modules])
+        added = extras.installed(self.extra) if self.extra else ()
+        return sorted([*super().list_commands(ctx), *self.modules, *added])
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import a command; BuildError if it comes with an extra that is not installed."""
         if cmd_name in self.modules:
             return imported(self.modules[cmd_name], cmd_name)
-        return super().get_command(ctx, cmd_name)
+        found = super().get_command(ctx, cmd_name)
+        return extra_command(self.extra, cmd_name) if self.extra and not found else found
 
 
 def choice_option(name: str, choices: Sequence[str], help: str) -> Callable[[Command], Command]:

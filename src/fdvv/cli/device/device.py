@@ -1,4 +1,4 @@
-"""fdvv device: list, info, selftest and monitor; upload, press, exciter and strip are beside."""
+"""fdvv device: list, info, selftest and monitor; upload, press and exciter are beside; strip is an extra."""
 
 from __future__ import annotations
 
@@ -73,10 +73,10 @@ def writer(stream: IO[str], output: Path) -> Callable[[TickColumns], None]:
     return write
 
 
-MODULES = dict.fromkeys(("exciter", "press", "upload"), "device.press") | {"strip": "device.strip"}
+MODULES = dict.fromkeys(("exciter", "press", "upload"), "device.press")
 
 
-@click.group(cls=ui.LazyGroup, modules=MODULES)
+@click.group(cls=ui.LazyGroup, modules=MODULES, extra="device_commands")
 def device() -> None:
     """Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.
 

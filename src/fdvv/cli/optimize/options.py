@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fdvv import extras
 from fdvv.cli import ui
 from fdvv.cli.options import remote
 
@@ -33,16 +34,14 @@ Play = Callable[["Optimization"], "Iterator[Trial]"]
 def on_strip(strip: str | None, device: str) -> Iterator[Play | None]:
     """Open strip and rig before a run is begun; give what plays it there, None where no strip is asked for.
 
-    InputError, DeviceError.
+    InputError, DeviceError, BuildError.
     """
     if strip is None:
         yield None
         return
-    from fdvv.device.strip_library import open_strip
-    from fdvv.optimize.run.strip import run_on_any_strip
-
-    with remote(device) as rig, open_strip(strip) as task:
-        yield lambda session: run_on_any_strip(session, rig, task, _wait)
+    present = extras.load("presenters", "strip")
+    with remote(device) as rig, present(strip, rig, _wait) as play:
+        yield play
 
 
 def _wait(trial: Trial) -> None:

@@ -11,9 +11,9 @@ from contextlib import suppress
 
 import pytest
 
-from fdvv.device.strip import LedPointingTask, StripRound
-from fdvv.device.strip_library import LibraryStrip, open_strip
 from fdvv.errors import DeviceError
+from fdvv_strip.board import LedPointingTask, StripRound
+from fdvv_strip.library import LibraryStrip, open_strip
 
 QUICK = StripRound(200, 0.3, zone_px=40, after_s=0.1)
 

@@ -15,7 +15,7 @@ from fdvv.errors import DeviceError
 from fdvv.protocol.frame import Frame, FrameDecoder, encode
 from fdvv.protocol.messages import REPLY
 from fdvv.protocol.record import Record
-from fdvv.protocol.strip_tables import (
+from fdvv_strip.tables import (
     STRIP_HASH,
     STRIP_PRESSES,
     STRIP_VERSION,

@@ -7,9 +7,9 @@ from bisect import insort
 
 from fdvv import _native
 from fdvv.device.serial import SerialPort
-from fdvv.device.strip import LedPointingTask
 from fdvv.device.wire import Port
 from fdvv.errors import InputError
+from fdvv_strip.board import LedPointingTask
 
 STEP_us = 500
 """The board looks at its bytes so often here."""

@@ -9,8 +9,6 @@ import pytest
 
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.strip import LedPointingTask, StripResult, StripStart
-from fdvv.device.strip_library import LibraryStrip
 from fdvv.errors import DeviceError, InputError
 from fdvv.model.file import load_builtin
 from fdvv.optimize.people.simulate import simulate_task
@@ -18,7 +16,10 @@ from fdvv.optimize.people.user import SimulatedUser
 from fdvv.optimize.problem import Objective, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
-from fdvv.optimize.run.strip import (
+from fdvv.optimize.tasks import TaskPress, TemporalPointing
+from fdvv_strip.board import LedPointingTask, StripResult, StripStart
+from fdvv_strip.library import LibraryStrip
+from fdvv_strip.run import (
     play_on_strip,
     played_presser,
     press_of,
@@ -26,7 +27,6 @@ from fdvv.optimize.run.strip import (
     strip_round,
     try_on_strip,
 )
-from fdvv.optimize.tasks import TaskPress, TemporalPointing
 from tests.support.scripted_person import ScriptedPerson
 
 TASKS = [TemporalPointing(level, quantised=False) for level in ("easy", "hard")]

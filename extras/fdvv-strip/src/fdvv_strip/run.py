@@ -7,8 +7,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from fdvv.device.remote import Remote
-from fdvv.device.strip import KeyLine, LedPointingTask, StripResult, StripRound, StripStart
-from fdvv.device.strip_library import LibraryStrip, strip_port
 from fdvv.device.wire import RefusedError
 from fdvv.errors import DeviceError, InputError
 from fdvv.optimize.people.simulate import simulate_task
@@ -18,8 +16,10 @@ from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.tasks import TaskPress, TemporalPointing
 from fdvv.program.button import compile_button
 from fdvv.program.surface import Limits
-from fdvv.protocol.strip_tables import StripLed
 from fdvv.protocol.tables import Fault
+from fdvv_strip.board import KeyLine, LedPointingTask, StripResult, StripRound, StripStart
+from fdvv_strip.library import LibraryStrip, open_strip, strip_port
+from fdvv_strip.tables import StripLed
 
 LATE_s = 0.002
 """A bullet so late is not where the task says: a fifth of the time it takes for a pixel at 100 px/s."""
@@ -208,6 +208,18 @@ def run_on_any_strip(
     yield from run_on_strip(session, device, strip, rounds=task.rounds, ready=sit_down, presser=presser)
 
 
+@contextmanager
+def present_on_strip(
+    spec: str, device: Remote, ready: Callable[[Trial], None]
+) -> Iterator[Callable[[Optimization], Iterator[Trial]]]:
+    """Open the strip that spec names (STRIPS); yield what plays a session there, see run_on_any_strip.
+
+    What ``fdvv optimize`` finds by its entry point. Raises InputError, DeviceError.
+    """
+    with open_strip(spec) as strip:
+        yield lambda session: run_on_any_strip(session, device, strip, ready)
+
+
 def _task(session: Optimization, rounds: int) -> TemporalPointing:
     setup = session.setup
     if setup.task != POINTING or setup.level is None:
@@ -254,7 +266,7 @@ def check_strip(
 ) -> StripCheck:
     """Light a strip's ends and middle, then play rounds at a level.
 
-    spec : of the strip (fdvv.device.strip_library.STRIPS). led : "each" or "together". meanwhile : called
+    spec : of the strip (fdvv_strip.library.STRIPS). led : "each" or "together". meanwhile : called
         some times a second. Raises InputError, DeviceError.
     """
     task, port = TemporalPointing(level, rounds, quantised=False), strip_port(spec)

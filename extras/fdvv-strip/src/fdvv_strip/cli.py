@@ -10,9 +10,9 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import remote
-from fdvv.optimize.run.strip import StripCheck, check_strip, rendering
 from fdvv.optimize.tasks import TaskPress
 from fdvv.rendering.tuning import program_image
+from fdvv_strip.run import StripCheck, check_strip, rendering
 
 
 @click.command()

@@ -14,7 +14,7 @@ from fdvv._native import library
 from fdvv.errors import ModelError
 from fdvv.protocol.frame import Frame, FrameDecoder, decode, encode
 from fdvv.protocol.messages import REPLY
-from fdvv.protocol.strip_tables import (
+from fdvv_strip.tables import (
     STRIP_HASH,
     STRIP_REPLY_BYTES,
     STRIP_REQUEST_BYTES,

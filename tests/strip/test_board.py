@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from fdvv.device.strip import LedPointingTask, StripRound
-from fdvv.device.strip_library import LibraryStrip, open_strip
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.protocol.frame import Frame, FrameDecoder, encode
 from fdvv.protocol.messages import REPLY
-from fdvv.protocol.strip_tables import STRIP_HASH, StripHelloReply, StripMessage, StripMode
+from fdvv_strip.board import LedPointingTask, StripRound
+from fdvv_strip.library import LibraryStrip, open_strip
+from fdvv_strip.tables import STRIP_HASH, StripHelloReply, StripMessage, StripMode
 
 QUICK = StripRound(200, 0.1, zone_px=40, after_s=0.2)
 
