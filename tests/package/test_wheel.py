@@ -14,11 +14,14 @@ from pathlib import Path
 import pytest
 from tests.package.conftest import REPOSITORY, Builder, Packages, clean_environment, new_environment, unpacked
 
+from fdvv._native.structures import HEADERS
+
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
 
 NEEDED = (
     "_native/libfdvv.so",
     "_native/fdvv-host",
+    *(f"_native/{name}" for name in HEADERS),
     "model/builtin/mx-clear.fdvv.json",
     "study/words.toml",
     "study/templates/realism.toml",
@@ -39,7 +42,7 @@ def test_the_wheel_holds_the_package_and_nothing_beside_it(packages: Packages) -
     assert [name for name in NEEDED if f"fdvv/{name}" not in names] == []
     version = packages.wheel.name.split("-")[1]
     assert {name.split("/")[0] for name in names} == {"fdvv", f"fdvv-{version}.dist-info"}
-    assert [name for name in names if name.endswith((".c", ".h", ".tmp", ".pyc"))] == []
+    assert [name for name in names if name.endswith((".c", ".tmp", ".pyc"))] == []
     assert packages.wheel.stat().st_size < LARGEST_wheel_bytes
 
 
