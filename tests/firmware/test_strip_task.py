@@ -18,7 +18,7 @@ from fdvv.optimize.tasks import TemporalPointing
 from fdvv.program.button import compile_button
 from fdvv_m0.board import EmulatedBoard
 from fdvv_strip.board import LedPointingTask, StripStart
-from fdvv_strip.run import play_on_strip, played_presser
+from fdvv_strip.task import play_on_strip, played_presser
 
 from ._m0 import CONTROLLER
 from ._m0 import build as build_controller

@@ -14,11 +14,6 @@ from fdvv_strip.tables import STRIP_HASH, StripHelloReply, StripMessage, StripMo
 QUICK = StripRound(200, 0.1, zone_px=40, after_s=0.2)
 
 
-@pytest.fixture
-def line() -> LibraryStrip:
-    return LibraryStrip()
-
-
 class Silent:
     """A line at whose end nobody answers, or something that only ever says one thing."""
 

@@ -12,7 +12,8 @@ from fdvv.cli import ui
 from fdvv.cli.options import remote
 from fdvv.optimize.tasks import TaskPress
 from fdvv.rendering.tuning import program_image
-from fdvv_strip.run import StripCheck, check_strip, rendering
+from fdvv_strip.check import StripCheck, check_strip
+from fdvv_strip.run import rendering
 
 
 @click.command()
