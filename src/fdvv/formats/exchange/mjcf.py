@@ -175,7 +175,9 @@ def scene_xml(model: FDVVModel, cap_mass_g: float, springs: SpringButton | None)
 
     look: Any = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
     scene = Template(
-        files("fdvv.formats.exchange").joinpath("scene.xml").read_text(), undefined=StrictUndefined, **look
+        files("fdvv.formats.exchange").joinpath("scene.xml").read_text("utf-8"),
+        undefined=StrictUndefined,
+        **look,
     )
     start_N, slope_N_m, bends = _springs(springs) if springs else (0.0, 0.0, [])
     points_mm = {"button_actuation_m": model.actuation_mm, "button_reset_m": model.reset_mm}
