@@ -16,15 +16,15 @@ import numpy as np
 
 from fdvv.button.export_file import export_vibration
 from fdvv.button.import_file import ImportSettings, import_file
-from fdvv.formats.exchange.mjcf import mjcf
-from fdvv.formats.exchange.mujoco import mujoco_button
-from fdvv.formats.exchange.smartknob import smartknob
 from fdvv.model.curve import Stroke
 from fdvv.model.file import builtin_names, load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.model.vibration import Mode, Vibration
 from fdvv.vibration.inverse import correlation, spectral_similarity, spqi, st_sim
 from fdvv.vibration.wave import LISTEN_Hz, vibration_samples
+from fdvv_haptics.mjcf import mjcf
+from fdvv_haptics.mujoco import mujoco_button
+from fdvv_haptics.smartknob import smartknob
 
 DRAWS, SEED = 200, 1
 MEASURES = ("correlation", "spectral_similarity", "st_sim", "spqi")

@@ -31,6 +31,7 @@ EXTRAS = {
     "fdvv_strip": (["device", "strip", "--strip", "host"], "fdvv-strip"),
     "fdvv_switch": (["mechanism", "mx-red"], "fdvv-switch"),
     "fdvv_m0": (["device", "info", "--device", "emulated"], "fdvv-m0"),
+    "fdvv_haptics": (["export", "mx-clear", "-o", "clear.ahap"], "fdvv-haptics"),
 }
 """A command that needs what an extra brings, by a module of it."""
 

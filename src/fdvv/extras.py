@@ -11,9 +11,11 @@ from fdvv.errors import BuildError
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-Kind = Literal["commands", "device_commands", "engines", "pair_engines", "devices", "presenters"]
+Kind = Literal[
+    "commands", "device_commands", "engines", "pair_engines", "devices", "presenters", "exchange_formats"
+]
 """What an extra can add: a click command of ``fdvv`` or of ``fdvv device``, an engine of ``fdvv optimize``, a
-board in lockstep, or what presents the rounds of ``fdvv optimize`` to a person."""
+board in lockstep, what presents the rounds of ``fdvv optimize`` to a person, or a format of ``fdvv export``."""
 
 KNOWN = MappingProxyType(
     {
@@ -24,6 +26,11 @@ KNOWN = MappingProxyType(
         ("pair_engines", "preference-botorch"): "fdvv-botorch",
         ("devices", "emulated"): "fdvv-m0",
         ("presenters", "strip"): "fdvv-strip",
+        ("exchange_formats", "mjcf"): "fdvv-haptics",
+        ("exchange_formats", "smartknob"): "fdvv-haptics",
+        ("exchange_formats", "ahap"): "fdvv-haptics",
+        ("exchange_formats", "haptic"): "fdvv-haptics",
+        ("exchange_formats", "hjif"): "fdvv-haptics",
     }
 )
 """The package that brings a name, installed or not: what an error tells a person to install."""
@@ -42,6 +49,15 @@ def names(kind: Kind) -> tuple[str, ...]:
     """Return the names of a kind: the known ones, installed or not, then those of other packages."""
     known = [name for group, name in KNOWN if group == kind]
     return tuple(dict.fromkeys([*known, *sorted(installed(kind))]))
+
+
+def absent(kind: Kind) -> dict[str, list[str]]:
+    """Return the known names of a kind that are not installed, by the package that brings them."""
+    found: dict[str, list[str]] = {}
+    for (group, name), package in KNOWN.items():
+        if group == kind and name not in installed(kind):
+            found.setdefault(package, []).append(name)
+    return found
 
 
 def load(kind: Kind, name: str) -> Any:

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from fdvv.button.export_file import (
     EXPORT_FORMATS,
-    ExportSettings,
     export_button,
     export_format,
     export_vibration,
@@ -19,6 +18,7 @@ from fdvv.button.export_file import (
 )
 from fdvv.button.import_file import ImportSettings, import_file
 from fdvv.errors import FdvvError, InputError
+from fdvv.formats.exchange.exchange_format import ExportSettings
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin, save_model
 from fdvv.model.model import FDVVModel, Provenance

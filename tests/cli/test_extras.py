@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from types import MappingProxyType
+from pathlib import Path
+from types import MappingProxyType, SimpleNamespace
 
 import pytest
 
 from fdvv import extras
+from fdvv.button.export_file import EXPORT_FORMATS
 from fdvv.errors import BuildError
+from fdvv.formats.exchange.exchange_format import ButtonFormat, ExportSettings
+from fdvv.formats.exchange.exported import Exported
+from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.registry import engine_names, engine_of, pair_engine_of
 from tests.cli.conftest import Run
 
@@ -29,11 +34,15 @@ def bare(monkeypatch: pytest.MonkeyPatch) -> None:
         (["device", "info", "--device", "emulated"], "fdvv-m0"),
         (["device", "strip", "--strip", "host"], "fdvv-strip"),
         (["optimize", "run", "--folder", "run", "--strip", "host"], "fdvv-strip"),
+        (["export", "mx-clear", "--to", "ahap", "-o", "a.ahap"], "fdvv-haptics"),
+        (["export", "mx-red", "-o", "a.xml"], "fdvv-haptics"),
+        (["import", "a.haptic", "--into", "mx-red", "-o", "a.fdvv.json"], "fdvv-haptics"),
     ],
 )
 def test_what_an_absent_extra_brings_is_refused_with_what_to_install(
-    fdvv: Run, words: list[str], package: str
+    fdvv: Run, tmp_path: Path, words: list[str], package: str
 ) -> None:
+    (tmp_path / "a.haptic").write_text('{"signals": {}}')
     ran = fdvv(*words)
     assert ran.status == 1
     assert ran.err.count("\n") == 1
@@ -55,6 +64,35 @@ def test_help_lists_the_commands_that_are_installed(fdvv: Run) -> None:
     assert "compensate" in shown
     assert "mechanism" not in shown
     assert "LED strip" not in fdvv("device", "--help").out
+
+
+@pytest.mark.usefixtures("bare")
+def test_the_list_of_formats_names_those_that_are_absent_and_what_brings_them(fdvv: Run) -> None:
+    *table, last = fdvv("export", "--list").out.splitlines()
+    assert [row.split()[0] for row in table[1:]] == [form.name for form in EXPORT_FORMATS]
+    absent = "mjcf, smartknob, ahap, haptic, hjif"
+    assert last == f"not installed: {absent}; they come with fdvv-haptics: pip install fdvv-haptics"
+
+
+@pytest.mark.usefixtures("bare")
+def test_formats_of_the_core_need_no_extra(fdvv: Run) -> None:
+    for name, suffix in (("haata", ".csv"), ("tester-json", ".json"), ("wav", ".wav")):
+        assert fdvv("export", "mx-clear", "--to", name, "-o", f"a{suffix}").status == 0
+    assert fdvv("import", "a.csv", "-o", "a.fdvv.json").status == 0
+
+
+def test_a_format_of_another_package_is_listed_and_written(
+    fdvv: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def written(model: FDVVModel, _settings: ExportSettings) -> Exported:
+        return Exported("own", model.name.encode())
+
+    own = ButtonFormat("own", ".own", "the name", "button", write=written)
+    entry = SimpleNamespace(load=lambda: own)
+    monkeypatch.setattr(extras, "installed", lambda _kind: MappingProxyType({"own": entry}))
+    assert "own" in fdvv("export", "--list").out
+    assert fdvv("export", "mx-red", "-o", "a.own").status == 0
+    assert (tmp_path / "a.own").read_bytes() == b"mx-red"
 
 
 def test_help_imports_no_extra() -> None:

@@ -11,13 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError, ModelError
-from fdvv.formats.exchange.ahap import ahap, read_ahap
 from fdvv.formats.exchange.exported import Exported
-from fdvv.formats.exchange.hjif import hjif, read_hjif
-from fdvv.formats.exchange.meta_haptic import meta_haptic, read_meta_haptic
-from fdvv.formats.exchange.pulse import Pulse, frequency_Hz, mode_of, pulse_of, sharpness
 from fdvv.model.curve import Stroke
 from fdvv.model.vibration import Mode, Vibration
+from fdvv_haptics.ahap import ahap, read_ahap
+from fdvv_haptics.hjif import hjif, read_hjif
+from fdvv_haptics.meta_haptic import meta_haptic, read_meta_haptic
+from fdvv_haptics.pulse import Pulse, frequency_Hz, mode_of, pulse_of, sharpness
 
 DATE = "2026-01-01"
 SNAP = Vibration(Stroke.PRESS, None, 1.0, 0.03, (Mode(239.0, 4.6, 131.0),))

@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError
-from fdvv.formats.exchange.ahap import ahap, read_ahap
-from fdvv.formats.exchange.hjif import hjif, read_hjif
-from fdvv.formats.exchange.meta_haptic import meta_haptic, read_meta_haptic
-from fdvv.formats.exchange.pulse import mode_of
 from fdvv.model.curve import Stroke
 from fdvv.model.vibration import Mode, Vibration
+from fdvv_haptics.ahap import ahap, read_ahap
+from fdvv_haptics.hjif import hjif, read_hjif
+from fdvv_haptics.meta_haptic import meta_haptic, read_meta_haptic
+from fdvv_haptics.pulse import mode_of
 
 SNAP = Vibration(Stroke.PRESS, None, 1.0, 0.03, (Mode(239.0, 4.6, 131.0),))
 FILES: dict[str, tuple[bytes, Callable[[bytes, float], Any]]] = {

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from fdvv.errors import BuildError, ModelError
-from fdvv.formats.exchange.mjcf import mjcf, polyline, spring_button
-from fdvv.formats.exchange.mujoco import MujocoButton, mujoco_button
 from fdvv.model.curve import Stroke
 from fdvv.model.file import builtin_names, load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
+from fdvv_haptics.mjcf import mjcf, polyline, spring_button
+from fdvv_haptics.mujoco import MujocoButton, mujoco_button
 
 mujoco: Any = pytest.importorskip("mujoco")
 

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.formats.exchange.smartknob import KnobDetents, knob_detents, smartknob
 from fdvv.model.bump import find_bump
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
+from fdvv_haptics.smartknob import KnobDetents, knob_detents, smartknob
 
 
 def _snapped(detents: KnobDetents, way: list[float]) -> list[float]:

@@ -46,6 +46,14 @@ def test_the_wheel_holds_the_package_and_nothing_beside_it(packages: Packages) -
     assert packages.wheel.stat().st_size < LARGEST_wheel_bytes
 
 
+def test_the_wheel_of_an_extra_holds_its_modules_and_templates(builder: Builder, tmp_path: Path) -> None:
+    for sources in sorted((REPOSITORY / "extras").glob("*/src")):
+        files = [path.relative_to(sources) for path in sources.rglob("*") if path.is_file()]
+        wanted = {path.as_posix() for path in files if path.suffix != ".pyc"}
+        wheel = zipfile.ZipFile(builder.build("wheel", sources.parent, tmp_path))
+        assert wanted == {name for name in wheel.namelist() if ".dist-info/" not in name}
+
+
 def test_the_sdist_holds_all_sources_and_nothing_that_was_built(packages: Packages) -> None:
     with tarfile.open(packages.sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
@@ -89,10 +97,8 @@ def test_the_wheel_works_alone_without_extras_and_without_the_repository(
     )
     assert (ran.returncode, ran.stderr) == (0, "")
     # the extras are really away, else nothing was proven of them
-    extras = (
-        "fdvv[plot], fdvv[study], fdvv[optimize], fdvv[serial], fdvv-rig, fdvv-strip, fdvv-switch, fdvv-m0"
-    )
-    assert extras in ran.stdout
+    parts = "fdvv[plot], fdvv[study], fdvv[optimize], fdvv[serial]"
+    assert f"{parts}, fdvv-rig, fdvv-strip, fdvv-switch, fdvv-m0, fdvv-haptics" in ran.stdout
     where = "import fdvv; print(fdvv.__file__)"
     found = subprocess.run(
         [str(python), "-P", "-c", where],

@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Literal
 
+from fdvv import extras
 from fdvv.button.open import open_button
 from fdvv.errors import InputError
-from fdvv.formats.exchange.ahap import ahap, read_ahap
 from fdvv.formats.exchange.curves import bluepylons_csv, curves_csv, haata_csv, switch_tester_json
+from fdvv.formats.exchange.exchange_format import ExportFormat, ExportSettings, VibrationFormat
 from fdvv.formats.exchange.exported import Exported
 from fdvv.formats.exchange.frames import recording_csv
-from fdvv.formats.exchange.hjif import hjif, read_hjif
-from fdvv.formats.exchange.meta_haptic import meta_haptic, read_meta_haptic
-from fdvv.formats.exchange.mjcf import Follow, mjcf
-from fdvv.formats.exchange.pulse import mode_of
-from fdvv.formats.exchange.smartknob import smartknob
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.model.vibration import Vibration
@@ -26,39 +21,6 @@ from fdvv.program.render_vibration import vibration_wav
 from fdvv.recording.file import RECORDING_SUFFIX, load_recording
 from fdvv.vibration.inverse import correlation, spectral_similarity, spqi, st_sim
 from fdvv.vibration.wave import LISTEN_Hz, vibration_samples
-
-
-@dataclass(frozen=True)
-class ExportSettings:
-    """Settings of an export; each format uses those that concern it.
-
-    Attributes
-    ----------
-    stroke, velocity_mm_s : of the vibration, or of the press where a format holds one: the slowest by
-        default, with MuJoCo the mean of all.
-    step_mm : between the samples of a curve.
-    follow : what MuJoCo's springs draw.
-    cap_mass_g : of the body in MuJoCo.
-    degrees_per_mm : how far a knob turns for a millimetre.
-    """
-
-    stroke: Stroke = Stroke.PRESS
-    velocity_mm_s: float | None = None
-    step_mm: float = 0.01
-    follow: Follow = "press"
-    cap_mass_g: float = 1.0
-    degrees_per_mm: float = 10.0
-
-
-@dataclass(frozen=True)
-class ExportFormat:
-    """A format: its name, the file's ending, what is written, and what it is of."""
-
-    name: str
-    suffix: str
-    about: str
-    of: Literal["button", "vibration", "recording"]
-
 
 EXPORT_FORMATS = (
     ExportFormat("csv", ".csv", "all curves in one table, mm and cN", "button"),
@@ -68,34 +30,45 @@ EXPORT_FORMATS = (
     ExportFormat("mjcf", ".xml", "MuJoCo: a slide joint with springs, friction and damping", "button"),
     ExportFormat("smartknob", ".json", "SmartKnobConfig: the snap as two detents", "button"),
     ExportFormat("wav", ".wav", "the vibration as a sound, 48 kHz, 16 bit", "vibration"),
-    ExportFormat("ahap", ".ahap", "Apple Core Haptics: intensity and sharpness over time", "vibration"),
-    ExportFormat("haptic", ".haptic", "Meta Haptics: amplitude and frequency over time", "vibration"),
-    ExportFormat("hjif", ".hjif", "MPEG haptics, ISO/IEC 23090-31: every mode as a sine", "vibration"),
+    ExportFormat(
+        "ahap", ".ahap", "Apple Core Haptics: intensity and sharpness over time", "vibration", b'"Pattern"'
+    ),
+    ExportFormat(
+        "haptic", ".haptic", "Meta Haptics: amplitude and frequency over time", "vibration", b'"signals"'
+    ),
+    ExportFormat(
+        "hjif", ".hjif", "MPEG haptics, ISO/IEC 23090-31: every mode as a sine", "vibration", b'"perceptions"'
+    ),
     ExportFormat("recording-csv", ".csv", "a recording: a row for each sample", "recording"),
 )
-"""Formats that a button can be exported to."""
+"""Formats that a button can be exported to: those of this package and the known ones of extras."""
 
 _BUTTONS: dict[str, Callable[[FDVVModel, ExportSettings], Exported]] = {
     "csv": lambda model, s: curves_csv(model, s.step_mm),
     "bluepylons-csv": lambda model, s: bluepylons_csv(model, s.velocity_mm_s, s.step_mm),
     "haata": lambda model, s: haata_csv(model, s.step_mm),
     "tester-json": lambda model, s: switch_tester_json(model, s.velocity_mm_s, s.step_mm),
-    "mjcf": lambda model, s: mjcf(
-        model, cap_mass_g=s.cap_mass_g, follow=s.follow, velocity_mm_s=s.velocity_mm_s
-    ),
-    "smartknob": lambda model, s: smartknob(model, s.velocity_mm_s, s.degrees_per_mm),
 }
+
+
+def export_formats() -> tuple[ExportFormat, ...]:
+    """Return all formats: the known ones, installed or not, then those of other packages."""
+    known = {form.name for form in EXPORT_FORMATS}
+    others = [name for name in extras.names("exchange_formats") if name not in known]
+    return (*EXPORT_FORMATS, *(extras.load("exchange_formats", name) for name in others))
 
 
 def export_format(name: str | None, output: Path | str, of: str = "button") -> ExportFormat:
     """Find a format by its name, or else by the file's suffix. Raises InputError."""
-    known = {f.name: f for f in EXPORT_FORMATS}
+    known = {f.name: f for f in export_formats()}
     if name is not None:
         if name not in known:
             raise InputError(name, "format", "no such format", f"choose one of {', '.join(known)}")
         return known[name]
     suffix = Path(output).suffix.lower()
-    found = [f for f in EXPORT_FORMATS if f.suffix == suffix and (of == "recording") == (f.of == "recording")]
+    found = [
+        f for f in export_formats() if f.suffix == suffix and (of == "recording") == (f.of == "recording")
+    ]
     # the plain table is what a .csv is, the others are layouts of particular benches
     if suffix == ".csv" and found:
         return found[0]
@@ -116,7 +89,7 @@ def export_button(
     """Make the file of another program for what spec names: a button, or a recording.
 
     spec : as open_button takes it, or a recording's file. to : the format, or None to take it from output's
-        suffix. Nothing is written. Raises InputError.
+        suffix. Nothing is written. Raises InputError, and BuildError if the format's extra is not installed.
     """
     chosen = settings or ExportSettings()
     if is_recording(spec):
@@ -128,11 +101,12 @@ def export_button(
     form = export_format(to, output)
     if form.of == "recording":
         raise InputError(spec, "argument", f"{form.name} is of a recording", "name a *.recording.jsonl")
+    extra = None if form.name in (*_BUTTONS, "wav") else extras.load("exchange_formats", form.name)
     model = open_button(spec)
     if form.of == "button":
-        if form.name in ("mjcf", "smartknob") and not model.of(Stroke.PRESS):
+        if extra and extra.needs_press and not model.of(Stroke.PRESS):
             raise InputError(spec, "curves", "it has no press curve", "give it one with fdvv assign")
-        return _BUTTONS[form.name](model, chosen)
+        return (extra.write if extra else _BUTTONS[form.name])(model, chosen)
     vibration = vibration_of(spec, model, chosen.stroke, chosen.velocity_mm_s or 0.0)
     return export_vibration(vibration, form.name, model.name)
 
@@ -157,10 +131,8 @@ def export_vibration(vibration: Vibration, form: str, name: str, date: str | Non
         made = vibration_wav(vibration)
         kept, lost = ("the acceleration at 48 kHz",), ("strength below a 32767th of the peak",)
         return Exported("wav", made.data, kept, lost, {"full_scale_m_s2": made.full_scale})
-    if form == "hjif":
-        written = hjif(vibration, date or datetime.now(UTC).date().isoformat(), name)
-    else:
-        written = (ahap if form == "ahap" else meta_haptic)(vibration, name)
+    extra: VibrationFormat = extras.load("exchange_formats", form)
+    written = extra.write(vibration, name, date or datetime.now(UTC).date().isoformat())
     a, b = vibration_samples(read_back(vibration, written)), vibration_samples(vibration)
     likeness = {
         "correlation": correlation(a, b),
@@ -173,8 +145,6 @@ def export_vibration(vibration: Vibration, form: str, name: str, date: str | Non
 
 def read_back(vibration: Vibration, written: Exported) -> Vibration:
     """Read an exported haptic file as a vibration at the position and stroke of the original."""
-    if written.format == "hjif":
-        modes, duration_s = read_hjif(written.data)
-        return replace(vibration, modes=modes, duration_s=duration_s, spread=None)
-    pulse = (read_ahap if written.format == "ahap" else read_meta_haptic)(written.data)
-    return replace(vibration, modes=(mode_of(pulse),), duration_s=float(pulse.t_s[-1]), spread=None)
+    extra: VibrationFormat = extras.load("exchange_formats", written.format)
+    read = extra.read(written.data, None)
+    return replace(vibration, modes=read.modes, duration_s=read.duration_s, spread=None)

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from fdvv import extras
+from fdvv.button.export_file import export_formats
 from fdvv.button.fit import FitSettings, fit_file, one_line
 from fdvv.button.open import open_button
 from fdvv.errors import FitError, InputError, ModelError
-from fdvv.formats.exchange.ahap import read_ahap
-from fdvv.formats.exchange.hjif import read_hjif
-from fdvv.formats.exchange.meta_haptic import read_meta_haptic
-from fdvv.formats.exchange.pulse import mode_of
+from fdvv.formats.exchange.exchange_format import VibrationFormat, VibrationRead
 from fdvv.io.documents import own_kind
 from fdvv.io.files import read_limited
 from fdvv.model.curve import Stroke
@@ -92,9 +90,10 @@ class Imported:
 
 
 def import_file(path: Path | str, settings: ImportSettings | None = None) -> Imported:
-    """Read a file of another program, known by its content, into a model. Raises InputError.
+    """Read a file of another program, known by its content, into a model.
 
-    Curves go the way of ``fdvv fit``; a vibration needs the button it is to be given to.
+    Curves go the way of ``fdvv fit``; a vibration needs the button it is to be given to. Raises InputError,
+    and BuildError if the format's extra is not installed.
     """
     path, chosen = Path(path), settings or ImportSettings()
     kind = own_kind(path)
@@ -103,7 +102,7 @@ def import_file(path: Path | str, settings: ImportSettings | None = None) -> Imp
     form = _format(path)
     if form is None:
         return _curves(path, chosen)
-    return _given(path, chosen, form, _READERS[form](path, chosen.full_scale_m_s2))
+    return _given(path, chosen, form, _read(path, form, chosen.full_scale_m_s2))
 
 
 def _format(path: Path) -> str | None:
@@ -124,9 +123,10 @@ def _format(path: Path) -> str | None:
     if b'"detent_strength_unit"' in head:
         reason = "is a SmartKnobConfig, which holds no force curve"
         raise InputError(path, "whole file", reason, REMEDY)
-    marks = {b'"perceptions"': "hjif", b'"Pattern"': "ahap", b'"signals"': "haptic"}
-    marked = next((form for mark, form in marks.items() if mark in head), None)
-    return marked or {".ahap": "ahap", ".haptic": "haptic", ".hjif": "hjif"}.get(path.suffix.lower())
+    # the longest mark is the surest
+    forms = sorted((f for f in export_formats() if f.mark), key=lambda f: len(f.mark), reverse=True)
+    marked = next((f.name for f in forms if f.mark in head), None)
+    return marked or {f.suffix: f.name for f in forms}.get(path.suffix.lower())
 
 
 def _curves(path: Path, settings: ImportSettings) -> Imported:
@@ -152,24 +152,14 @@ def _name(text: str) -> str:
     return name
 
 
-Read = tuple[tuple[Mode, ...], float, tuple[str, ...]]
-"""Modes, duration in s, and notes of what was assumed."""
+def _read(path: Path, form: str, scale_m_s2: float | None) -> VibrationRead:
+    if form == "wav":
+        return _wav(path, scale_m_s2)
+    extra: VibrationFormat = extras.load("exchange_formats", form)
+    return extra.read(path, scale_m_s2)
 
 
-def _pulse(read: Callable[..., Any]) -> Callable[[Path, float | None], Read]:
-    def reader(path: Path, scale: float | None) -> Read:
-        pulse = read(path, scale)
-        try:
-            mode = mode_of(pulse)
-        except ModelError as error:
-            raise InputError(path, "whole file", str(error), "give one that is not") from error
-        note = "it tells no phase, which was taken for 0; of what beats one mode is kept"
-        return (mode,), float(pulse.t_s[-1]), (note,)
-
-    return reader
-
-
-def _wav(path: Path, scale: float | None) -> Read:
+def _wav(path: Path, scale: float | None) -> VibrationRead:
     if scale is None:
         raise InputError(path, "samples", "a sound does not say what full scale is", "pass --full-scale-m-s2")
     sound = read_wav(read_limited(path, LARGEST_bytes, "give a sound of a second or less"))
@@ -191,7 +181,7 @@ def _wav(path: Path, scale: float | None) -> Read:
         raise InputError(path, "samples", "no damped mode in it", "give a snap's sound")
     modes = tuple(Mode(m.frequency_Hz, m.amplitude, m.decay_1_s, m.phase_rad) for m in fit.modes)
     note = f"{len(modes)} damped modes, {fit.noise:.3g} m/s2 of noise left per sample"
-    return modes, ring.size / sound.rate_Hz, (note,)
+    return VibrationRead(modes, ring.size / sound.rate_Hz, notes=(note,))
 
 
 def _thinned(samples: FloatArray, rate_Hz: int) -> tuple[FloatArray, float]:
@@ -202,35 +192,27 @@ def _thinned(samples: FloatArray, rate_Hz: int) -> tuple[FloatArray, float]:
     return (samples if down == 1 else np.asarray(resample_poly(samples, 1, down))), rate_Hz / down
 
 
-_READERS: dict[str, Callable[[Path, float | None], Read]] = {
-    "ahap": _pulse(read_ahap),
-    "haptic": _pulse(read_meta_haptic),
-    "hjif": lambda path, scale: (*read_hjif(path, scale), ()),
-    "wav": _wav,
-}
-
-
-def _given(path: Path, settings: ImportSettings, form: str, read: Read) -> Imported:
+def _given(path: Path, settings: ImportSettings, form: str, read: VibrationRead) -> Imported:
     """Put a vibration into a button, in place of the one it has there."""
-    modes, duration_s, notes = read
     if settings.into is None:
         raise InputError(path, "whole file", "holds a vibration, no button", "name the button with --into")
     model = open_button(settings.into)
-    onset = settings.onset_mm
+    onset, assumed = settings.onset_mm, read.assumptions
     if onset is None:
         onset, where = _onset(model, settings)
-        notes = (*notes, f"no file tells where it starts: put at {where}, {onset:.3f} mm")
+        assumed = (*assumed, f"no file tells where it starts: put at {where}, {onset:.3f} mm")
     try:
-        vibration = Vibration(settings.stroke, settings.velocity_mm_s, onset, duration_s, modes)
+        vibration = Vibration(settings.stroke, settings.velocity_mm_s, onset, read.duration_s, read.modes)
         others = tuple(v for v in model.vibrations if not _same_place(v, vibration))
         made = replace(
             model,
             name=model.name if settings.name is None else _name(settings.name),
             vibrations=(*others, vibration),
-            provenance=_noted(model.provenance, path, form, notes),
+            provenance=_noted(model.provenance, path, form, assumed),
         )
     except ModelError as error:
         raise InputError(path, "vibration", str(error), "check stroke, velocity and onset") from error
+    notes = (*read.notes, *assumed)
     if len(others) < len(model.vibrations):
         notes = (*notes, f"{len(model.vibrations) - len(others)} vibrations of the button were replaced")
     return Imported(made, form, notes)
@@ -256,7 +238,6 @@ def _onset(model: FDVVModel, settings: ImportSettings) -> tuple[float, str]:
     return (model.travel_mm / 2, "half the travel") if point is None else (point, "the contact's point")
 
 
-def _noted(provenance: Provenance, path: Path, form: str, notes: tuple[str, ...]) -> Provenance:
+def _noted(provenance: Provenance, path: Path, form: str, assumed: tuple[str, ...]) -> Provenance:
     method = f"{provenance.method}; vibration from {one_line(path.name)} ({form})".removeprefix("; ")
-    assumed = [note for note in notes if note.startswith(("no file tells", "it tells no phase"))]
     return replace(provenance, method=method, assumptions=(*provenance.assumptions, *assumed))

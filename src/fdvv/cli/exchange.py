@@ -7,9 +7,11 @@ from typing import Any
 
 import click
 
-from fdvv.button.export_file import EXPORT_FORMATS, ExportSettings, export_button, export_format, is_recording
+from fdvv import extras
+from fdvv.button.export_file import export_button, export_format, export_formats, is_recording
 from fdvv.button.import_file import ImportSettings, import_file
 from fdvv.cli import ui
+from fdvv.formats.exchange.exchange_format import ExportSettings
 from fdvv.formats.exchange.exported import Exported
 from fdvv.model.curve import Stroke
 from fdvv.model.file import MODEL_SUFFIX, save_model
@@ -19,8 +21,12 @@ def _list(ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
     if not wanted or ctx.resilient_parsing:
         return
     ui.print_table(
-        ["format", "ending", "what is written"], [[f.name, f.suffix, f.about] for f in EXPORT_FORMATS], left=3
+        ["format", "ending", "what is written"],
+        [[f.name, f.suffix, f.about] for f in export_formats()],
+        left=3,
     )
+    for package, names in extras.absent("exchange_formats").items():
+        click.echo(f"not installed: {', '.join(names)}; they come with {package}: pip install {package}")
     ctx.exit()
 
 

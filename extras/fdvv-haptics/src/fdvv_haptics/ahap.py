@@ -14,18 +14,11 @@ import msgspec
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.formats.exchange.exported import Exported, json_bytes
-from fdvv.formats.exchange.pulse import (
-    Curves,
-    LONGEST_s,
-    Pulse,
-    check_points,
-    frequency_Hz,
-    read_json,
-    read_scale,
-)
+from fdvv.formats.exchange.exported import Exported
 from fdvv.model.vibration import Vibration
 from fdvv.units import FloatArray
+from fdvv_haptics.json_file import check_points, json_bytes, read_json
+from fdvv_haptics.pulse import Curves, LONGEST_s, Pulse, frequency_Hz, read_scale
 
 REMEDY = "give an AHAP file with at least one haptic event"
 POINTS_per_curve = 16

@@ -15,11 +15,12 @@ import msgspec
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.formats.exchange.exported import Exported, json_bytes
-from fdvv.formats.exchange.mjcf import polyline
-from fdvv.formats.exchange.pulse import LONGEST_s, Pulse, check_points, mode_of, read_json, read_scale
+from fdvv.formats.exchange.exported import Exported
 from fdvv.model.vibration import Mode, Vibration
 from fdvv.units import FloatArray
+from fdvv_haptics.json_file import check_points, json_bytes, read_json
+from fdvv_haptics.mjcf import polyline
+from fdvv_haptics.pulse import LONGEST_s, Pulse, mode_of, read_scale
 
 REMEDY = "give an HJIF file with sine effects of a vectorial band"
 TICKS_Hz = 48_000

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from importlib.resources import files
-from typing import Any, Literal
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.formats.exchange.exchange_format import Follow
 from fdvv.formats.exchange.exported import Exported
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
@@ -51,8 +52,6 @@ CAP_g = 1.0
 FAR_m = 1.0
 UNKNOWN_mm_s = 10.0
 """Curves of unknown velocity come from slow benches; every speed gives the same there."""
-Follow = Literal["press", "both"]
-"""What the line draws: the presses, which people feel first, or the middle of both strokes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,7 +174,7 @@ def scene_xml(model: FDVVModel, cap_mass_g: float, springs: SpringButton | None)
 
     look: Any = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
     scene = Template(
-        files("fdvv.formats.exchange").joinpath("scene.xml").read_text("utf-8"),
+        files("fdvv_haptics").joinpath("scene.xml").read_text("utf-8"),
         undefined=StrictUndefined,
         **look,
     )

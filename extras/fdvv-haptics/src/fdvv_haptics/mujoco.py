@@ -8,9 +8,9 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from fdvv.errors import BuildError, ModelError
-from fdvv.formats.exchange.mjcf import CAP_g, fine_surface, scene_xml
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
+from fdvv_haptics.mjcf import CAP_g, fine_surface, scene_xml
 
 TABLE_mm = 0.002
 TABLE_SPEEDS = 21

@@ -11,17 +11,13 @@ from __future__ import annotations
 import re
 from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TypeVar
 
-import msgspec
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.formats.exchange.mjcf import polyline
-from fdvv.io.files import read_limited
 from fdvv.model.vibration import Mode, Vibration
 from fdvv.units import FloatArray
+from fdvv_haptics.mjcf import polyline
 
 SHARPNESS_Hz = (65.0, 300.0)
 """Frequencies of sharpness 0 and 1 (MPEGGroup/HapticReferenceSoftware, AhapEncoder.cpp)."""
@@ -197,31 +193,3 @@ def read_scale(description: object, name: str, place: str) -> float:
         if np.isfinite(value) and value > 0:
             return value
     raise InputError(name, place, "the file does not say what 1 stands for", "give the full scale in m/s2")
-
-
-LARGEST_bytes = 4_000_000
-"""A vibration of a button takes a few kB; hours of a film's take more, and are no button."""
-MOST_POINTS = 20_000
-Record = TypeVar("Record")
-
-
-def read_json(source: Path | str | bytes, record: type[Record], name: str, remedy: str) -> Record:
-    """Read JSON into a typed record; fields it does not name are ignored, as the formats ask.
-
-    source : a path, or the file's bytes; name : of the source in messages. Raises InputError.
-    """
-    data = source if isinstance(source, bytes) else read_limited(source, LARGEST_bytes, remedy)
-    if len(data) > LARGEST_bytes:
-        raise InputError(name, "whole file", f"larger than {LARGEST_bytes // 1_000_000} MB", remedy)
-    try:
-        return msgspec.json.decode(data.removeprefix(b"\xef\xbb\xbf"), type=record)
-    except msgspec.ValidationError as error:
-        reason, _, place = str(error).partition(" - at ")
-        raise InputError(name, place.strip("`") or "$", reason, remedy) from error
-    except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
-        raise InputError(name, "whole file", f"not valid JSON ({error})", remedy) from error
-
-
-def check_points(name: str, place: str, count: int, remedy: str) -> None:
-    if count > MOST_POINTS:
-        raise InputError(name, place, f"{count} points, at most {MOST_POINTS} are read", remedy)

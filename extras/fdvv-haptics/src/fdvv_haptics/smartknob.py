@@ -17,11 +17,12 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.formats.exchange.exported import Exported, json_bytes
+from fdvv.formats.exchange.exported import Exported
 from fdvv.model.bump import Bump, find_bump
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
+from fdvv_haptics.json_file import json_bytes
 
 DEGREES_per_mm = 10.0
 """A travel of 4 mm becomes 40 degrees, near the 60 of the knob's own on/off switch."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -36,8 +35,3 @@ class Exported:
     def save(self, path: Path | str) -> None:
         """Write the file, whole or not at all. Raises OSError."""
         write_atomic(Path(path), self.data)
-
-
-def json_bytes(record: object) -> bytes:
-    """Write JSON as people read it, in UTF-8; a NaN, which JSON has not, is a ValueError."""
-    return (json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode()
