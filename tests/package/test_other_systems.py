@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from tests.package.conftest import REPOSITORY
 
-PACKAGE = REPOSITORY / "src" / "fdvv"
+SOURCES = (REPOSITORY / "src", REPOSITORY / "extras")
 READS_TEXT = {"read_text", "write_text", "open", "fdopen"}
 SUSPECT = re.compile("|".join(READS_TEXT))
 
@@ -123,8 +123,9 @@ def unnamed(tree: ast.AST) -> list[int]:
 def test_text_is_read_and_written_in_a_named_encoding() -> None:
     # Windows reads another one than UTF-8 unless told
     wrong = {
-        str(path.relative_to(PACKAGE)): lines
-        for path in sorted(PACKAGE.rglob("*.py"))
+        str(path.relative_to(REPOSITORY)): lines
+        for sources in SOURCES
+        for path in sorted(sources.rglob("*.py"))
         if SUSPECT.search(text := path.read_text(encoding="utf-8")) and (lines := unnamed(ast.parse(text)))
     }
     assert wrong == {}
