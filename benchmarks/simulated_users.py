@@ -27,10 +27,7 @@ from benchmarks.paper_means import (
     fit_paper,
     press_table,
 )
-from fdvv.model.file import load_builtin
-from fdvv.model.model import FDVVModel
-from fdvv.optimize.paper_space import paper_model, paper_space
-from fdvv.optimize.people.calibration import (
+from benchmarks.people_calibration import (
     fit_timing,
     force_spread_ratio,
     pooled_log_likelihood,
@@ -38,6 +35,9 @@ from fdvv.optimize.people.calibration import (
     spread_error_ratio,
     timing_log_likelihood,
 )
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.people.simulate import score_design
 from fdvv.optimize.people.user import SimulatedUser, draw_users
 from fdvv.optimize.tasks import TemporalPointing

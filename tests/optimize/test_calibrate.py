@@ -6,9 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-from fdvv.errors import FitError, InputError
-from fdvv.optimize.people.calibration import (
+from benchmarks.people_calibration import (
     BAATH,
     Taps,
     fit_timing,
@@ -18,6 +16,8 @@ from fdvv.optimize.people.calibration import (
     spread_error_ratio,
     timing_log_likelihood,
 )
+
+from fdvv.errors import FitError, InputError
 
 PERIODS_ms = (600.0, 1200.0, 2400.0)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from benchmarks.people_calibration import force_spread_ratio, tap_peaks
 
 from fdvv.errors import FitError
-from fdvv.optimize.people.calibration import force_spread_ratio, tap_peaks
 
 
 @pytest.mark.shared
