@@ -5,7 +5,7 @@ SHELL := /bin/bash
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
-NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch] firmware/boards/host/*.[ch])
+NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch] firmware/force_loop/*.[ch] firmware/boards/host/*.[ch])
 
 LIBRARY := $(if $(filter Darwin,$(shell uname -s)),libfdvv.dylib,libfdvv.so)
 

@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 ROOT = Path(__file__).parent
 NATIVE = ROOT / "src" / "fdvv" / "_native"
 CORE = ROOT / "firmware" / "core"
+FORCE_LOOP = ROOT / "firmware" / "force_loop"
 HOST = ROOT / "firmware" / "boards" / "host"
 PROTOCOL = ROOT / "tools" / "make_protocol.py"
 # -ffp-contract=off and no -march=native: the same bits on every x86-64 machine.
@@ -34,6 +35,8 @@ FLAGS = [
     "-Wall",
     "-Wextra",
     f"-I{CORE}",
+    f"-I{FORCE_LOOP}",
+    "-DFDVV_FORCE_LOOP",
 ]
 # warnings are errors in a checkout; an unknown compiler must not break an installation by a warning
 STRICT = ["-Werror"] if (ROOT / ".git").exists() else []
@@ -85,7 +88,7 @@ def system_of(name: str = sys.platform) -> System:
 
 def compile_native(folder: Path = NATIVE, name: str = sys.platform) -> list[Path]:
     """Build the library of all kernels and, on POSIX, the firmware as a program; return their paths."""
-    system, core = system_of(name), sorted(CORE.glob("*.c"))
+    system, core = system_of(name), sorted([*CORE.glob("*.c"), *FORCE_LOOP.glob("*.c")])
     kernels = [*sorted(NATIVE.glob("*.c")), *core, HOST / "board.c"]
     flags = [*FLAGS, *STRICT, *_architectures(name)]
     built = [_compile(folder / system.library, kernels, [*flags, *system.shared], system)]

@@ -1,5 +1,19 @@
 #include "core.h"
 
+#ifdef FDVV_FORCE_LOOP
+#include "core_loop.h"
+#else
+/* a board without a floating-point unit renders by tables */
+#define is_closed(core) 0
+#define fdvv_core_close_loop(core, gains) ((void)0)
+#define estimate(core, force_counts, force_cN64) ((void)0)
+#define ahead_um16(core) 0
+#define close_cN64(core, in) 0
+#define open_cN64(core, force_cN64) (force_cN64)
+#define advance(core) ((void)0)
+#define fill_estimates(core, record) ((void)0)
+#endif
+
 /* Servo pulse for the travel of the program, rounded to nearest, within the range of servos. */
 static uint16_t stop_pulse_us(const fdvv_settings *settings, const uint8_t *image)
 {
@@ -33,6 +47,7 @@ void fdvv_core_set(fdvv_core *core, const fdvv_settings *settings)
     fdvv_position_init(&core->position);
     fdvv_velocity_init(&core->velocity, settings);
     fdvv_predictor_init(&core->predictor, settings);
+    fdvv_core_close_loop(core, 0);
     fdvv_machine_init(&core->machine, settings);
 }
 
@@ -96,12 +111,24 @@ static void predict(fdvv_core *core, fdvv_machine_inputs *in)
     int32_t resistance_cN64;
     in->ahead_um16 = core->position.um16;
     in->command_cN64 = core->command_cN64;
+    if (is_closed(core)) {
+        in->ahead_um16 = ahead_um16(core);
+        return;
+    }
     if (!core->predictor.enabled)
         return;
     in->ahead_um16 = fdvv_predictor_ahead_um16(&core->predictor);
     in->command_cN64 = (int16_t)fdvv_clamp(core->command_cN64 + core->resistance_cN64, -INT16_MAX, INT16_MAX);
     resistance_cN64 = fdvv_predictor_resistance_cN64(&core->predictor);
     core->resistance_cN64 = (int16_t)fdvv_clamp(resistance_cN64, -INT16_MAX, INT16_MAX);
+}
+
+/* Force of the program as a command. */
+static int32_t requested_cN64(fdvv_core *core, fdvv_machine_inputs *in)
+{
+    if (is_closed(core))
+        return close_cN64(core, in);
+    return open_cN64(core, fdvv_machine_force_cN64(&core->machine, core->image, in)) - core->resistance_cN64;
 }
 
 /* One tick of a program. Returns the flags it sets. */
@@ -120,8 +147,7 @@ static uint8_t render(fdvv_core *core, const fdvv_inputs *inputs, uint16_t elaps
     predict(core, &in);
     fdvv_machine_tick(machine, core->image, &in);
     state = machine->now;
-    flags = limit_command(core, fdvv_machine_force_cN64(machine, core->image, &in) - core->resistance_cN64,
-                          limit_cN64);
+    flags = limit_command(core, requested_cN64(core, &in), limit_cN64);
     flags |= compute_duty(core, inputs->supply_mV, &outputs->duty_q15);
     outputs->enable = 1;
     outputs->slot = machine->slot;
@@ -155,6 +181,7 @@ static void fill_record(const fdvv_core *core, uint8_t flags, int16_t force_cN64
     record->force_cN64 = force_cN64;
     record->state = core->machine.state;
     record->flags = flags;
+    fill_estimates(core, record);
 }
 
 void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *outputs)
@@ -168,6 +195,7 @@ void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *ou
     fdvv_velocity_tick(&core->velocity, settings, &core->position, elapsed_ticks);
     if (core->predictor.enabled)
         fdvv_predictor_tick(&core->predictor, core->position.um16, elapsed_ticks);
+    estimate(core, inputs->force_counts, force_cN64);
     fdvv_supervisor_check(supervisor, settings, inputs, core->position.um16, force_cN64, core->command_cN64,
                           core->machine.state);
     limit_cN64 = fdvv_supervisor_limit_cN64(supervisor, settings);
@@ -176,6 +204,7 @@ void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *ou
     else
         stop_rendering(core, outputs);
     core->events = 0;
+    advance(core);
     fdvv_supervisor_heat(supervisor, settings, outputs->duty_q15, elapsed_ticks);
     if (core->position.release)
         flags |= FDVV_TICK_FLAG_RELEASE;

@@ -9,6 +9,10 @@
 #include "supervisor.h"
 #include "velocity.h"
 
+#ifdef FDVV_FORCE_LOOP
+#include "force_loop.h"
+#endif
+
 typedef struct {
     int16_t command_cN64;    /* of the last tick */
     int16_t resistance_cN64; /* drag and friction subtracted from it */
@@ -23,6 +27,9 @@ typedef struct {
     fdvv_position position;
     fdvv_velocity velocity;
     fdvv_predictor predictor;
+#ifdef FDVV_FORCE_LOOP
+    fdvv_force_loop loop;
+#endif
 } fdvv_core;
 
 /* Start in mode boot with checked settings (fdvv_settings_check) and no program. */
@@ -39,6 +46,14 @@ void fdvv_core_event(fdvv_core *core, uint8_t event);
 
 /* Announce the velocity of the next press. */
 void fdvv_core_announce(fdvv_core *core, uint16_t velocity_mm_s16);
+
+#ifdef FDVV_FORCE_LOOP
+/* Close the force loop with these gains from the next tick on; 0: render by tables. Only while idle. */
+void fdvv_core_close_loop(fdvv_core *core, const fdvv_force_loop_gains *gains);
+
+/* Why the loop was opened by itself: FDVV_LOOP_… */
+uint8_t fdvv_core_loop_fault(const fdvv_core *core);
+#endif
 
 void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *outputs);
 

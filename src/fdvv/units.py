@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 """Numbers of double precision; (n,) where no other shape is stated."""
 
 Value = TypeVar("Value", float, FloatArray)

@@ -108,7 +108,8 @@ static double read_finger(fdvv_rig *r, double noise_N) {
 static uint16_t read_keycap(const fdvv_rig *r, double noise) {
     const fdvv_rig_model *m = &r->model;
     if (m->keycap_kind <= 0.0) return 0;
-    double count = (0.5 + 0.5 * (r->keycap / m->keycap_full_scale + noise)) * m->keycap_steps + 0.5;
+    double ratio = m->keycap_gain * r->keycap / m->keycap_full_scale + m->keycap_offset + noise;
+    double count = (0.5 + 0.5 * ratio) * m->keycap_steps + 0.5;
     return (uint16_t)adc_count(count, m->keycap_steps - 0.5);
 }
 
@@ -140,7 +141,7 @@ static void write_row(const fdvv_rig *r, double t, const double *dy, double *row
     const double *y = r->y;
     row[FDVV_RIG_TIME] = t;
     row[FDVV_RIG_CAP] = y[XC], row[FDVV_RIG_SPEED] = y[VC], row[FDVV_RIG_ACCELERATION] = dy[VC];
-    row[FDVV_RIG_FORCE] = cap_contact_force(r, y), row[FDVV_RIG_SENSED] = r->sensed_N;
+    row[FDVV_RIG_FORCE] = finger_force(r, y), row[FDVV_RIG_SENSED] = r->sensed_N;
     row[FDVV_RIG_CURRENT] = y[AMPS], row[FDVV_RIG_FINGER] = y[XF], row[FDVV_RIG_MAGNET] = y[XM];
     row[FDVV_RIG_ENERGY] = r->grid.audit ? stored(r, y) - r->energy_J - y[WORK] + y[LOSS] : 0.0;
 }

@@ -11,9 +11,10 @@
 /* Constant parameters. A loss is 1.5 times alpha of Hunt and Crossley; a rate is in 1/s. */
 typedef struct {
     fdvv_finger finger;
-    double sensor_mass_kg;
+    double sensor_mass_kg;      /* of the worn cone, or of the cell's plate */
     double contact_stiffness_N_m;
     double contact_loss_s_m;
+    double cell_damping_N_s_m;  /* above 0: the contact is a cell in the cap, a linear spring that also pulls */
     double force_constant_N_A;
     double droop_1_m2;
     double droop_centre_m;
@@ -69,6 +70,8 @@ typedef struct {
     double keycap_kind;         /* 0 none, 1 force, 2 acceleration */
     double keycap_full_scale;   /* N or m/s2 */
     double keycap_rate;
+    double keycap_gain;
+    double keycap_offset;       /* relative to full scale */
     double keycap_steps;        /* of its ADC over both signs */
     double step_s;
 } fdvv_rig_model;

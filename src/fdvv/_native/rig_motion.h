@@ -20,8 +20,15 @@ static inline double clamp(double value, double low, double high) {
     return value > high ? high : value;
 }
 
+/* The conservative part of the force between cone and cap, or of the cell. */
+static inline double contact_elastic(const fdvv_rig_model *m, double depth) {
+    return m->cell_damping_N_s_m > 0.0 ? m->contact_stiffness_N_m * depth : elastic(m->contact_stiffness_N_m, depth);
+}
+
 static inline double cap_contact_force(const fdvv_rig *r, const double *y) {
     const fdvv_rig_model *m = &r->model;
+    if (m->cell_damping_N_s_m > 0.0)
+        return m->contact_stiffness_N_m * (y[XT] - y[XC]) + m->cell_damping_N_s_m * (y[VT] - y[VC]);
     return contact(m->contact_stiffness_N_m, m->contact_loss_s_m, y[XT] - y[XC], y[VT] - y[VC]);
 }
 
@@ -54,12 +61,24 @@ static inline double volts_of(const fdvv_rig *r, double henry, double kt, double
     return clamp(required, -m->supply_V, m->supply_V);
 }
 
+/* Force of the pulp on cone or plate; a bare finger does not stick to the plate. */
+static inline double pulp_on_cap(const fdvv_rig *r, const double *y, double *growth) {
+    double force = pulp_force(&r->finger, y[XF] - y[XT], y[VF] - y[VT], y[H1] + y[H2], growth);
+    return r->model.cell_damping_N_s_m > 0.0 && force < 0.0 ? 0.0 : force;
+}
+
+/* Force that the finger feels: at the cone's contact, or of the pulp on a cell's plate. */
+static inline double finger_force(const fdvv_rig *r, const double *y) {
+    double growth;
+    return r->model.cell_damping_N_s_m > 0.0 ? pulp_on_cap(r, y, &growth) : cap_contact_force(r, y);
+}
+
 static ALWAYS_INLINE void rates(const fdvv_rig *r, double t, const double *y, double *dy, int magnet, int audit) {
     const fdvv_rig_model *m = &r->model;
     double effort = 1.0 + r->effort + r->effort_per_s * (t - r->tick_s);
     double pull = effort * muscle_force(r, t, y[XF], y[VF]);
     double compression_rate = y[VF] - y[VT], arms = y[H1] + y[H2], growth;
-    double pulp = pulp_force(&r->finger, y[XF] - y[XT], compression_rate, arms, &growth);
+    double pulp = pulp_on_cap(r, y, &growth);
     double v = y[VC], amps = y[AMPS];
 
     double contact_force = cap_contact_force(r, y), deep = y[XC] - r->stop_m;
@@ -94,8 +113,11 @@ static ALWAYS_INLINE void rates(const fdvv_rig *r, double t, const double *y, do
     if (!audit) return;
     dy[WORK] = pull * y[VF] + (r->enable ? volts * amps : 0.0);
     dy[LOSS] = (r->enable ? r->ohm * amps * amps : 0.0) + m->viscous_N_s_m * v * v + arms * compression_rate +
-               (contact_force - elastic(m->contact_stiffness_N_m, y[XT] - y[XC])) * (y[VT] - y[VC]) +
+               (contact_force - contact_elastic(m, y[XT] - y[XC])) * (y[VT] - y[VC]) +
                (stop - elastic(m->stop_stiffness_N_m, deep)) * v - (top - elastic(m->top_stiffness_N_m, -y[XC])) * v;
+    /* where a bare finger would have to pull, its pulp follows without force: what it stored is lost */
+    double unclamped = pulp_force(&r->finger, y[XF] - y[XT], compression_rate, arms, &growth);
+    dy[LOSS] += (pulp - unclamped) * compression_rate;
     if (!magnet) return;
     dy[WORK] += m->magnet_motor_N_A * r->magnet_A * (y[VM] - v);
     dy[LOSS] += m->magnet_damping_N_s_m * (y[VM] - v) * (y[VM] - v);
@@ -106,7 +128,7 @@ static inline double stored(const fdvv_rig *r, const double *y) {
     const fdvv_rig_model *m = &r->model;
     const fdvv_finger *f = &r->finger;
     double compression = y[XF] - y[XT], henry = m->inductance_H + m->reluctance_H_m * (y[XC] - m->droop_centre_m);
-    double depth = fmax(y[XT] - y[XC], 0.0), deep = fmax(y[XC] - r->stop_m, 0.0), high = fmax(-y[XC], 0.0);
+    double depth = contact_elastic(m, y[XT] - y[XC]) / m->contact_stiffness_N_m, deep = fmax(y[XC] - r->stop_m, 0.0), high = fmax(-y[XC], 0.0);
     double bristle = bristle_deflection(r, y[XC]);
     double moving = f->finger_mass_kg * y[VF] * y[VF] + m->sensor_mass_kg * y[VT] * y[VT] +
                     m->frame_mass_kg * y[VC] * y[VC] + m->magnet_kg * y[VM] * y[VM] + henry * y[AMPS] * y[AMPS];

@@ -36,13 +36,13 @@ void fdvv_twin_run(fdvv_core *core, fdvv_rig *rig, int64_t ticks, const fdvv_twi
 
 /* Simulate one press from a cold, calibrated, armed rig at rest.
  *
- * settings and image must be valid; image is aligned to four bytes.
+ * settings and image must be valid; loop: gains of the force loop, or 0; image is aligned to four bytes.
  * Writes, from the beginning of the record: rows (ticks * steps_per_tick / steps_per_row, FDVV_RIG_COLUMNS);
  * tick_rows (ticks, FDVV_RIG_TICK_COLUMNS) at each tick; outputs (ticks,) of the core.
  * Returns 0; 1 if the grid is invalid; 2 if the plan is invalid or the core did not arm. */
 int fdvv_twin_press(const fdvv_rig_model *model, const fdvv_rig_grid *grid, const fdvv_twin_press_plan *plan,
-                    const fdvv_settings *settings, const uint8_t *image, const fdvv_twin_noise *noise, double *rows,
-                    double *tick_rows, fdvv_outputs *outputs);
+                    const fdvv_settings *settings, const fdvv_force_loop_gains *loop, const uint8_t *image,
+                    const fdvv_twin_noise *noise, double *rows, double *tick_rows, fdvv_outputs *outputs);
 
 /* Sizes of the structures in bytes, for Python to compare with its own. */
 void fdvv_twin_sizes(int64_t *plan_bytes, int64_t *noise_bytes, int64_t *outputs_bytes);

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Protocol, TypeVar
+from dataclasses import asdict, dataclass, fields
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
+from fdvv.compensation.force_loop.constants import ForceLoopGains
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.press import Press
@@ -32,6 +33,7 @@ class Tuning:
     drag_N_s_m : subtracted from the command, times speed.
     friction_cN : subtracted from the command in the direction of motion, in full above friction_mm_s.
     paced : use the table's row of the announced speed; else of the speed estimated during the press.
+    loop : gains of the force loop; then the table is its target, and the rest renders only if the cell fails.
     """
 
     bandwidth_Hz: float = 0.0
@@ -41,13 +43,26 @@ class Tuning:
     friction_cN: float = 0.0
     friction_mm_s: float = 10.0
     paced: bool = False
+    loop: ForceLoopGains | None = None
 
     def __post_init__(self) -> None:
-        numbers = [float(getattr(self, f.name)) for f in fields(self)]
+        numbers = [float(getattr(self, f.name)) for f in fields(self) if f.name != "loop"]
         if not np.isfinite(numbers).all() or min(numbers) < 0 or not self.friction_mm_s > 0:
             raise ModelError(
                 f"a tuning needs finite numbers of at least 0, and friction_mm_s above 0, got {self}"
             )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fields as files hold them: without loop where there is none, as before it existed."""
+        found = asdict(self)
+        if self.loop is None:
+            del found["loop"]
+        return found
+
+    def numbers(self) -> FloatArray:
+        """Return all numbers in order, (7,), and those of the loop behind them."""
+        own = [float(getattr(self, f.name)) for f in fields(self) if f.name != "loop"]
+        return np.hstack([own, [] if self.loop is None else self.loop.pack()])
 
 
 UNTUNED = Tuning()

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from fdvv.compensation.force_loop.constants import CellSpec, ForceLoopGains
 from fdvv.errors import DeviceError
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
@@ -89,6 +90,22 @@ class FaultReport:
             f"at {self.displacement_mm:.3f} mm and {self.commanded_cN:.1f} cN, "
             f"{self.time_s:.3f} s on the device's clock"
         )
+
+
+@runtime_checkable
+class ForceLoopDevice(Device, Protocol):
+    """A device that can hold the force at the finger by a load cell in its cap."""
+
+    @property
+    def load_cell(self) -> CellSpec | None:
+        """The cell, from its data sheet; None if this rig has none, and therefore no loop."""
+
+    @property
+    def loop(self) -> ForceLoopGains | None:
+        """The gains with which the loop is closed; None while it is open."""
+
+    def close_loop(self, gains: ForceLoopGains | None) -> None:
+        """Close the loop, or open it; upload again afterwards. DeviceError without a cell."""
 
 
 class ProgramDevice(Device, Protocol):

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from fdvv.compensation.force_loop.constants import CellSpec, ForceLoopGains
 from fdvv.device.contract import DeviceInfo, check_speed, check_table, check_travel
 from fdvv.device.plant import Inputs
 from fdvv.errors import DeviceError, ModelError
@@ -14,13 +15,14 @@ from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.messages import CN64_PER_cN, travel_mm_of
 from fdvv.protocol.tables import Mode, Settings
-from fdvv.twin.finger import Finger
+from fdvv.twin.finger import Finger, bare
 from fdvv.twin.gesture import vary
 from fdvv.twin.image import image_of
 from fdvv.twin.noise import draw_noise
 from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.plant import RigPlant
 from fdvv.twin.rig import Rig
+from fdvv.twin.rig_kernel import LoopConstants
 from fdvv.twin.settings import settings_of
 from fdvv.twin.simulate import simulate_program
 from fdvv.twin.trace import Trace
@@ -45,6 +47,9 @@ class TwinDevice:
 
     def __init__(self, rig: Rig | None = None, finger: Finger | None = None, seed: int = 0) -> None:
         self._rig, self._finger = rig or Rig(), finger or Finger()
+        if self._rig.has_cell:
+            self._finger = bare(self._finger)
+        self.loop: ForceLoopGains | None = None
         self._settings = settings_of(self._rig)
         self._random = np.random.default_rng(seed)
         self._active: bytes | None = None
@@ -73,7 +78,25 @@ class TwinDevice:
             Core(settings)  # refuses them as a board does
         except ModelError as error:
             raise DeviceError(f"twin: {error}") from error
-        self._settings, self._active = settings, None
+        self._settings, self._active, self.loop = settings, None, None
+
+    @property
+    def _constants(self) -> LoopConstants | None:
+        return None if self.loop is None else self.loop.pack()
+
+    @property
+    def load_cell(self) -> CellSpec | None:
+        cell = self._rig.load_cell
+        if not self._rig.has_cell:
+            return None
+        return CellSpec(
+            cell.plate_kg, cell.stiffness_N_m, cell.damping_N_s_m, 1 / (2 * math.pi * cell.bandwidth_Hz)
+        )
+
+    def close_loop(self, gains: ForceLoopGains | None) -> None:
+        if gains is not None and not self._rig.has_cell:
+            raise DeviceError("twin: this rig has no load cell; name one with [load_cell] fitted")
+        self.loop, self._active = gains, None
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         """Make surface the active command table and set the stop; DeviceError beyond the limits.
@@ -104,7 +127,14 @@ class TwinDevice:
         gesture = vary(self._finger, travel_m, press_s, speed_m_s, self._random)
         noise = draw_noise(self._rig, self._finger, gesture, self._random)
         trace = simulate_program(
-            self._rig, self._finger, gesture, self._active, noise, velocity_mm_s, settings=self._settings
+            self._rig,
+            self._finger,
+            gesture,
+            self._active,
+            noise,
+            velocity_mm_s,
+            settings=self._settings,
+            loop=self._constants,
         )
         fault = trace.mode == Mode.FAULT
         if fault.any():
@@ -123,7 +153,7 @@ class TwinDevice:
         if velocity_mm_s not in self._fresh:
             guess = self._paces.get(velocity_mm_s)
             self._paces[velocity_mm_s] = solve_program_pace(
-                self._rig, self._finger, image, velocity_mm_s, guess, self._settings
+                self._rig, self._finger, image, velocity_mm_s, guess, self._settings, self._constants
             )
             self._fresh.add(velocity_mm_s)
         return self._paces[velocity_mm_s]

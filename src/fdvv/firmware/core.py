@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv._native import address, library, words
 from fdvv.errors import BuildError, DeviceError, ModelError
@@ -58,6 +59,15 @@ class CoreRequest(IntEnum):
     CLEAR = 5
 
 
+class LoopFault(IntEnum):
+    """Why the force loop was opened (firmware/force_loop/force_loop.h)."""
+
+    SOUND = 0
+    CELL_SATURATED = 1
+    CELL_DEAD = 2
+    CELL_WRONG = 3
+
+
 @cache
 def doors() -> ctypes.CDLL:
     """Return the library once its records are known to be laid out as ours; else raise BuildError."""
@@ -65,7 +75,7 @@ def doors() -> ctypes.CDLL:
     lib.fdvv_bridge_ask.restype = lib.fdvv_bridge_check_image.restype = ctypes.c_uint8
     lib.fdvv_bridge_mode.restype = lib.fdvv_bridge_latched.restype = ctypes.c_uint8
     lib.fdvv_bridge_evidence.restype = ctypes.c_void_p
-    lib.fdvv_settings_check.restype = ctypes.c_uint8
+    lib.fdvv_settings_check.restype = lib.fdvv_core_loop_fault.restype = ctypes.c_uint8
     found = layout(lib)[1:]
     ours = [INPUTS.itemsize, OUTPUTS.itemsize]
     ours += [field[1] for field in (INPUTS.fields or {}).values()]
@@ -109,6 +119,16 @@ class Core:
         fresh = None if image is None else self._checked_image(image)
         self._lib.fdvv_core_activate(self._core, None if fresh is None else address(fresh))
         self._image = fresh  # the core goes on reading it
+
+    def close_loop(self, constants: npt.NDArray[np.float32] | None) -> None:
+        """Close the force loop with ForceLoopGains.pack(); None opens it, and so does set()."""
+        held = None if constants is None else address(np.ascontiguousarray(constants, np.float32))
+        self._lib.fdvv_core_close_loop(self._core, held)
+
+    @property
+    def loop_fault(self) -> LoopFault:
+        """Why the loop was opened by itself."""
+        return LoopFault(self._lib.fdvv_core_loop_fault(self._core))
 
     def copy(self) -> Core:
         """Copy the core with its program; the two are independent from then on."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, Literal
 
@@ -20,8 +20,9 @@ from fdvv.rendering.compensate import CompensationResult
 from fdvv.rendering.run_summary import RunSummary, read_run_summary
 
 FORMAT = "fdvv-actuation"
-VERSION = 2
-READ = (1, 2)
+VERSION, LOOP_VERSION = 2, 3
+"""The second only where the force loop is closed: older versions of fdvv read the other files."""
+READ = (1, 2, 3)
 """Version 1 had no receipt."""
 SUFFIX = ".actuation.json"
 
@@ -41,7 +42,7 @@ class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
     """Tables of actuation for one device, and how they were learned."""
 
     format: Literal["fdvv-actuation"]
-    version: Literal[1, 2]
+    version: Literal[1, 2, 3]
     method: str
     model: str
     device: str
@@ -56,18 +57,18 @@ class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
     explanation: str
     simulated: bool
     receipt: RunSummary | None = None
-    tuning: dict[str, float | bool] = {}
+    tuning: dict[str, float | bool | dict[str, Any]] = {}
 
 
 def save_actuation(result: CompensationResult, path: Path | str) -> None:
     """Write a result to an ``*.actuation.json`` file, whole or not at all. Raises OSError."""
     record: dict[str, Any] = {
         "format": FORMAT,
-        "version": VERSION,
+        "version": LOOP_VERSION if result.outcome.tuning.loop else VERSION,
         **result.to_dict(),
         "travel_mm": result.travel_mm,
         **{name: column.tolist() for name, column in vars(result.surface).items()},
-        "tuning": asdict(result.outcome.tuning),
+        "tuning": result.outcome.tuning.to_dict(),
         "receipt": result.receipt.to_dict() if result.receipt else None,
     }
     write_atomic(Path(path), json.dumps(record, indent=1, allow_nan=False) + "\n")

@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
+from fdvv.compensation.force_loop.method import ForceLoop
 from fdvv.compensation.identification.drift import detect_drift
 from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.method import CompensationJob, CurveOutcome, Method, Outcome, PressCount
@@ -15,7 +16,7 @@ from fdvv.compensation.paper import PaperLaw
 from fdvv.compensation.per_curve import PerCurve
 from fdvv.compensation.presses import judge_press
 from fdvv.compensation.rig_aware import RigAware
-from fdvv.device.contract import Device
+from fdvv.device.contract import Device, ForceLoopDevice
 from fdvv.device.remote import Remote
 from fdvv.errors import DeviceError, FitError, InputError
 from fdvv.model.model import FDVVModel
@@ -126,14 +127,15 @@ def compensate(
 ) -> CompensationResult:
     """Press and learn until the method is done.
 
-    velocities_mm_s : speeds to learn at, in any order; law : settings of a method, the paper's if None.
+    velocities_mm_s : speeds to learn at, in any order; law : settings of a method, the paper's if None; on a
+    rig with a load cell `RigAware` closes the force loop (`ForceLoop`).
     progress : called after every press; guide : called before it, and with notices.
     session : where presses are stored and which are accepted; in memory with the defaults if None.
 
     Raises DeviceError if the device fails or too many presses in a row cannot be used, InputError on speeds
     that cannot be used and on a folder that is no session of this job, KeyboardInterrupt on Ctrl-C.
     """
-    method, session = _method(law), session or Session()
+    method, session = _method(law, device), session or Session()
     job = _job(device, model, velocities_mm_s, method)
     start = method.init(job)
     if method.trial(start) is not None:
@@ -161,7 +163,7 @@ def compensate(
     info = device.info()
     names = method.name, model.name, info.name, model.travel_mm
     # other methods learn tables only
-    learned = method.learned(state) if isinstance(method, RigAware) else None
+    learned = method.learned(state) if isinstance(method, RigAware | ForceLoop) else None
     return CompensationResult(*names, outcome, skipped, info.simulated, receipt, learned)
 
 
@@ -187,11 +189,13 @@ def uncompensated(
 
     With the default law that is the model's own force, with a minimum command that holds the cap up.
     """
-    method = _method(law)
+    method = _method(law, device)
     return method.done(method.init(_job(device, model, velocities_mm_s, method))).surface
 
 
-def _method(law: PaperLaw | Method[Any] | None) -> Method[Any]:
+def _method(law: PaperLaw | Method[Any] | None, device: Device) -> Method[Any]:
+    if isinstance(law, RigAware) and isinstance(device, ForceLoopDevice) and device.load_cell:
+        return ForceLoop(device.load_cell, device.info().tick_s, law.rounds, law.learned_rig)
     return PerCurve(law or PaperLaw()) if law is None or isinstance(law, PaperLaw) else law
 
 

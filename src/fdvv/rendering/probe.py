@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -233,7 +233,7 @@ def probe(
     plan = ProbePlan(surface, tuple(check_speeds(velocities_mm_s)), presses, tuning)
     settings: dict[str, Any] = {"presses": presses, "surface_sha256": table_digest(surface)}
     if tuning != UNTUNED:
-        settings["tuning"] = asdict(tuning)
+        settings["tuning"] = tuning.to_dict()
     manifest = session.manifest("probe", device, model, plan.velocities_mm_s, method, settings)
     # a rig at its limit is part of what is judged
     bounds = replace(session.acceptance, saturated_ratio=1.0)

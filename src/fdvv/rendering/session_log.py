@@ -8,7 +8,7 @@ and the table it was made on; ``answers.jsonl`` has ``{"answer": {…}}`` for ev
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Generic, TypeVar
 
@@ -172,7 +172,7 @@ class PressLog(SessionFile[PressEntry]):
 
 def _packed(kept: PressRecord) -> dict[str, Any]:
     columns = pack_record(kept.press) if kept.press else None
-    tuning = {} if kept.tuning == UNTUNED else {"tuning": asdict(kept.tuning)}
+    tuning = {} if kept.tuning == UNTUNED else {"tuning": kept.tuning.to_dict()}
     found = {**msgspec.to_builtins(kept.entry), "surface": pack_record(kept.surface), "columns": columns}
     return found | tuning
 
@@ -181,7 +181,7 @@ def _record(path: Path | None, found: dict[str, Any], number: int) -> PressRecor
     """Unpack a press, which must have this number."""
     try:
         surface, columns = unpack_surface(found.pop("surface")), found.pop("columns")
-        tuning = Tuning(**found.pop("tuning", {}))
+        tuning = msgspec.convert(found.pop("tuning", {}), Tuning)
         entry = msgspec.convert(found, PressEntry)
         if entry.number != number:
             raise ValueError(f"bears the number {entry.number}")

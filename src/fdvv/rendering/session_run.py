@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import astuple, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any, Generic, NoReturn, TypeVar, cast
 
 import numpy as np
@@ -190,7 +190,8 @@ def _same(trial: Trial, kept: PressRecord) -> bool:
     """Return whether a press was made with the tables and tuning of a trial."""
     if trial.velocity_mm_s != kept.entry.velocity_mm_s:
         return False
-    if not np.allclose(astuple(trial.tuning), astuple(kept.tuning), rtol=SAME_TUNING_ratio, atol=0):
+    numbers = trial.tuning.numbers(), kept.tuning.numbers()
+    if numbers[0].shape != numbers[1].shape or not np.allclose(*numbers, rtol=SAME_TUNING_ratio, atol=0):
         return False
     pairs = [(column, getattr(kept.surface, name)) for name, column in vars(trial.surface).items()]
     return all(a.shape == b.shape and np.allclose(a, b, rtol=0, atol=SAME_TABLE_cN) for a, b in pairs)

@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fdvv.button.open import open_button
+from fdvv.compensation.force_loop.constants import ForceLoopGains
 from fdvv.compensation.method import Tuning
 from fdvv.device import open as device_open
-from fdvv.device.contract import Device
-from fdvv.errors import InputError, ModelError
+from fdvv.device.contract import Device, ForceLoopDevice
+from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.messages import CN64_PER_cN, MM_S16_PER_mm_s
 from fdvv.protocol.tables import IMAGE_BYTES, IMAGE_MAGIC, Settings
@@ -58,9 +59,24 @@ def tune(device: Device, tuning: Tuning) -> bool:
     A device whose settings would not change is left alone. What was configured persists after a session.
     """
     wanted = settings_with(device.settings(), tuning)
-    if wanted == device.settings():
+    changed = wanted != device.settings()
+    if changed:
+        device.configure(wanted)
+    # to configure a device opens its loop
+    return _close_loop(device, tuning.loop) or changed
+
+
+def _close_loop(device: Device, gains: ForceLoopGains | None) -> bool:
+    if not isinstance(device, ForceLoopDevice):
+        if gains is None:
+            return False
+        raise DeviceError(
+            f"{device.info().name}: has no force loop; learn with --method rig-aware, "
+            "or name a --rig with [load_cell]"
+        )
+    if gains == device.loop:
         return False
-    device.configure(wanted)
+    device.close_loop(gains)
     return True
 
 

@@ -26,9 +26,11 @@ def draw_finger(random: np.random.Generator) -> Finger:
 
 
 def draw_parts(record: Record, random: np.random.Generator) -> Record:
-    """Draw every section of a record afresh; the order of the fields is that of the draws."""
+    """Draw every section of a record afresh; what is not fitted stays. Fields are drawn in order."""
     whole: Any = record
-    parts = {f.name: draw_section(getattr(whole, f.name), random) for f in dataclasses.fields(whole)}
+    sections = {f.name: getattr(whole, f.name) for f in dataclasses.fields(whole)}
+    fitted = {name: one for name, one in sections.items() if getattr(one, "fitted", "yes") == "yes"}
+    parts = sections | {name: draw_section(one, random) for name, one in fitted.items()}
     return type(record)(**parts)
 
 

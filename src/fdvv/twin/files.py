@@ -46,11 +46,17 @@ def finger_to_toml(finger: Finger) -> str:
 
 
 def load_rig(name: Path | str) -> Rig:
-    """Read a shipped rig by its name ("default", "light", "paper"), or any by its path.
+    """Read a shipped rig by its name ("recommended", "default", "light", "paper"), or any by its path.
 
     InputError names file, key, bound and remedy of the first thing that is wrong.
     """
     return _load_named(name, Rig)
+
+
+def shipped_rigs() -> dict[str, Path]:
+    """Return the files of the shipped rigs by their names."""
+    folder = Path(str(resources.files("fdvv.twin"))) / "rigs"
+    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
 def load_finger(name: Path | str) -> Finger:

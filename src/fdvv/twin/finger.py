@@ -98,6 +98,11 @@ class Finger:
             raise ModelError("Finger: a finger that pushes (push_N > 0) needs a stiffness above 0, got 0 N/m")
 
 
+def bare(finger: Finger) -> Finger:
+    """Return the same finger without the strap of the worn sensor."""
+    return replace(finger, pulp=replace(finger.pulp, strap_N=0.0))
+
+
 def stage_finger(push_N: float = 2.0) -> Finger:
     """Make the finger that is no finger: a motorised stage which pushes a steel tip down and pulls it back.
 

@@ -92,7 +92,8 @@ def draw_ticks(
     single = position.converter_noise_ratio * lsb * random.standard_normal((n, position.reads))
     samples = rig.force_sensor.noise_N * random.standard_normal(n)
     muscle = (effort or Effort(finger.habit, rig.controller.tick_s)).draw(n, random)
-    keycap = rig.keycap_sensor.noise_ratio * random.standard_normal(n)
+    cap = rig.load_cell if rig.has_cell else rig.keycap_sensor
+    keycap = cap.noise_ratio * random.standard_normal(n)
     return Noise(common + single, samples, muscle, keycap, random.standard_normal(n))
 
 

@@ -14,6 +14,7 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import plan
 from fdvv.twin.noise import silence
 from fdvv.twin.rig import ForceSensor, Rig
+from fdvv.twin.rig_kernel import LoopConstants
 from fdvv.twin.simulate import simulate_program
 from fdvv.twin.simulate_button import no_button_noise, simulate_button
 from fdvv.units import FloatArray, m_from_mm, mm_from_m
@@ -61,6 +62,7 @@ def solve_program_pace(
     velocity_mm_s: float,
     guess_s: float | None = None,
     settings: Settings | None = None,
+    loop: LoopConstants | None = None,
 ) -> float:
     """Find the duration of the referent's stroke (s) for a mean speed of the cap, to 0.5 %.
 
@@ -73,7 +75,9 @@ def solve_program_pace(
     def miss(log_s: float) -> float:
         gesture = plan(finger, float(m_from_mm(travel_mm)), math.exp(log_s))
         noise = silence(rig, gesture)
-        trace = simulate_program(rig, finger, gesture, image, noise, velocity_mm_s, settings=settings)
+        trace = simulate_program(
+            rig, finger, gesture, image, noise, velocity_mm_s, settings=settings, loop=loop
+        )
         speed = mean_speed_mm_s(trace.t_s, trace.displacement_mm, travel_mm)
         return math.log(speed / velocity_mm_s) if speed else -1.0
 

@@ -7,6 +7,7 @@ parts; "assumed" has no source and must be swept.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from fdvv.errors import ModelError
@@ -74,6 +75,33 @@ class KeycapSensor(Section):
 
 
 @dataclass(frozen=True)
+class LoadCell(Section):
+    """An optional load cell in the cap, under the bare finger: it takes the place of the worn sensor."""
+
+    fitted: str = choice("no", "whether there is one", ("yes", "no"))
+    plate_kg: float = quantity(4e-4, "plate between finger and cell", "kg", (2e-4, 5e-4), (5e-5, 0.05))
+    stiffness_N_m: float = quantity(5e5, "stiffness", "N/m", (3e5, 7.5e5), (1e4, 2e6), "class, assumed")
+    damping_ratio: float = quantity(
+        0.05, "damping of the plate, of the critical", "", (0.02, 0.1), (0.001, 2.0)
+    )
+    bandwidth_Hz: float = setting(
+        4000.0, "first-order filter", "Hz", (4000.0, 4000.0), (10.0, 8000.0), "class"
+    )
+    full_scale_N: float = setting(4.45, "range, both signs", "N", (4.45, 9.81), (0.1, 100.0), "class")
+    converter_bits: int = setting(12, "bits over both signs together", "", (12, 14), (8, 16), "class")
+    noise_ratio: float = quantity(3e-4, "noise in proportion to the range, rms", "", (1e-4, 5e-4), (0.0, 0.1))
+    gain_error_ratio: float = quantity(
+        0.0, "error of the calibration", "", (-0.01, 0.01), (-0.5, 0.5), "class"
+    )
+    offset_N: float = quantity(0.0, "offset left after zeroing", "N", (-0.006, 0.006), (-1.0, 1.0))
+
+    @property
+    def damping_N_s_m(self) -> float:
+        """Return the damping of the plate on the cell."""
+        return 2 * self.damping_ratio * math.sqrt(self.stiffness_N_m * self.plate_kg)
+
+
+@dataclass(frozen=True)
 class Controller(Section):
     """The loop: average, direction, speed, table, command. Run by the firmware's own core (_settings.py)."""
 
@@ -136,6 +164,7 @@ class Rig:
     force_sensor: ForceSensor = field(default_factory=ForceSensor)
     keycap_sensor: KeycapSensor = field(default_factory=KeycapSensor)
     controller: Controller = field(default_factory=Controller)
+    load_cell: LoadCell = field(default_factory=LoadCell)
 
     def __post_init__(self) -> None:
         if self.position_sensor.burst_s > self.controller.tick_s:
@@ -151,5 +180,11 @@ class Rig:
 
     @property
     def frame_kg(self) -> float:
-        """Return what moves rigidly with the cap: the mover without the exciter's magnet."""
-        return self.mover.mass_kg - (self.exciter.mass_kg if self.exciter.fitted == "yes" else 0.0)
+        """Return what moves rigidly with the cap: the mover without magnet and plate."""
+        magnet_kg = self.exciter.mass_kg if self.exciter.fitted == "yes" else 0.0
+        return self.mover.mass_kg - magnet_kg - (self.load_cell.plate_kg if self.has_cell else 0.0)
+
+    @property
+    def has_cell(self) -> bool:
+        """Return whether a bare finger presses a load cell in the cap."""
+        return self.load_cell.fitted == "yes"

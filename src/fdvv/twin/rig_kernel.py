@@ -10,17 +10,21 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv._native import address, library, words
 from fdvv._native.structures import fill, structure
 from fdvv.errors import ModelError
 from fdvv.firmware.core import OUTPUTS, RecordArray
 from fdvv.protocol.tables import Settings
-from fdvv.twin.finger import Finger
+from fdvv.twin.finger import Finger, bare
 from fdvv.twin.gesture import Gesture
 from fdvv.twin.noise import Noise, lsb_of
 from fdvv.twin.rig import ForceSensor, Rig
 from fdvv.units import FloatArray
+
+LoopConstants = npt.NDArray[np.float32]
+"""fdvv_force_loop_gains, flat: ForceLoopGains.pack()."""
 
 RIG_COLUMNS, TICK_COLUMNS = 10, 3
 STEP_s = 1e-5
@@ -112,6 +116,7 @@ def run(
     noise: Noise,
     settle_ticks: int,
     announced_mm_s: float,
+    loop: LoopConstants | None = None,
 ) -> Rows:
     """Simulate one press in C; ModelError if the noise is of another length, or the grid is impossible."""
     noise.check(grid.reads)
@@ -133,6 +138,7 @@ def run(
         ctypes.byref(grid.counts()),
         ctypes.byref(fill("fdvv_twin_press_plan", plan)),
         address(settings_words),
+        None if loop is None else address(loop),
         address(image_words),
         ctypes.byref(noise_pointers(arrays)),
         *(address(array) for array in rows),
@@ -146,8 +152,10 @@ def plant_of(rig: Rig, finger: Finger, step_s: float = STEP_s) -> ctypes.Structu
     """Return fdvv_rig_model: everything constant while a rig runs, in SI units."""
     impedance = finger.impedance
     parts = {
-        "finger": finger_part(finger, impedance.stiffness_N_m, impedance.damping_N_s_m),
-        **worn_part(rig.force_sensor),
+        "finger": finger_part(
+            bare(finger) if rig.has_cell else finger, impedance.stiffness_N_m, impedance.damping_N_s_m
+        ),
+        **_contact_part(rig),
         **_coil_part(rig),
         **_mechanics_part(rig),
         **_servo_part(rig),
@@ -181,6 +189,19 @@ def worn_part(sensor: ForceSensor) -> dict[str, float]:
         "sensor_mass_kg": sensor.mass_kg,
         "contact_stiffness_N_m": sensor.contact_stiffness_N_m,
         "contact_loss_s_m": HUNT_CROSSLEY * sensor.contact_loss_s_m,
+    }
+
+
+def _contact_part(rig: Rig) -> dict[str, float]:
+    """Return what lies between pulp and cap: the worn cone's contact, or the plate on the load cell."""
+    cell = rig.load_cell
+    if not rig.has_cell:
+        return {**worn_part(rig.force_sensor), "cell_damping_N_s_m": 0.0}
+    return {
+        "sensor_mass_kg": cell.plate_kg,
+        "contact_stiffness_N_m": cell.stiffness_N_m,
+        "contact_loss_s_m": 0.0,
+        "cell_damping_N_s_m": cell.damping_N_s_m,
     }
 
 
@@ -255,12 +276,24 @@ def _sensing_part(rig: Rig) -> dict[str, float]:
 
 
 def _keycap_part(rig: Rig) -> dict[str, float]:
-    cap = rig.keycap_sensor
+    """Return the board's force reading: of the load cell, else of the cap's own sensor."""
+    cap, cell = rig.keycap_sensor, rig.load_cell
+    if rig.has_cell:
+        return {
+            "keycap_kind": KEYCAP_KINDS["force"],
+            "keycap_full_scale": cell.full_scale_N,
+            "keycap_rate": 2 * math.pi * cell.bandwidth_Hz,
+            "keycap_steps": 2.0**cell.converter_bits,
+            "keycap_gain": 1 + cell.gain_error_ratio,
+            "keycap_offset": cell.offset_N / cell.full_scale_N,
+        }
     return {
         "keycap_kind": KEYCAP_KINDS[cap.kind],
         "keycap_full_scale": cap.full_scale_m_s2 if cap.kind == "acceleration" else cap.full_scale_N,
         "keycap_rate": 2 * math.pi * cap.bandwidth_Hz,
         "keycap_steps": 2.0**cap.converter_bits,
+        "keycap_gain": 1.0,
+        "keycap_offset": 0.0,
     }
 
 

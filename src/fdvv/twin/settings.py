@@ -82,8 +82,9 @@ def _output(rig: Rig) -> dict[str, int]:
 
 
 def _extras(rig: Rig) -> dict[str, int]:
-    cap, servo, exciter = rig.keycap_sensor, rig.servo, rig.exciter
-    steps, force = 2**cap.converter_bits, cap.kind == "force"
+    servo, exciter = rig.servo, rig.exciter
+    cap = rig.load_cell if rig.has_cell else rig.keycap_sensor
+    steps, force = 2**cap.converter_bits, rig.has_cell or rig.keycap_sensor.kind == "force"
     return {
         # the firmware knows a force; an acceleration is for the host alone
         "force_gain_q14": round(CN64_N * 2 * cap.full_scale_N / steps * 2**14) if force else 0,

@@ -12,7 +12,7 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture
 from fdvv.twin.noise import Noise, count_ticks, settle_ticks
 from fdvv.twin.rig import Rig
-from fdvv.twin.rig_kernel import STEP_s, grid_of, plant_of, run
+from fdvv.twin.rig_kernel import LoopConstants, STEP_s, grid_of, plant_of, run
 from fdvv.twin.settings import settings_of
 from fdvv.twin.trace import Trace
 
@@ -27,6 +27,7 @@ def simulate_program(
     step_s: float = STEP_s,
     audit: bool = False,
     settings: Settings | None = None,
+    loop: LoopConstants | None = None,
 ) -> Trace:
     """Simulate one press on a checked program (an image as protocol/fdvv.toml has it) in compiled C.
 
@@ -44,10 +45,10 @@ def simulate_program(
     grid = replace(grid_of(rig, step_s), audit=int(audit))
     plant = plant_of(rig, finger, step_s)
     held = settings or settings_of(rig)
-    rows = run(plant, grid, held, image, gesture, noise, settle_ticks(rig), announced_mm_s)
+    rows = run(plant, grid, held, image, gesture, noise, settle_ticks(rig), announced_mm_s, loop)
     if not np.isfinite(rows.physics[-1]).all():
         raise ModelError(
             f"the press diverged: rig or finger are too stiff or too light for steps of {step_s:g} s; "
             "raise the lightest mass or lower the largest stiffness, damping or loss"
         )
-    return Trace.of_rows(rows, audit, plant.drive_low)
+    return Trace.of_rows(rows, audit, plant.drive_low, rig.has_cell)

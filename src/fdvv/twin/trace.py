@@ -74,7 +74,9 @@ class Trace:
     energy_J: FloatArray | None
 
     @classmethod
-    def of_rows(cls, rows: Rows, audit: bool = False, lowest_ratio: float = -1.0) -> Trace:
+    def of_rows(
+        cls, rows: Rows, audit: bool = False, lowest_ratio: float = -1.0, has_cell: bool = False
+    ) -> Trace:
         """Convert the kernel's rows to record units; a duty below lowest_ratio is one the bridge cuts."""
         t, x, v, a, force, _, amps, finger, magnet, energy = rows.physics.T.copy()
         per_tick = t.size // len(rows.outputs)
@@ -87,7 +89,7 @@ class Trace:
             cap_velocity_mm_s=mm_from_m(v),
             cap_acceleration_m_s2=a,
             force_cN=cN_from_N(force),
-            sensed_cN=cN_from_N(felt),
+            sensed_cN=out["force_cN64"] / CN64_PER_cN if has_cell else cN_from_N(felt),
             saturated=((flags & CUT) > 0) | (duty_ratio < lowest_ratio),
             release=(flags & TickFlag.RELEASE) > 0,
             tick=np.arange(t.size) % per_tick == 0,

@@ -1,0 +1,87 @@
+/* How the core closes the force loop, on boards with a floating-point unit; included by core.c alone. */
+#ifndef FDVV_CORE_LOOP_H
+#define FDVV_CORE_LOOP_H
+
+#include "core.h"
+
+static float newtons(int32_t cN64) { return (float)cN64 * (1.0f / 6400.0f); }
+
+static float metres(int32_t um16) { return (float)um16 * (1.0f / 16e6f); }
+
+static int32_t rounded(float value) { return (int32_t)(value < 0.0f ? value - 0.5f : value + 0.5f); }
+
+static int16_t short_cN64(float force_N)
+{
+    return (int16_t)fdvv_clamp(rounded(6400.0f * force_N), -INT16_MAX, INT16_MAX);
+}
+
+static float travel_m(const fdvv_core *core)
+{
+    return core->image ? metres(fdvv_image_head(core->image)->travel_um16) : 1.0f;
+}
+
+static uint8_t is_closed(const fdvv_core *core) { return core->loop.enabled && !core->loop.fault; }
+
+void fdvv_core_close_loop(fdvv_core *core, const fdvv_force_loop_gains *gains)
+{
+    fdvv_force_loop_init(&core->loop, gains);
+}
+
+uint8_t fdvv_core_loop_fault(const fdvv_core *core) { return fdvv_force_loop_fault(&core->loop); }
+
+static void estimate(fdvv_core *core, uint16_t force_counts, int16_t force_cN64)
+{
+    if (!core->loop.enabled)
+        return;
+    fdvv_force_loop_watch(&core->loop, force_counts, core->settings.force_offset_counts);
+    fdvv_force_loop_estimate(&core->loop, metres(core->position.um16), newtons(force_cN64), travel_m(core));
+    fdvv_force_loop_turn(&core->loop, metres(core->settings.reversal_um16));
+}
+
+static int32_t ahead_um16(const fdvv_core *core) { return rounded(16e6f * fdvv_force_loop_ahead_m(&core->loop)); }
+
+/* The program's force at this displacement: of one stroke, or between both after a turn. */
+static float force_N(fdvv_core *core, fdvv_machine_inputs *in, int32_t at_um16)
+{
+    uint8_t release = core->position.release;
+    float weight = core->loop.release, press_N, release_N;
+    in->ahead_um16 = at_um16;
+    core->position.release = 0;
+    press_N = weight < 1.0f ? newtons(fdvv_machine_force_cN64(&core->machine, core->image, in)) : 0.0f;
+    core->position.release = 1;
+    release_N = weight > 0.0f ? newtons(fdvv_machine_force_cN64(&core->machine, core->image, in)) : 0.0f;
+    core->position.release = release;
+    return press_N + weight * (release_N - press_N);
+}
+
+/* The program's force where the drive acts, and at the present displacement, turned into a command. */
+static int32_t close_cN64(fdvv_core *core, fdvv_machine_inputs *in)
+{
+    float ahead_N = force_N(core, in, ahead_um16(core));
+    float now_N = force_N(core, in, rounded(16e6f * core->loop.x_m));
+    return short_cN64(fdvv_force_loop_command_N(&core->loop, ahead_N, now_N, travel_m(core)));
+}
+
+static int32_t open_cN64(const fdvv_core *core, int16_t force_cN64)
+{
+    if (!core->loop.enabled)
+        return force_cN64;
+    return short_cN64(fdvv_force_loop_open_N(&core->loop, newtons(force_cN64), metres(core->position.um16)));
+}
+
+static void advance(fdvv_core *core)
+{
+    if (core->loop.enabled)
+        fdvv_force_loop_predict(&core->loop, newtons(core->command_cN64));
+}
+
+/* The estimates have no lag, and their force is the finger's, without the inertia of the plate. */
+static void fill_estimates(const fdvv_core *core, fdvv_tick_record *record)
+{
+    if (!is_closed(core))
+        return;
+    record->displacement_um16 = rounded(16e6f * core->loop.x_m);
+    record->force_cN64 = short_cN64(core->loop.force_N);
+}
+
+#endif

@@ -1,0 +1,91 @@
+/* Force loop at the finger, for boards with a floating-point unit and a load cell in the cap: a state estimator, the
+ * inverse of the identified rig at the predicted state, and a controller of force with lead. Single precision, SI
+ * units, x positive downward. docs/explanation/force-loop.md derives it. */
+#ifndef FDVV_FORCE_LOOP_H
+#define FDVV_FORCE_LOOP_H
+
+#include <stdint.h>
+
+/* Constants of one rig and one set of gains. A rate is the part of its input that a first-order lag takes over in a
+ * tick, 1 - exp(-tick / tau). */
+typedef struct {
+    float tick_s;
+    float compute_ratio;      /* from the readings to the new drive, in ticks */
+    float mass_kg;            /* of what moves, without the plate of the cell */
+    float plate_kg;           /* between finger and cell */
+    float drag_N_s_m;         /* of the bushing */
+    float brake_N_s_m;        /* of a coil driven by a voltage */
+    float friction_N;
+    float friction_m_s;       /* speed above which it is whole */
+    float weight_N;
+    float gain;               /* force per commanded force, a parabola over the displacement */
+    float gain_1_m;
+    float gain_1_m2;
+    float coil_rate;          /* lag of the coil's force */
+    float cell_rate;          /* of the cell's filter */
+    float position_rate;      /* of the position, less that of the cell */
+    float free_gains[4];      /* of the estimator: position, velocity, unknown force, lagging position */
+    float stop_gains[4];      /* the same at a stop */
+    float lead_s;             /* from the state to the coil's force */
+    float velocity_lead_s;
+    float proportional;       /* force per error of force */
+    float derivative_s;
+    float lowpass_rate;       /* twice in series behind both */
+    float integral_1_s;
+    float leak;               /* of the integral, per tick */
+    float damping_N_s_m;      /* against the cap's fast motion */
+    float highpass_rate;
+    float contact_rate;       /* of the contact's weight */
+} fdvv_force_loop_gains;
+
+typedef struct {
+    fdvv_force_loop_gains gains;
+    float x_m, v_m_s, a_m_s2, unknown_N, lagging_m;
+    float coil_N, cell_coil_N, last_N;
+    float force_N;            /* at the finger */
+    float error_N, low_N[2], integral_N, slow_m_s, contact;
+    float last_m;             /* displacement at the last turn's check */
+    float release;            /* weight of the release's curve: 0 in a press, 1 once the cap has turned */
+    float scale;              /* of what is fed back: halved at each ringing */
+    uint16_t counts;          /* last reading of the cell */
+    uint16_t same_ticks, unexplained_ticks, ringing_ticks;
+    int8_t side;              /* of the last large feedback */
+    uint8_t turns;            /* of its sign, in ringing_ticks */
+    uint8_t enabled, started, at_stop, fault;
+} fdvv_force_loop;
+
+/* why the loop was opened, until the next fdvv_force_loop_init */
+enum {
+    FDVV_LOOP_SOUND,
+    FDVV_LOOP_CELL_SATURATED,
+    FDVV_LOOP_CELL_DEAD,      /* it does not change */
+    FDVV_LOOP_CELL_WRONG      /* the cap does not move as its force says: reversed, unplugged, drifted */
+};
+
+void fdvv_force_loop_init(fdvv_force_loop *loop, const fdvv_force_loop_gains *gains);
+
+/* Estimate the state from the readings of a tick: position of the cap and force of the cell. */
+void fdvv_force_loop_estimate(fdvv_force_loop *loop, float position_m, float cell_N, float travel_m);
+
+/* Watch the cell, before the estimate of a tick: counts from 0 to 2 * middle. Sets fault. */
+void fdvv_force_loop_watch(fdvv_force_loop *loop, uint16_t counts, uint16_t middle);
+
+/* Why the loop was opened, FDVV_LOOP_SOUND if it was not. */
+uint8_t fdvv_force_loop_fault(const fdvv_force_loop *loop);
+
+/* Command for a target without the cell, after a fault: what the rig adds at rest is compensated. */
+float fdvv_force_loop_open_N(const fdvv_force_loop *loop, float target_N, float x_m);
+
+/* Follow the cap's turns: after each, the other stroke's curve comes in over this distance. */
+void fdvv_force_loop_turn(fdvv_force_loop *loop, float reversal_m);
+
+/* Displacement when the drive of this tick acts. */
+float fdvv_force_loop_ahead_m(const fdvv_force_loop *loop);
+
+/* Command for a target at the displacement ahead and one at the present displacement. */
+float fdvv_force_loop_command_N(fdvv_force_loop *loop, float ahead_N, float now_N, float travel_m);
+
+/* Predict the state at the next tick, under the command that the bridge received. */
+void fdvv_force_loop_predict(fdvv_force_loop *loop, float command_N);
+
+#endif

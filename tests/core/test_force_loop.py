@@ -1,0 +1,200 @@
+"""The firmware's force loop against its equations in double precision, and with a cell that fails."""
+
+from __future__ import annotations
+
+import ctypes
+import re
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fdvv._native import library
+from fdvv.compensation.force_loop.constants import ForceLoopGains
+from fdvv.compensation.force_loop.gains import estimator_gains, rate
+
+HEADER = Path(__file__).parents[2] / "firmware" / "force_loop" / "force_loop.h"
+TRAVEL_m, MIDDLE = 4e-3, 2048
+TICK_s = 1e-4
+SOUND, SATURATED, DEAD, WRONG = range(4)
+
+GAINS = ForceLoopGains(
+    tick_s=TICK_s,
+    compute_ratio=0.3,
+    mass_kg=0.0116,
+    plate_kg=4e-4,
+    drag_N_s_m=0.4,
+    brake_N_s_m=0.0,
+    friction_N=0.04,
+    friction_m_s=0.01,
+    weight_N=0.12,
+    gain=0.95,
+    gain_1_m=20.0,
+    gain_1_m2=-3000.0,
+    coil_rate=rate(TICK_s, 5e-5),
+    cell_rate=rate(TICK_s, 4e-5),
+    position_rate=rate(TICK_s, 5e-4),
+    free_gains=tuple(estimator_gains(TICK_s, 5e-4, 0.0116, 1e-5, 0.05).tolist()),
+    stop_gains=tuple(estimator_gains(TICK_s, 5e-4, 0.0116, 1e-5, 3.0).tolist()),
+    lead_s=1.7e-4,
+    velocity_lead_s=1.7e-4,
+    proportional=4.2,
+    derivative_s=1.4e-3,
+    lowpass_rate=rate(TICK_s, 1 / (2 * np.pi * 4500)),
+    integral_1_s=0.4,
+    leak=2e-4,
+    damping_N_s_m=13.0,
+    highpass_rate=rate(TICK_s, 1 / (2 * np.pi * 300)),
+    contact_rate=rate(TICK_s, 1e-3),
+)
+
+
+class Loop:
+    """fdvv_force_loop by its functions; its memory is opaque."""
+
+    def __init__(self, gains: ForceLoopGains = GAINS) -> None:
+        self._lib, self._memory = library(), ctypes.create_string_buffer(1024)
+        for name in ("ahead_m", "command_N", "open_N"):
+            getattr(self._lib, f"fdvv_force_loop_{name}").restype = ctypes.c_float
+        packed = gains.pack()
+        self._lib.fdvv_force_loop_init(self._memory, packed.ctypes.data_as(ctypes.c_void_p))
+
+    def tick(self, position_m: float, cell_N: float, target_N: float) -> tuple[float, float]:
+        """Return displacement ahead and command of a tick with the same target ahead and now."""
+        number = ctypes.c_float
+        lib, memory = self._lib, self._memory
+        lib.fdvv_force_loop_estimate(memory, number(position_m), number(cell_N), number(TRAVEL_m))
+        lib.fdvv_force_loop_turn(memory, number(1e-4))
+        ahead = float(lib.fdvv_force_loop_ahead_m(memory))
+        target = number(target_N)
+        command = float(lib.fdvv_force_loop_command_N(memory, target, target, number(TRAVEL_m)))
+        lib.fdvv_force_loop_predict(memory, number(command))
+        return ahead, command
+
+    def watch(self, counts: int) -> int:
+        """Watch one reading of the cell and return why the loop was opened, SOUND if it was not."""
+        self._lib.fdvv_force_loop_watch(self._memory, ctypes.c_uint16(counts), ctypes.c_uint16(MIDDLE))
+        return int(self._lib.fdvv_force_loop_fault(self._memory))
+
+
+@dataclass
+class Oracle:
+    """The same equations, as docs/explanation/force-loop.md has them, in double precision."""
+
+    g: ForceLoopGains = GAINS
+    x: float = 0.0
+    v: float = 0.0
+    a: float = 0.0
+    d: float = 0.0
+    s: float | None = None
+    u: float = 0.0
+    u_f: float = 0.0
+    last: float = 0.0
+    e: float = 0.0
+    low: tuple[float, float] = (0.0, 0.0)
+    total: float = 0.0
+    slow: float = 0.0
+    touch: float = 0.0
+
+    def tick(self, position_m: float, f: float, target: float) -> tuple[float, float]:
+        g = self.g
+        if self.s is None:
+            self.x = self.s = position_m
+        gains = g.free_gains
+        beyond = position_m - self.s
+        self.x += gains[0] * beyond
+        self.v += gains[1] * beyond
+        self.d = float(np.clip(self.d + gains[2] * beyond, -0.15, 0.15))
+        self.s += gains[3] * beyond
+        rub = g.friction_N * np.clip(self.v / g.friction_m_s, -1, 1)
+        push = f + g.plate_kg * self.a - self.u_f - g.drag_N_s_m * self.v - rub + g.weight_N + self.d
+        self.a = push / g.mass_kg
+        felt = f + g.plate_kg * self.a
+        ahead = self.x + g.lead_s * self.v + 0.5 * g.lead_s**2 * self.a
+        error = float(np.clip(target - felt, -0.5, 0.5))
+        self.touch += g.contact_rate * (float(np.clip((felt - 0.005) / 0.03, 0, 1)) - self.touch)
+        wanted = g.proportional * error + g.derivative_s * (error - self.e) / g.tick_s
+        self.e = error
+        first = self.low[0] + g.lowpass_rate * (wanted - self.low[0])
+        self.low = (first, self.low[1] + g.lowpass_rate * (first - self.low[1]))
+        fed = float(np.clip(self.low[1], -3, 3))
+        self.total += g.integral_1_s * g.tick_s * error * self.touch
+        self.total *= 1 - g.leak
+        fed *= 0.15 + 0.85 * self.touch if fed > 0 else self.touch
+        fast = self.v + g.velocity_lead_s * self.a
+        self.slow += g.highpass_rate * (self.v - self.slow)
+        bracket = target + g.weight_N - (g.drag_N_s_m + g.brake_N_s_m) * fast
+        bracket -= g.friction_N * np.clip(fast / g.friction_m_s, -1, 1)
+        bracket += fed + self.total + g.damping_N_s_m * (self.v - self.slow) * self.touch
+        command = bracket / (g.gain + ahead * (g.gain_1_m + ahead * g.gain_1_m2))
+        mean = command + g.compute_ratio * (self.last - command)
+        held = (g.gain + self.x * (g.gain_1_m + self.x * g.gain_1_m2)) * mean + g.brake_N_s_m * self.v
+        self.last = command
+        self.u += g.coil_rate * (held - self.u)
+        self.u_f += g.cell_rate * (self.u - self.u_f)
+        self.x += g.tick_s * self.v + 0.5 * g.tick_s**2 * self.a
+        self.v += g.tick_s * self.a
+        self.s += g.position_rate * (self.x - self.s)
+        return ahead, command
+
+
+def test_the_gains_are_the_header_s_in_name_and_order() -> None:
+    text = re.sub(r"/\*.*?\*/", "", HEADER.read_text(encoding="utf-8"), flags=re.DOTALL)
+    body = text[text.index("typedef struct {") : text.index("} fdvv_force_loop_gains;")]
+    declared = re.findall(r"float (\w+)(?:\[(\d)\])?;", body)
+    assert [name for name, _ in declared] == [f.name for f in fields(ForceLoopGains)]
+    assert sum(int(count or 1) for _, count in declared) == GAINS.pack().size
+
+
+def test_the_loop_follows_its_equations_between_the_stops() -> None:
+    random = np.random.default_rng(1)
+    loop, oracle = Loop(), Oracle()
+    t = np.arange(800) * TICK_s
+    places = 2e-3 + 1e-3 * np.sin(2 * np.pi * 8 * t) + 5e-6 * random.standard_normal(t.size)
+    forces = 0.6 + 0.3 * np.sin(2 * np.pi * 21 * t) + 1e-3 * random.standard_normal(t.size)
+    for place, force in zip(places, forces, strict=True):
+        ahead, command = loop.tick(place, force, 0.6)
+        wanted_ahead, wanted = oracle.tick(place, force, 0.6)
+        assert ahead == pytest.approx(wanted_ahead, abs=2e-7)
+        assert command == pytest.approx(wanted, abs=2e-3)
+
+
+def test_a_still_cap_under_its_target_is_commanded_target_and_weight() -> None:
+    loop = Loop()
+    for _ in range(3000):
+        _, command = loop.tick(2e-3, 0.6, 0.6)
+    assert command * (GAINS.gain + 2e-3 * GAINS.gain_1_m + 4e-6 * GAINS.gain_1_m2) == pytest.approx(
+        0.6 + GAINS.weight_N, abs=0.05
+    )
+
+
+@pytest.mark.parametrize(
+    ("counts", "fault"),
+    [([0], SATURATED), ([4095], SATURATED), ([2000] * 300, DEAD), ([2000, 2001] * 300, SOUND)],
+)
+def test_a_cell_that_is_saturated_or_dead_opens_the_loop(counts: list[int], fault: int) -> None:
+    loop = Loop()
+    assert [loop.watch(one) for one in counts][-1] == fault
+
+
+@pytest.mark.parametrize("sign", [-1.0, 0.0], ids=["reversed", "unplugged"])
+def test_a_cell_that_contradicts_the_motion_opens_the_loop(sign: float) -> None:
+    """A finger of 0.8 N holds the cap where its coil gives 0.8 N; the cell says otherwise."""
+    loop, faults = Loop(), []
+    for k in range(1500):
+        loop.tick(2e-3, sign * 0.8, 0.8)
+        faults.append(loop.watch(MIDDLE + k % 2))
+    assert faults[-1] == WRONG
+
+
+def test_ringing_halves_what_is_fed_back() -> None:
+    loop = Loop(replace(GAINS, damping_N_s_m=0.0))
+    commands = [loop.tick(2e-3, 0.6 + 0.5 * (-1) ** (k // 4), 0.6)[1] for k in range(400)]
+    assert np.ptp(commands[-80:]) < 0.6 * np.ptp(commands[20:80])
+
+
+def test_a_force_that_swings_slowly_is_no_ringing() -> None:
+    loop = Loop(replace(GAINS, damping_N_s_m=0.0))
+    commands = [loop.tick(2e-3, 0.6 + 0.4 * np.sin(2 * np.pi * 20 * k * TICK_s), 0.6)[1] for k in range(2000)]
+    assert np.ptp(commands[-500:]) > 0.95 * np.ptp(commands[500:1000])
