@@ -223,6 +223,25 @@ def above_0(most: float | None = None) -> Finite:
 PATH = click.Path(path_type=Path)
 EXISTING = click.Path(path_type=Path, exists=True)
 FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
+
+
+class RigName(click.ParamType[Path]):
+    """A shipped rig by its name, or the TOML file of one."""
+
+    name = "rig"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        if str(value).isidentifier() and not Path(value).exists():
+            from fdvv.twin.files import shipped_rigs
+
+            found = shipped_rigs()
+            if value not in found:
+                self.fail(f"there is no rig {value!r}; name a file, or one of {', '.join(found)}", param, ctx)
+            return found[value]
+        return FILE.convert(value, param, ctx)
+
+
+RIG = RigName()
 FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
 NEW_FILE = click.Path(path_type=Path, dir_okay=False)
 NEW_FOLDER = click.Path(path_type=Path, file_okay=False)

@@ -29,7 +29,7 @@ from fdvv.vibration.exciter import EXCITER_SUFFIX, save_exciter
 
 @click.command()
 @device_option
-@ui.option("--rig", type=ui.FILE, help="TOML file of a simulated device's rig.")
+@ui.option("--rig", type=ui.RIG, help="Of a simulated device: recommended, light ..., or a TOML file.")
 @ui.option("--rig-known", type=ui.FILE, help="*.rig.json of this rig; its sensor's lag sharpens the gain.")
 @ui.option("--tone-s", type=ui.Finite(min=0.3, max=4), default=3.0, help="Length of each of 14 tones or so.")
 @ui.option("--seed", type=ui.COUNT, default=0, help="Of a simulated device.")

@@ -157,7 +157,7 @@ session_options = packed(
     "pressing",
     Pressing,
     ui.option("--device", default="twin", help="'twin' is simulated; see fdvv device."),
-    ui.option("--rig", type=ui.FILE, help="TOML file of the twin's rig (docs/reference/rig.md)."),
+    ui.option("--rig", type=ui.RIG, help="Of the twin: recommended, light, paper ..., or a TOML file."),
     ui.option("--finger", type=ui.FILE, help="TOML file of the twin's finger."),
     ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the twin."),
     ui.speeds_option("--velocity", "velocities_mm_s", help="mm/s; repeatable."),
