@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +38,25 @@ def test_both_strokes_come_out_as_they_were_measured(name: str, files: Any, tmp_
 def scale(name: str) -> float:
     # the plain file holds the same figures divided by 100, in newtons
     return 1.0 if name == "plain-csv" else GRAM_FORCE_cN
+
+
+@pytest.mark.parametrize("name", [name for name in TEXTS if name not in ("stroke-pair", "tester-json")])
+def test_blank_lines_at_the_top_count_in_the_line_numbers_of_warnings(
+    name: str, files: Any, tmp_path: Path
+) -> None:
+    filename, text = files.TEXTS[name]
+    lines = text().splitlines()
+    lines[49] = re.sub("[^,]+", "--", lines[49])
+    for blank in (0, 3, 41):
+        data = "\n".join([*[" "] * blank, *lines])
+        warnings = read_force_file(files.write(tmp_path, filename, data)).warnings
+        assert warnings[0].startswith(f"line {50 + blank}, column ")
+
+
+def test_blank_lines_at_the_top_count_in_the_line_numbers_of_refusals(files: Any, tmp_path: Path) -> None:
+    for name, text, line in (("a.json", '{"down_x": [1,\n}', 5), ("b.csv", '"Press 1, x","Press 1, y"\n', 5)):
+        with pytest.raises(InputError, match=f"line {line}"):
+            read_force_file(files.write(tmp_path, name, "\n\n\n" + text))
 
 
 @pytest.mark.parametrize("layout", ["A", "B", "C"])

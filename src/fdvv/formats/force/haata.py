@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from fdvv.formats.force.text import Table, body, refusal
+from fdvv.formats.force.text import Table, body, first_filled, refusal
 from fdvv.formats.force.types import Notes, RawCycle, Reading, Track
 from fdvv.io.text import cells
 from fdvv.model.curve import Stroke
@@ -40,7 +40,8 @@ def is_haata(lines: Sequence[str]) -> bool:
 
 def read_haata(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
     """Read every cycle that has a displacement and a force column for at least one stroke."""
-    titles = cells(lines[0], ",")
+    at = first_filled(lines)
+    titles = cells(lines[at], ",")
     places: dict[Key, int] = {}
     for index, title in enumerate(titles):
         keys = column_keys(title)
@@ -50,20 +51,22 @@ def read_haata(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
             notes.say(f"column {index + 1}: {title!r} names {len(keys)} curves; it was read for each of them")
         for key in keys:
             places.setdefault(key, index)
-    table = body(source, lines, 1)
+    table = body(source, lines, at + 1)
     labels = list(dict.fromkeys(cycle for cycle, _, _ in places))
-    _tell_missing(labels, notes)
+    _tell_missing(labels, at, notes)
     cycles = [_cycle(table, label, places, notes) for label in labels]
     if not any(cycle.press or cycle.release for cycle in cycles):
-        raise refusal(source, "line 1", "no column of displacement has its column of force")
+        raise refusal(source, f"line {at + 1}", "no column of displacement has its column of force")
     return Reading("haata", source.stem, cycles)
 
 
-def _tell_missing(labels: list[str], notes: Notes) -> None:
+def _tell_missing(labels: list[str], at: int, notes: Notes) -> None:
     numbers = [int(label) for label in labels if label.isdigit()]
     missing = sorted(set(range(1, max(numbers, default=0) + 1)) - set(numbers))[:8]
     if missing:
-        notes.say(f"line 1: the file holds no cycle {', '.join(map(str, missing))}; the others were read")
+        notes.say(
+            f"line {at + 1}: the file holds no cycle {', '.join(map(str, missing))}; the others were read"
+        )
 
 
 def _cycle(table: Table, label: str, places: dict[Key, int], notes: Notes) -> RawCycle:

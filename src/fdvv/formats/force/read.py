@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from itertools import dropwhile
 from pathlib import Path
 
 import numpy as np
@@ -121,7 +120,10 @@ READERS: tuple[tuple[Callable[[Lines], bool], Callable[[Path, Lines, Notes], Rea
     (goat.is_highres, goat.read_highres),
     (is_haata, read_haata),
 )
-"""Text formats known by their first lines; a table with named columns is what none of them takes."""
+"""Text formats: how each is recognised by its first lines that are not blank, and read from all its lines.
+
+A table with named columns is what none of them takes.
+"""
 
 
 def read_force_file(path: str | Path) -> ForceFile:
@@ -147,7 +149,7 @@ def _read(path: Path, notes: Notes) -> Reading:
     head = [line for line in lines if line.strip()][:60] or [""]
     for recognise, read in READERS:
         if recognise(head):
-            return read(path, list(dropwhile(lambda line: not line.strip(), lines)), notes)
+            return read(path, lines, notes)
     return _strokes_or_table(path, lines, notes)
 
 

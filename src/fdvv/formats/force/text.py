@@ -113,6 +113,11 @@ def _short(text: str) -> str:
     return "a blank" if not text else repr(text if len(text) <= 20 else text[:20] + "...")
 
 
+def first_filled(lines: Sequence[str]) -> int:
+    """Return the index of the first line that is not blank; 0 if all are."""
+    return next((at for at, line in enumerate(lines) if line.strip()), 0)
+
+
 def body(source: Path, lines: Sequence[str], start: int, separator: str = ",") -> Table:
     """Return the table of the lines from index start on, without blank lines at the end."""
     end = len(lines)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.formats.force.text import FORCE_cN, LENGTH_mm, Table, body, refusal
+from fdvv.formats.force.text import FORCE_cN, LENGTH_mm, Table, body, first_filled, refusal
 from fdvv.formats.force.types import Notes, RawCycle, Reading, Track
 from fdvv.units import FloatArray, cN_from_gf
 
@@ -56,7 +56,8 @@ def _unit(source: Path, table: Table, column: int, known: dict[str, float]) -> f
 
 def read_highres(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
     """Read the high-resolution export: force, displacement; its recording rate gives the clock."""
-    keys = [_KEY.match(line) for line in lines[:40]]
+    first = first_filled(lines)
+    keys = [_KEY.match(line) for line in lines[: first + 40]]
     at = max(i for i, key in enumerate(keys) if key)
     values = {key.group(1): key.group(2).strip() for key in keys if key}
     units = [unit.strip().lower() for unit in values["UNIT"].split(",")]
@@ -73,8 +74,9 @@ def read_highres(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
 
 def read_tidy(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
     """Read the tidy form: force, displacement, judge, name, found by their names."""
-    names = [name.strip().lower() for name in lines[0].split(",")]
-    table = body(source, lines, 1)
+    at = first_filled(lines)
+    names = [name.strip().lower() for name in lines[at].split(",")]
+    table = body(source, lines, at + 1)
     force, x = table.columns([names.index("force"), names.index("displacement")], notes)
     column = names.index("name")
     titles = [row[column].strip() for row in table.rows if len(row) == 4]
