@@ -84,7 +84,7 @@ def connect(page: Page) -> None:
     page.get_by_role("button", name="Upload").click()
     page.get_by_text("program: ").wait_for()
     page.get_by_role("button", name="Press once").click()
-    page.get_by_text("felt in true displacement, simulated").wait_for()
+    page.get_by_text("in true displacement, simulated").wait_for()
     page.wait_for_timeout(1500)
 
 
