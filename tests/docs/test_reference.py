@@ -24,11 +24,13 @@ from tools.record_types import fields, reached
 
 import fdvv
 from fdvv.cli.main import cli
+from fdvv.formats.force.read import READERS
 from fdvv.twin.button import ButtonPhysics
 from fdvv.twin.finger import Finger
 from fdvv.twin.quantity import about
 from fdvv.twin.rig import Rig
 from tests.docs.pages import DOCS, REPOSITORY
+from tests.formats.conftest import TEXTS
 
 BY_HAND = {
     "model-file.md": "Model",
@@ -115,6 +117,16 @@ def _has_format(record: type[msgspec.Struct]) -> bool:
         return False
     kind = get_type_hints(record)["format"]
     return get_origin(kind) is Literal and str(get_args(kind)[0]).startswith("fdvv-")
+
+
+def test_formats_of_force_curves_are_described() -> None:
+    page = (DOCS / "reference" / "force-files.md").read_text(encoding="utf-8")
+    described = set(re.findall(r"^\| `([\w-]+)` \|", page, flags=re.MULTILINE))
+    heads = {name: sample.text().strip().splitlines()[:60] for name, sample in TEXTS.items()}
+    for recognise, read_lines in READERS:
+        known = [name for name, head in heads.items() if recognise(head)]
+        assert known, f"{read_lines.__name__}: add a sample to tests/formats/conftest.py"
+    assert {*TEXTS, "bluepylons-ods"} - described == set()
 
 
 def test_parameters_of_the_twin_are_described_with_their_source() -> None:

@@ -8,11 +8,13 @@ import zipfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import pytest
+
+from fdvv.units import GRAM_FORCE_cN
 
 Array = npt.NDArray[np.float64]
 
@@ -140,18 +142,30 @@ def velocities() -> str:
     return _lines("displacement_mm,force_cN_0.5mm_s,force_cN_50mm_s", rows)
 
 
-TEXTS: dict[str, tuple[str, Callable[[], str]]] = {
-    "thereminGoat-tidy": ("oak.csv", tidy),
-    "thereminGoat-raw": ("Oak Raw Data CSV.csv", goat_raw),
-    "thereminGoat-highres": ("Oak_HighResolutionRaw.csv", goat_highres),
-    "stroke-pair": ("Oak.downstroke.csv", downstroke),
-    "haata": ("Oak.csv", haata),
-    "bluepylons-csv": ("Oak.csv", bluepylons_csv),
-    "buddyog": ("DataLog_1.csv", buddyog),
-    "tester-json": ("Oak.json", tester_json),
-    "plain-csv": ("Oak.csv", plain),
+class Sample(NamedTuple):
+    """A file of the strokes above.
+
+    name, text : of the file.
+    scale_cN : force in the file for 1 gf of the strokes; 1 where it holds their figures over 100 as newtons.
+    """
+
+    name: str
+    text: Callable[[], str]
+    scale_cN: float = GRAM_FORCE_cN
+
+
+TEXTS: dict[str, Sample] = {
+    "thereminGoat-tidy": Sample("oak.csv", tidy),
+    "thereminGoat-raw": Sample("Oak Raw Data CSV.csv", goat_raw),
+    "thereminGoat-highres": Sample("Oak_HighResolutionRaw.csv", goat_highres),
+    "stroke-pair": Sample("Oak.downstroke.csv", downstroke),
+    "haata": Sample("Oak.csv", haata),
+    "bluepylons-csv": Sample("Oak.csv", bluepylons_csv),
+    "buddyog": Sample("DataLog_1.csv", buddyog),
+    "tester-json": Sample("Oak.json", tester_json),
+    "plain-csv": Sample("Oak.csv", plain, 1.0),
 }
-"""Format: the name and text of a file of it."""
+"""A sample of each text format."""
 
 
 def ods(rows: Sequence[Sequence[object]]) -> bytes:

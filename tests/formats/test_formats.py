@@ -15,7 +15,7 @@ from tests.formats.conftest import TEXTS
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_a_file_of_each_format_is_known_by_its_content(name: str, files: Any, tmp_path: Path) -> None:
-    _, text = files.TEXTS[name]
+    text = files.TEXTS[name].text
     suffix = ".downstroke.csv" if name == "stroke-pair" else ".txt"
     file = read_force_file(files.write(tmp_path, f"anything{suffix}", text()))
     assert file.format == name
@@ -23,28 +23,23 @@ def test_a_file_of_each_format_is_known_by_its_content(name: str, files: Any, tm
 
 @pytest.mark.parametrize("name", [name for name in TEXTS if name not in ("stroke-pair", "tester-json")])
 def test_both_strokes_come_out_as_they_were_measured(name: str, files: Any, tmp_path: Path) -> None:
-    filename, text = files.TEXTS[name]
+    filename, text, scale_cN = files.TEXTS[name]
     cycle = read_force_file(files.write(tmp_path, filename, text())).cycles[0]
     x, force = files.stroke()
     assert cycle.press is not None
     assert cycle.release is not None
     np.testing.assert_allclose(cycle.press.displacement_mm, x, atol=1e-12)
-    np.testing.assert_allclose(cycle.press.force_cN, force * scale(name), atol=1e-9)
+    np.testing.assert_allclose(cycle.press.force_cN, force * scale_cN, atol=1e-9)
     np.testing.assert_allclose(cycle.release.displacement_mm, x, atol=1e-12)
-    lighter = np.round(np.maximum(force - 3.0, 0.0), 1) * scale(name)
+    lighter = np.round(np.maximum(force - 3.0, 0.0), 1) * scale_cN
     np.testing.assert_allclose(cycle.release.force_cN, lighter, atol=1e-9)
-
-
-def scale(name: str) -> float:
-    # the plain file holds the same figures divided by 100, in newtons
-    return 1.0 if name == "plain-csv" else GRAM_FORCE_cN
 
 
 @pytest.mark.parametrize("name", [name for name in TEXTS if name not in ("stroke-pair", "tester-json")])
 def test_blank_lines_at_the_top_count_in_the_line_numbers_of_warnings(
     name: str, files: Any, tmp_path: Path
 ) -> None:
-    filename, text = files.TEXTS[name]
+    filename, text, _ = files.TEXTS[name]
     lines = text().splitlines()
     lines[49] = re.sub("[^,]+", "--", lines[49])
     for blank in (0, 3, 41):

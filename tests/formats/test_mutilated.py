@@ -48,7 +48,7 @@ def check(path: Path) -> None:
 def test_a_mutilated_text_file_is_read_or_refused(
     name: str, files: Any, tmp_path: Path, damages: list[Damage]
 ) -> None:
-    filename, text = files.TEXTS[name]
+    filename, text, _ = files.TEXTS[name]
     data = text().encode()
     for damage in damages:
         data = damage(data)
