@@ -39,8 +39,12 @@ check: setup ## Format, lint and type checks
 
 # the packages with changes that are not committed, else model; make quick PKG="rendering live" picks others
 PKG ?= $(or $(shell git diff --name-only HEAD -- src | sed -n 's#^src/fdvv/\([a-z]*\)/.*#\1#p' | sort -u),model)
+PACKAGES := $(filter-out __pycache__,$(patsubst tests/%/,%,$(wildcard tests/*/)))
+# of those that were asked for; a changed package may have no tests of its own
+UNTESTED = $(if $(filter-out file,$(origin PKG)),$(strip $(foreach name,$(PKG),$(if $(wildcard tests/$(name)),,$(name)))))
 
 quick: setup ## Lint, and test one package, in 20 seconds: make quick PKG=rendering
+	$(if $(UNTESTED),$(error no tests/$(firstword $(UNTESTED)); packages are $(PACKAGES)))
 	$(BIN)/ruff check --quiet .
 	FDVV_QUICK=1 $(BIN)/pytest -n 2 -q -p no:randomly -m "not slow and not browser and not firmware" \
 	  tests/test_public_face.py tests/safety/test_zero_force.py $(wildcard $(PKG:%=tests/%))
