@@ -7,7 +7,6 @@ can leave the other.
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 import sys
 import time
@@ -16,7 +15,6 @@ from pathlib import Path
 
 from tools.try_wheel import fetched
 
-SWITCH = "src/fdvv/button/examples/cherry-mx-hyperglide-brown.csv"
 ACTIVATE = ". .venv/bin/activate"
 STUDIO = "fdvv studio"
 LONGEST_s = 900
@@ -74,7 +72,6 @@ def steps(folder: Path, phase: str) -> Iterator[tuple[str, str]]:
         if not (folder / "demo" / "report.html").is_file():
             raise SystemExit("newcomer: make demo wrote no report")
         return
-    shutil.copy(folder / SWITCH, folder / "my-switch.csv")
     for line in use[1:]:
         active = f"{ACTIVATE}; exec {line}"
         yield line, studio(folder, active) if line == STUDIO else last(typed(folder, active))

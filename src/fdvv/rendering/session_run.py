@@ -136,8 +136,9 @@ def prepare(device: Device, trial: Trial, travel_mm: float, before: Trial | None
 def run(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S:
     """Continue from the presses of the log until the plan is finished; return the last state.
 
-    Every press is logged before it is used. Raises DeviceError if the device fails or too many presses in
-    a row cannot be used, KeyboardInterrupt on Ctrl-C; both say how to resume; the device is at zero force.
+    Every press is logged before the next is asked for. Raises DeviceError if the device fails or too many
+    presses in a row cannot be used, KeyboardInterrupt on Ctrl-C; both say how to resume; the device is at
+    zero force.
     """
     state = replay(plan, state, log)
     for text in (*(f"warning: {warning}" for warning in log.warnings), _resume_notice(plan, state, log)):
