@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 CODE = (".py", ".ts", ".c", ".h")
 PROSE = (".md", ".toml", ".html")
 LEFT_OUT = (
-    "tests/",
+    "tests/files/",
     "CHANGELOG.md",
     "tools/check_words.py",
     "src/fdvv/studio/static/",

@@ -125,11 +125,11 @@ def test_a_good_press_is_found_good(velocity_mm_s: float) -> None:
         ("hesitation", "paused|too slow"),
     ],
 )
-def test_a_press_that_went_wrong_is_found_and_told_why(kind: str, words: str) -> None:
+def test_a_press_that_went_wrong_is_found_and_the_reason_reported(kind: str, words: str) -> None:
     bad = [v for v in looked_at((kind,)) if not v.ok]
     assert len(bad) >= 16
-    told = [v for v in bad if re.search(words, v.reason)]
-    assert len(told) >= 0.7 * len(bad)
+    explained = [v for v in bad if re.search(words, v.reason)]
+    assert len(explained) >= 0.7 * len(bad)
     assert all(";" in v.reason for v in bad), "every reason says what to do"
 
 
@@ -212,7 +212,7 @@ def test_a_session_on_the_twin_records_what_the_plan_asks(tmp_path: Path) -> Non
     for event, ask in zip(done, asked[1:], strict=False):
         assert ask.again == ("" if event.check.ok or event.missed else event.check.reason)
     assert done[-1].done == done[-1].total == 8
-    assert asked[2].travel_mm == pytest.approx(4.0, abs=0.05), "the probe has told it"
+    assert asked[2].travel_mm == pytest.approx(4.0, abs=0.05), "the probe has measured it"
 
 
 def test_a_press_that_stays_bad_is_asked_for_so_often_and_then_done_without(tmp_path: Path) -> None:
@@ -266,24 +266,24 @@ def test_a_session_that_was_stopped_anywhere_goes_on_to_the_same_recording(
         kept = "1 take is kept" if at == 2 else f"{at - 1} takes are kept"
         with pytest.raises(type(error), match=f"{kept} in .*stopped-{at}; run the same command again"):
             capture_session(Fails(bench, at, error), path, "mx-clear", SMALL)
-        told = list[str]()
+        notices = list[str]()
         fresh = open_bench("twin", "mx-clear", "clumsy", 7)
-        again = capture_session(fresh, path, "mx-clear", SMALL, CaptureGuide(notice=told.append))
+        again = capture_session(fresh, path, "mx-clear", SMALL, CaptureGuide(notice=notices.append))
         assert same(again.recording, whole.recording)
-        assert (again.velocities, len(told)) == (whole.velocities, int(at > 1))
-        assert at == 1 or "goes on" in told[0]
+        assert (again.velocities, len(notices)) == (whole.velocities, int(at > 1))
+        assert at == 1 or "goes on" in notices[0]
 
 
 def test_a_finished_session_asks_for_nothing_more(tmp_path: Path) -> None:
-    path, told = tmp_path / "a", list[str]()
+    path, notices = tmp_path / "a", list[str]()
     bench = open_bench("twin", "mx-clear")
     first = capture_session(bench, path, "mx-clear", SMALL)
     size = path.stat().st_size
     never = Fails(bench, len(first.recording.takes) + 1, AssertionError())
-    again = capture_session(never, path, "mx-clear", SMALL, CaptureGuide(notice=told.append))
+    again = capture_session(never, path, "mx-clear", SMALL, CaptureGuide(notice=notices.append))
     assert path.stat().st_size == size
     assert again.velocities == first.velocities
-    assert "is finished" in told[0]
+    assert "is finished" in notices[0]
 
 
 def test_a_larger_plan_goes_on_with_what_is_missing(tmp_path: Path) -> None:

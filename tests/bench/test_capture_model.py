@@ -104,8 +104,8 @@ def test_provenance_names_steps_presses_reasons_and_assumptions() -> None:
     assert f"left out: did not reach the bottom (take {SHORT_STROKE})" in provenance.method
     for step in ("clocks joined on", "filter of 0.33 ms undone", "2 slow probes", "15 control points"):
         assert step in provenance.method
-    assert any("moves 3 g" in told for told in provenance.assumptions)
-    assert any("tip weighs 2 g" in told for told in provenance.assumptions)
+    assert any("moves 3 g" in assumption for assumption in provenance.assumptions)
+    assert any("tip weighs 2 g" in assumption for assumption in provenance.assumptions)
 
 
 def test_the_report_tells_every_press_with_its_reason() -> None:
@@ -142,7 +142,7 @@ def test_a_probe_of_unknown_speed_gives_the_zero_and_a_warning_but_no_curve() ->
     assert found.processed.zero_mm == pytest.approx(recorded().processed.zero_mm)
 
 
-def test_a_pace_that_presses_missed_is_told() -> None:
+def test_a_speed_that_presses_missed_is_reported() -> None:
     takes = tuple(
         replace(take, velocity_mm_s=100.0) if take.velocity_mm_s == 150.0 else take
         for take in capture().takes
@@ -165,7 +165,7 @@ def test_vibrations_are_found_by_what_is_passed() -> None:
     assert "one was faint" in found.warnings
 
 
-def test_what_was_not_heard_is_told() -> None:
+def test_vibrations_that_were_not_heard_are_reported() -> None:
     found = recorded()
     heard = {(one.stroke, one.velocity_mm_s) for one in found.vibration.strokes}
     assert heard == {(c.stroke, c.velocity_mm_s) for c in found.processed.curves}

@@ -61,7 +61,7 @@ def check_truth(
     assert vibration.duration_s == pytest.approx(LASTS_s, rel=lasts_rel)
 
 
-def test_onset_frequency_and_duration_are_true_at_every_pace_where_they_are_told() -> None:
+def test_onset_frequency_and_duration_are_true_at_every_speed_where_they_are_reported() -> None:
     made, _, recorded = session()
     assert [v.velocity_mm_s for v in pressed(recorded)] == [50.0, 100.0, 200.0]
     for vibration in pressed(recorded):

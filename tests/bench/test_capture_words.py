@@ -27,9 +27,9 @@ def test_nothing_is_said_of_what_was_not_done() -> None:
     plain = replace(recorded().processed, clock=ClockFit(0.0), probe=None)
     said = method_of(replace(capture(), bench=Bench()), plain)
     assert not any(word in said for word in ("clock", "filter", "play", "probe"))
-    told = assumptions_of(replace(capture(), bench=Bench()), Settings(cap_g=2.5))
-    assert len(told) == 2
-    assert "2.5 g" in told[0]
+    assumptions = assumptions_of(replace(capture(), bench=Bench()), Settings(cap_g=2.5))
+    assert len(assumptions) == 2
+    assert "2.5 g" in assumptions[0]
 
 
 def test_the_source_names_takes_files_and_who_pressed() -> None:

@@ -92,14 +92,14 @@ def test_curves_of_joined_logs_are_near_the_truth(session: CapturedSession, logs
     assert done.actuation_mm.value == pytest.approx(session.true_actuation_mm(), abs=0.06)
 
 
-def test_a_marker_that_is_not_there_is_told_with_those_that_are(logs: list[Path]) -> None:
+def test_a_marker_that_is_not_there_is_reported_with_those_that_are(logs: list[Path]) -> None:
     with pytest.raises(
         InputError, match=r"no take has a marker 'cap:top'; there are 'cap:left', 'cap:right', 'led'"
     ):
         join_logs(logs, "mx-clear", ["cap:top"])
 
 
-def test_logs_that_contradict_each_other_are_told_in_one_line(logs: list[Path]) -> None:
+def test_logs_that_contradict_each_other_are_reported_in_one_line(logs: list[Path]) -> None:
     text = logs[1].read_text()
     other = logs[1].with_name("other.log")
     other.write_text(text.replace("# channel", "# bench tip_mass_g=3\n# channel", 1))

@@ -179,7 +179,9 @@ def test_the_scope_shows_a_press_and_zero_force_is_one_key_away(page: Page) -> N
     page.get_by_text("No device is connected").wait_for()
 
 
-def test_what_the_studio_refuses_is_told_in_one_line(context: BrowserContext, studio: RunningStudio) -> None:
+def test_what_the_studio_refuses_is_reported_in_one_line(
+    context: BrowserContext, studio: RunningStudio
+) -> None:
     # a page of its own: a browser writes every refusal to the console, which fails others' tests
     page = context.new_page()
     page.goto(studio.address)

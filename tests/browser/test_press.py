@@ -21,24 +21,24 @@ HEAD_bytes, RATE_Hz = 44, 48_000
 
 
 class Wire:
-    """What the page is told on the channel."""
+    """The messages that the page receives on the channel."""
 
     def __init__(self, page: Page) -> None:
-        self.told: list[dict[str, Any]] = []
+        self.received: list[dict[str, Any]] = []
         page.on("websocket", lambda socket: socket.on("framereceived", self._take))
 
     def _take(self, text: str | bytes) -> None:
         message = json.loads(text)
         if message["channel"] == "press":
-            self.told.append(message.get("body", {}))
+            self.received.append(message.get("body", {}))
 
     def events(self, kind: str) -> list[dict[str, Any]]:
-        return [e for body in self.told for e in body.get("events", []) if e["kind"] == kind]
+        return [e for body in self.received for e in body.get("events", []) if e["kind"] == kind]
 
 
 @pytest.fixture
 def wire(page: Page) -> Wire:
-    """The press page, with a button under the finger, and what it is told."""
+    """The press page, with a button under the finger, and the messages it receives."""
     heard = Wire(page)
     page.goto(f"{page.url.partition('#')[0]}#/press/builtin:mx-clear")
     page.reload()
@@ -90,7 +90,7 @@ def test_a_held_cap_is_pushed_harder_until_it_gives_way(page: Page, wire: Wire) 
     page.wait_for_selector(DOWN)
     page.mouse.up()
     page.wait_for_selector(UP)
-    deepest = max(x for body in wire.told for x in body.get("displacement_mm", []))
+    deepest = max(x for body in wire.received for x in body.get("displacement_mm", []))
     assert deepest > load_builtin("mx-clear").travel_mm / 2
 
 
@@ -193,12 +193,12 @@ def test_a_page_that_is_hidden_is_not_simulated_for(page: Page, wire: Wire) -> N
     page.wait_for_selector("text=paused")
     # that nothing comes can only be seen by letting time pass
     page.wait_for_timeout(200)
-    before = len(wire.told)
+    before = len(wire.received)
     page.wait_for_timeout(500)
-    assert len(wire.told) == before, "frames came although nobody looked"
+    assert len(wire.received) == before, "frames came although nobody looked"
     page.evaluate(turn, False)
     page.wait_for_selector(UP)
-    frames = [body for body in wire.told if body.get("type") == "frame"]
+    frames = [body for body in wire.received if body.get("type") == "frame"]
     times = [t for body in frames for t in body["t_s"]]
     assert np.diff(times).max() < 0.01, "simulated time stood still"
     page.keyboard.up(" ")
@@ -236,7 +236,7 @@ def test_a_program_tells_its_levels_and_what_to_try(page: Page, wire: Wire) -> N
     page.wait_for_selector("[data-value=state]:has-text('level 0')")
 
 
-def test_an_address_that_names_no_button_is_told_and_another_can_be_chosen(page: Page) -> None:
+def test_an_address_that_names_no_button_is_reported_and_another_can_be_chosen(page: Page) -> None:
     page.goto(f"{page.url.partition('#')[0]}#/press/own:nobody")
     page.wait_for_selector(".press-standing:has-text('no button is called')")
     page.select_option("select >> nth=0", "button builtin:mx-red")

@@ -136,7 +136,7 @@ def test_a_state_and_its_ways_are_made_by_keys_alone(own: Page, tmp_path: Path) 
     own.locator(".words", has_text="x < 0.7 mm").wait_for(state="detached")
 
 
-def test_a_planted_fault_is_told_led_to_and_undone(own: Page) -> None:
+def test_a_planted_fault_is_listed_located_and_undone(own: Page) -> None:
     own.locator(".words[data-state='down']").click()
     own.get_by_role("button", name="Remove transition").click()
     finding = own.locator(".findings .refused button")
@@ -231,13 +231,13 @@ def test_a_recipe_makes_a_program_at_once(gallery: Page, tmp_path: Path) -> None
     assert kept.surface("pull").force_cN[0][0] == -44
 
 
-def test_a_file_is_brought_and_a_broken_one_told_in_a_line(gallery: Page, tmp_path: Path) -> None:
+def test_a_file_is_uploaded_and_a_broken_one_refused_in_one_line(gallery: Page, tmp_path: Path) -> None:
     bad = tmp_path / "bad.json"
     bad.write_text(json.dumps({"format": "fdvv-program", "version": 1, "name": "bad"}))
     gallery.set_input_files("input[type=file]", bad)
-    told = gallery.locator(".toast.wrong")
-    told.wait_for()
-    assert "travel_mm" in told.inner_text()
+    toast = gallery.locator(".toast.wrong")
+    toast.wait_for()
+    assert "travel_mm" in toast.inner_text()
     huge = tmp_path / "huge.json"
     huge.write_text(" " * 2_000_001)
     gallery.set_input_files("input[type=file]", huge)

@@ -59,7 +59,7 @@ def answers(study: Study) -> list[tuple[str, dict[str, int]]]:
     return [(one["choice"], one["ratings"]["realism"]) for one in kept(study)]
 
 
-def told(sitter: Sitter) -> list[tuple[str, dict[str, int]]]:
+def screen_answers(sitter: Sitter) -> list[tuple[str, dict[str, int]]]:
     """Give what was answered on the screen."""
     return [(one.choice, one.ratings) for one in sitter.given]
 
@@ -106,7 +106,7 @@ def test_36_trials_are_answered_and_kept_and_no_message_names_what_a_label_hides
     operator.wait_for_selector("tr[data-person=P01] >> text=36 of 36")
     seen, heard = (wire.texts() for wire in wires)
     context.close()
-    assert answers(study) == told(sitter)
+    assert answers(study) == screen_answers(sitter)
     assert all(
         set(one["presses"]) == {"X", "A", "B"} and min(one["presses"].values()) > 0 for one in kept(study)
     )
@@ -163,7 +163,7 @@ def test_a_session_is_done_by_keyboard_alone(study: Study, page: Page, context: 
     sitter.trial(2, 2)
     screen.wait_for_selector("h1:has-text('Thank you')")
     assert audit(screen) == []
-    assert answers(study) == told(sitter)
+    assert answers(study) == screen_answers(sitter)
 
 
 @pytest.mark.parametrize("study", [{"items": 3}], indirect=True)
@@ -193,7 +193,7 @@ def test_a_killed_server_costs_no_answer_and_the_screen_goes_on_by_itself(
         sitter.page.wait_for_selector("h1:has-text('Thank you')")
     finally:
         again.stop()
-    assert answers(study) == told(sitter)
+    assert answers(study) == screen_answers(sitter)
 
 
 def test_a_page_loaded_again_goes_on_and_so_does_a_card_on_another_screen(
@@ -222,7 +222,7 @@ def test_a_page_loaded_again_goes_on_and_so_does_a_card_on_another_screen(
     fresh.trial(2, 2)
     fresh.page.wait_for_selector("h1:has-text('Thank you')")
     other.close()
-    assert answers(study) == [*told(sitter), *told(fresh)]
+    assert answers(study) == [*screen_answers(sitter), *screen_answers(fresh)]
 
 
 @pytest.mark.parametrize("study", [{"break_every_min": 1e-4, "break_min": 0.05}], indirect=True)

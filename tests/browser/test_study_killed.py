@@ -50,7 +50,7 @@ def kill(processes: set[int]) -> None:
 class Seated:
     """One person, over all pages that they lose. known : answers that the screen went on from.
 
-    crashes : how often Chromium told that a page of theirs was killed.
+    crashes : how often Chromium reported that a page of theirs was killed.
     """
 
     def __init__(self, study: Study, studio: RunningStudio, browser: Browser) -> None:

@@ -83,8 +83,8 @@ def test_standard_errors_stand_beside_the_landmarks_of_measured_buttons() -> Non
     model = recorded().model
     result = compare([load_builtin("mx-red"), model], 150.0)
     assert result.errors == ({}, landmark_errors(model, 150.0))
-    told = result.to_dict()["buttons"][1]["landmark_errors"]["peak_cN"]
-    assert told == {"error": result.errors[1]["peak_cN"].error, "presses": 6}
+    peak = result.to_dict()["buttons"][1]["landmark_errors"]["peak_cN"]
+    assert peak == {"error": result.errors[1]["peak_cN"].error, "presses": 6}
 
 
 def test_the_report_is_plain_json_with_every_landmark() -> None:

@@ -1,4 +1,4 @@
-"""Export and import: what is written is told in figures, and what comes in goes where it belongs."""
+"""Export and import: what is written is summarized in figures, and what is read goes where it belongs."""
 
 import json
 from dataclasses import replace
@@ -130,7 +130,7 @@ def test_curves_come_in_as_they_are_fitted(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         (b"<mujoco/>", "MuJoCo models and pages cannot be read back"),
         (b'{"detent_strength_unit": 1}', "holds no force curve"),
@@ -140,10 +140,10 @@ def test_curves_come_in_as_they_are_fitted(tmp_path: Path) -> None:
         (b"RIFF....WAVE", "does not say what full scale is"),
     ],
 )
-def test_what_cannot_come_in_is_told_in_a_line(content: bytes, told: str, tmp_path: Path) -> None:
+def test_what_cannot_be_imported_is_refused_in_one_line(content: bytes, message: str, tmp_path: Path) -> None:
     path = tmp_path / "x.json"
     path.write_bytes(content)
-    with pytest.raises(InputError, match=told) as found:
+    with pytest.raises(InputError, match=message) as found:
         import_file(path)
     assert "\n" not in str(found.value)
 
@@ -161,7 +161,7 @@ def test_a_vibration_without_a_button_and_curves_into_one_are_refused(tmp_path: 
         import_file(tmp_path / "a.csv", ImportSettings(name=" "))
 
 
-def test_a_button_that_lacks_what_a_format_needs_is_told(tmp_path: Path) -> None:
+def test_a_button_that_lacks_what_a_format_needs_is_reported(tmp_path: Path) -> None:
     whole = load_builtin("mx-red")
     save_model(FDVVModel("back", whole.travel_mm, whole.of("release")), tmp_path / "b.fdvv.json")
     with pytest.raises(InputError, match="it has no press curve"):

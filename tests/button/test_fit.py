@@ -130,7 +130,7 @@ def test_a_release_alone_makes_a_model_without_landmarks(tmp_path: Path) -> None
     assert found.to_dict()["landmarks"] == {"travel_mm": found.model.travel_mm}
 
 
-def test_a_stroke_that_stops_short_is_told(tmp_path: Path) -> None:
+def test_a_stroke_that_stops_short_is_reported(tmp_path: Path) -> None:
     lines = write_columns(tmp_path / "s.csv", {"force_cN": known_cN(bench_mm())}).read_text().splitlines()
     (tmp_path / "s.csv").write_text("\n".join(lines[:600]) + "\n")
     found = fit_file(tmp_path / "s.csv")

@@ -82,7 +82,7 @@ def test_a_folder_stands_for_its_models_else_for_its_measurements(tmp_path: Path
     assert measured.is_file()
 
 
-def test_a_folders_unusable_files_are_told_and_passed_over(tmp_path: Path) -> None:
+def test_a_folders_unusable_files_are_reported_and_skipped(tmp_path: Path) -> None:
     saved(tmp_path / f"a{MODEL_SUFFIX}", line_model("a", 30))
     (tmp_path / f"b{MODEL_SUFFIX}").write_text("{")
     refused: list[str] = []
@@ -209,6 +209,6 @@ def test_devices_are_opened_by_name() -> None:
 def test_opening_a_folder_tells_how_far_it_is(tmp_path: Path) -> None:
     for name in "ab":
         saved(tmp_path / f"{name}{MODEL_SUFFIX}", line_model(name, 30))
-    told: list[tuple[int, int]] = []
-    open_models(["mx-red", str(tmp_path)], None, lambda done, total: told.append((done, total)))
-    assert told == [(1, 2), (2, 2)]
+    progress: list[tuple[int, int]] = []
+    open_models(["mx-red", str(tmp_path)], None, lambda done, total: progress.append((done, total)))
+    assert progress == [(1, 2), (2, 2)]

@@ -69,7 +69,7 @@ def test_on_the_twin_the_session_runs_by_itself_and_tells_of_every_take(fdvv: Ru
     assert len(found.takes) == len(lines)
 
 
-def test_a_bad_press_is_told_with_what_to_do_and_asked_for_again(fdvv: Run) -> None:
+def test_a_bad_press_is_reported_with_its_remedy_and_requested_again(fdvv: Run) -> None:
     ran = fdvv("capture", FILE, "--paces", "100", "--presses", "12", "--participant", "clumsy", "--no-probe")
     bad = [line for line in ran.err.splitlines() if "good" not in line]
     assert bad
@@ -109,7 +109,7 @@ def test_a_finished_recording_is_not_written_to_again(fdvv: Run, tmp_path: Path)
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "message"),
     [
         (("x.json",), "x.json: output: its name has another ending than what is written; end it in .record"),
         (("x.csv",), "end it in .recording.jsonl"),
@@ -123,12 +123,12 @@ def test_a_finished_recording_is_not_written_to_again(fdvv: Run, tmp_path: Path)
         (("nowhere.recording.jsonl/x.recording.jsonl", "--presses", "0"), "0 is not in the range"),
     ],
 )
-def test_a_mistake_is_told_in_one_line(
-    fdvv: Run, tmp_path: Path, arguments: tuple[str, ...], told: str
+def test_a_mistake_is_reported_in_one_line(
+    fdvv: Run, tmp_path: Path, arguments: tuple[str, ...], message: str
 ) -> None:
     ran = fdvv("capture", *arguments)
     assert (ran.status, ran.out) == (2, "")
-    assert told in ran.err
+    assert message in ran.err
     assert ran.err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
 
@@ -258,7 +258,7 @@ def test_a_player_is_given_a_sound_file_for_each_beep(tmp_path: Path) -> None:
 # -- stopped and killed --
 
 LONG = ("capture", FILE, "--paces", "100,200", "--presses", "30", "--seed", "11", "--participant", "clumsy")
-TOLD = re.compile(r"^take (\d+),", re.MULTILINE)
+TAKE_LINE = re.compile(r"^take (\d+),", re.MULTILINE)
 
 
 def test_ctrl_c_ends_in_one_line_that_says_how_to_go_on(fdvv: Run, tmp_path: Path) -> None:
@@ -278,7 +278,7 @@ def test_ctrl_c_ends_in_one_line_that_says_how_to_go_on(fdvv: Run, tmp_path: Pat
     assert "goes on" in again.err.splitlines()[0]
 
 
-def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_room(
+def test_a_full_disk_is_reported_in_one_line_and_the_session_goes_on_once_there_is_room(
     fdvv: Run, tmp_path: Path
 ) -> None:
     limit = 200_000
@@ -288,17 +288,17 @@ def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_r
 
     command = [*FDVV, *LONG]
     full = subprocess.run(command, cwd=tmp_path, preexec_fn=small_disk, stderr=subprocess.PIPE, text=True)
-    told = full.stderr.splitlines()
+    lines = full.stderr.splitlines()
     assert full.returncode == 2
-    assert told[-1].startswith(f"fdvv: {FILE}: File too large")
+    assert lines[-1].startswith(f"fdvv: {FILE}: File too large")
     kept = load_recording(tmp_path / FILE)
     assert kept.warnings == ()
-    assert len(kept.takes) == len(told) - 1 > 3
+    assert len(kept.takes) == len(lines) - 1 > 3
     assert fdvv(*LONG).status == 0
 
 
 def killed(folder: Path, draw: random.Random) -> tuple[int, bool]:
-    """Run the command and kill it at a random moment; give the last take it told of, and if it had ended."""
+    """Run the command and kill it at random; return the last take it reported, and if it had ended."""
     silent = subprocess.DEVNULL
     with subprocess.Popen(
         [*FDVV, *LONG], cwd=folder, stdout=silent, stderr=subprocess.PIPE, text=True
@@ -308,8 +308,8 @@ def killed(folder: Path, draw: random.Random) -> tuple[int, bool]:
         begun = "" if draw.random() < 0.2 else running.stderr.readline()
         time.sleep(draw.uniform(0.0, 0.25))
         running.kill()
-        told = TOLD.findall(begun + running.stderr.read())
-    return int(told[-1]) if told else 0, running.returncode == 0
+        numbers = TAKE_LINE.findall(begun + running.stderr.read())
+    return int(numbers[-1]) if numbers else 0, running.returncode == 0
 
 
 def takes_in(path: Path) -> Recording:
@@ -332,10 +332,10 @@ def test_a_capture_killed_at_any_moment_loses_no_take_and_goes_on_to_the_same_re
         folder.mkdir()
         ended = False
         while left and not ended:
-            told, ended = killed(folder, draw)
+            reported, ended = killed(folder, draw)
             left -= not ended
             found = takes_in(folder / FILE)
-            assert told <= len(found.takes) <= len(whole.takes)
+            assert reported <= len(found.takes) <= len(whole.takes)
             assert same(found, whole, len(found.takes))
         last = subprocess.run(
             [*FDVV, *LONG, "--json"], cwd=folder, capture_output=True, text=True, check=True
@@ -353,7 +353,7 @@ def at(board: PressedBoard, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fdvv.cli.bench.capture.open_bench", lambda *_: SerialBench(board))
 
 
-def test_a_person_at_a_bench_is_asked_and_told_and_asked_again(
+def test_a_person_at_a_bench_is_prompted_informed_and_prompted_again(
     fdvv: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     at(PressedBoard([0.0, 0.5, 100.0, 50.0, 110.0]), monkeypatch)

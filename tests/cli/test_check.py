@@ -22,7 +22,7 @@ def recording(tmp_path: Path) -> Path:
     return tmp_path / "a.recording.jsonl"
 
 
-def test_whole_files_are_told_with_their_facts_and_status_0(fdvv: Run, recording: Path) -> None:
+def test_whole_files_are_summarized_with_status_0(fdvv: Run, recording: Path) -> None:
     ran = fdvv("check", recording.name, BUILTIN)
     assert (ran.status, ran.err) == (0, "")
     assert ran.out.startswith("a.recording.jsonl: a recording, whole\n")

@@ -188,9 +188,9 @@ def test_a_mutilated_file_gets_a_verdict_or_one_line(
         data = damage(data)
     path = tmp_path / made.name
     path.write_bytes(data)
-    told = verdict(path)
-    assert told
-    assert all("\n" not in line for line in told)
+    report = verdict(path)
+    assert report
+    assert all("\n" not in line for line in report)
 
 
 def verdict(path: Path) -> list[str]:

@@ -88,7 +88,7 @@ def test_a_pipe_that_closes_early_makes_no_noise(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full here")
-def test_a_full_disk_is_told_in_one_line() -> None:
+def test_a_full_disk_is_reported_in_one_line() -> None:
     with Path("/dev/full").open("wb") as full:
         ran = subprocess.run([*FDVV, "--version"], stdout=full, stderr=subprocess.PIPE, check=False)
     assert ran.returncode == 2
@@ -104,15 +104,15 @@ def test_progress_is_shown_on_a_terminal_only_and_never_on_standard_output(folde
     shown = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=theirs, env=environment)
     os.close(theirs)
     out = shown.communicate()[0]
-    told = b""
+    output = b""
     try:
         while chunk := os.read(ours, 4096):
-            told += chunk
+            output += chunk
     except OSError:
         # Linux gives an error, not an end of file, once the other side has closed
         pass
     os.close(ours)
-    assert b"fitting" in told
+    assert b"fitting" in output
     assert {r["file"] for r in json.loads(out)["results"]} == {
         r["file"] for r in json.loads(quiet.stdout)["results"]
     }

@@ -51,7 +51,7 @@ def test_a_rig_is_identified_learned_on_and_kept(fdvv: Run, tmp_path: Path, taug
     )
 
 
-def test_another_button_is_rendered_at_once_and_its_expected_errors_are_told(
+def test_another_button_is_rendered_at_once_and_its_expected_errors_are_printed(
     fdvv: Run, tmp_path: Path, taught: bytes
 ) -> None:
     (tmp_path / "bench.rig.json").write_bytes(taught)
@@ -75,7 +75,7 @@ def test_another_button_is_rendered_at_once_and_its_expected_errors_are_told(
     assert sum(means[0]) < 0.5 * sum(means[1])
 
 
-def test_a_known_rig_that_changed_is_told_also_beside_a_document(
+def test_a_changed_rig_is_reported_also_when_json_is_printed(
     fdvv: Run, tmp_path: Path, taught: bytes
 ) -> None:
     (tmp_path / "bench.rig.json").write_bytes(taught)

@@ -20,9 +20,9 @@ def test_the_kinds_of_device_are_listed(fdvv: Run) -> None:
 
 
 def test_info_tells_limits_firmware_and_counters(fdvv: Run) -> None:
-    told = json.loads(fdvv("device", "info", "--json").out)
-    assert (told["name"], told["simulated"], told["mode"]) == ("host", True, "idle")
-    assert told["counters"]["bad_frames"] == 0
+    info = json.loads(fdvv("device", "info", "--json").out)
+    assert (info["name"], info["simulated"], info["mode"]) == ("host", True, "idle")
+    assert info["counters"]["bad_frames"] == 0
     assert "force_limit_cN" in fdvv("device", "info").out
     assert json.loads(fdvv("device", "info", "--device", "twin", "--json").out)["name"] == "twin"
 
@@ -37,8 +37,8 @@ def test_the_selftest_gives_a_verdict_for_every_part(fdvv: Run) -> None:
 def test_a_model_and_an_image_are_uploaded(fdvv: Run, tmp_path: Path) -> None:
     image = tmp_path / "program.bin"
     image.write_bytes(surface_image(plain_surface(), 4.0))
-    told = json.loads(fdvv("device", "upload", str(image), "--json").out)
-    assert told == {"device": "host", "bytes": len(image.read_bytes()), "states": 1, "travel_mm": 4.0}
+    uploaded = json.loads(fdvv("device", "upload", str(image), "--json").out)
+    assert uploaded == {"device": "host", "bytes": len(image.read_bytes()), "states": 1, "travel_mm": 4.0}
     assert "checked and active" in fdvv("device", "upload", "mx-brown").out
 
 
@@ -64,19 +64,19 @@ def test_presses_are_made_recorded_and_replayed(fdvv: Run, tmp_path: Path) -> No
 
 def test_what_a_device_tells_is_written_as_lines(fdvv: Run, tmp_path: Path) -> None:
     for ending in ("csv", "jsonl"):
-        path = tmp_path / f"told.{ending}"
-        told = json.loads(fdvv("device", "monitor", "--seconds", "0.1", "-o", str(path), "--json").out)
+        path = tmp_path / f"telemetry.{ending}"
+        summary = json.loads(fdvv("device", "monitor", "--seconds", "0.1", "-o", str(path), "--json").out)
         lines = path.read_text().splitlines()
-        assert told["missing_ticks"] == 0
-        assert len(lines) == told["records"] + (ending == "csv")
+        assert summary["missing_ticks"] == 0
+        assert len(lines) == summary["records"] + (ending == "csv")
     assert list(json.loads(lines[0])) == [
         "tick", "displacement_mm", "velocity_mm_s", "commanded_cN", "force_cN", "state", "flags"
     ]  # fmt: skip
 
 
 def test_fewer_records_are_asked_for(fdvv: Run) -> None:
-    told = json.loads(fdvv("device", "monitor", "--seconds", "0.1", "--every", "10", "--json").out)
-    assert 9 <= told["records"] <= 11  # of a loop of 1 kHz
+    summary = json.loads(fdvv("device", "monitor", "--seconds", "0.1", "--every", "10", "--json").out)
+    assert 9 <= summary["records"] <= 11  # of a loop of 1 kHz
 
 
 def test_a_device_without_firmware_says_what_to_use(fdvv: Run) -> None:
@@ -86,7 +86,7 @@ def test_a_device_without_firmware_says_what_to_use(fdvv: Run) -> None:
         assert "use host or serial:PORT" in ran.err
 
 
-def test_a_port_that_is_not_there_is_told_with_status_1(fdvv: Run) -> None:
+def test_a_port_that_is_not_there_is_refused_with_status_1(fdvv: Run) -> None:
     ran = fdvv("device", "info", "--device", "serial:/dev/there-is-none")
     assert ran.status == 1
     assert ran.err.count("\n") == 1

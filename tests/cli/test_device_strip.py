@@ -13,13 +13,13 @@ from tests.cli.conftest import Ran
 Run = Callable[..., Ran]
 
 
-def test_a_strip_is_checked_and_every_press_told(fdvv: Run) -> None:
+def test_a_strip_is_checked_and_every_press_printed(fdvv: Run) -> None:
     ran = fdvv("device", "strip", "--strip", "host", "--rounds", "2")
     assert ran.status == 0
     assert ran.out.splitlines()[:3] == ["round 1: +80.00 ms", "round 2: +80.00 ms", "host (simulated)"]
-    told = json.loads(fdvv("device", "strip", "--strip", "host", "--level", "hard", "--json").out)
-    assert (told["simulated"], told["edges"], len(told["rounds"])) == (True, 3, 3)
-    assert told["asynchrony_ms"] == pytest.approx(80.0, abs=2e-3)
+    report = json.loads(fdvv("device", "strip", "--strip", "host", "--level", "hard", "--json").out)
+    assert (report["simulated"], report["edges"], len(report["rounds"])) == (True, 3, 3)
+    assert report["asynchrony_ms"] == pytest.approx(80.0, abs=2e-3)
 
 
 def test_a_rig_renders_a_button_meanwhile(fdvv: Run) -> None:
@@ -29,7 +29,7 @@ def test_a_rig_renders_a_button_meanwhile(fdvv: Run) -> None:
     assert (ran.status, ran.out) == (2, "")
 
 
-def test_a_key_line_that_never_rises_is_told_as_such(fdvv: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_key_line_that_never_rises_is_reported(fdvv: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(LibraryStrip, "press_at", lambda line, at_s: None)
     ran = fdvv("device", "strip", "--strip", "host", "--rounds", "1")
     assert ran.status == 1

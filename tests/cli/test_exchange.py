@@ -16,7 +16,7 @@ def test_the_formats_are_listed(fdvv: Run) -> None:
         assert name in ran.out
 
 
-def test_a_button_goes_out_and_what_it_lost_is_told(fdvv: Run, tmp_path: Path) -> None:
+def test_a_button_is_exported_and_its_losses_are_listed(fdvv: Run, tmp_path: Path) -> None:
     ran = fdvv("export", "mx-clear", "-o", "a.xml")
     assert ran.status == 0
     assert "lost: " in ran.out
@@ -25,10 +25,10 @@ def test_a_button_goes_out_and_what_it_lost_is_told(fdvv: Run, tmp_path: Path) -
 
 
 def test_the_report_as_json(fdvv: Run) -> None:
-    told = fdvv("export", "mx-blue", "--to", "smartknob", "-o", "a.json", "--json").json
-    assert told["format"] == "smartknob"
-    assert told["figures"]["snap_mm"] == pytest.approx(1.68)
-    assert told["path"] == "a.json"
+    exported = fdvv("export", "mx-blue", "--to", "smartknob", "-o", "a.json", "--json").json
+    assert exported["format"] == "smartknob"
+    assert exported["figures"]["snap_mm"] == pytest.approx(1.68)
+    assert exported["path"] == "a.json"
 
 
 def test_out_and_in_again(fdvv: Run, tmp_path: Path) -> None:
@@ -42,14 +42,14 @@ def test_out_and_in_again(fdvv: Run, tmp_path: Path) -> None:
 
 def test_a_vibration_comes_in(fdvv: Run, tmp_path: Path) -> None:
     fdvv("export", "mx-clear", "-o", "a.haptic")
-    told = fdvv("import", "a.haptic", "--into", "mx-blue", "-o", "b.fdvv.json", "--json").json
-    assert told["vibrations"][0]["modes"][0]["frequency_Hz"] == pytest.approx(239)
-    assert any("put at the peak" in note for note in told["notes"])
+    imported = fdvv("import", "a.haptic", "--into", "mx-blue", "-o", "b.fdvv.json", "--json").json
+    assert imported["vibrations"][0]["modes"][0]["frequency_Hz"] == pytest.approx(239)
+    assert any("put at the peak" in note for note in imported["notes"])
     assert load_model(tmp_path / "b.fdvv.json").vibrations
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "message"),
     [
         (("export", "mx-clear", "-o", "a.txt"), "tells no format"),
         (("export", "mx-clear", "--to", "ahap", "-o", "a.csv"), "end it in .ahap"),
@@ -60,15 +60,15 @@ def test_a_vibration_comes_in(fdvv: Run, tmp_path: Path) -> None:
         (("import", "empty", "-o", "b.txt"), "end it in .fdvv.json"),
     ],
 )
-def test_mistakes_are_told_in_one_line_and_leave_nothing(
-    fdvv: Run, tmp_path: Path, arguments: tuple[str, ...], told: str
+def test_mistakes_are_reported_in_one_line_and_leave_nothing(
+    fdvv: Run, tmp_path: Path, arguments: tuple[str, ...], message: str
 ) -> None:
     (tmp_path / "empty").touch()
     ran = fdvv(*arguments)
     assert ran.status == 2
     assert ran.out == ""
     assert ran.err.count("\n") == 1
-    assert told in ran.err
+    assert message in ran.err
     assert [p.name for p in tmp_path.iterdir()] == ["empty"]
 
 

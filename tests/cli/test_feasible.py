@@ -46,12 +46,12 @@ def test_a_table_of_curves_is_followed_by_the_reasons_and_the_warmth(
 
 
 def test_json_holds_the_whole_report(fdvv: Run, known: tuple[str | Path, ...]) -> None:
-    told = fdvv("feasible", "mx-red", *known, "--velocity", "80", "--json").json
-    assert [c["stroke"] for c in told["curves"]] == ["press", "release"]
-    for curve in told["curves"]:
+    report = fdvv("feasible", "mx-red", *known, "--velocity", "80", "--json").json
+    assert [c["stroke"] for c in report["curves"]] == ["press", "release"]
+    for curve in report["curves"]:
         assert len(curve["displacement_mm"]) == len(curve["achievable_cN"]) == len(curve["command_cN"])
         assert curve["expected_error"]["mean_cN"] > 0
-    assert told["thermal"][0]["velocity_mm_s"] == 80.0
+    assert report["thermal"][0]["velocity_mm_s"] == 80.0
 
 
 def test_a_learned_table_is_pressed_and_drawn_with_the_rest(

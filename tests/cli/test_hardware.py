@@ -17,17 +17,17 @@ def test_the_parts_are_listed_with_what_they_weigh(fdvv: Run) -> None:
     ran = fdvv("hardware", "parts")
     assert ran.status == 0
     assert "coil-mount" in ran.out
-    told = {part["name"]: part for part in fdvv("hardware", "parts", "--json").json["parts"]}
-    assert told["marker-post"]["count"] == 3
-    assert 20 < told["coil-mount"]["mass_g"] < 60
+    parts = {part["name"]: part for part in fdvv("hardware", "parts", "--json").json["parts"]}
+    assert parts["marker-post"]["count"] == 3
+    assert 20 < parts["coil-mount"]["mass_g"] < 60
 
 
-def test_dimensions_are_told_as_toml_that_reads_back(fdvv: Run, tmp_path: Path) -> None:
+def test_dimensions_are_printed_as_toml_that_reads_back(fdvv: Run, tmp_path: Path) -> None:
     text = fdvv("hardware", "parts", "--dimensions", "--set", "coil_diameter_mm=25").out
     (tmp_path / "mine.toml").write_text(text)
-    told = fdvv("hardware", "parts", "--dimensions", "--from", "mine.toml", "--json").json["dimensions"]
-    assert told["coil_diameter_mm"]["value"] == 25.0
-    assert told["travel_mm"]["source"] == "paper"
+    dimensions = fdvv("hardware", "parts", "--dimensions", "--from", "mine.toml", "--json").json["dimensions"]
+    assert dimensions["coil_diameter_mm"]["value"] == 25.0
+    assert dimensions["travel_mm"]["source"] == "paper"
 
 
 def test_a_dimension_that_is_none_is_refused_with_the_nearest(fdvv: Run, tmp_path: Path) -> None:
@@ -56,18 +56,19 @@ def test_a_folder_without_parts_is_refused(fdvv: Run, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_exported_parts_are_good_and_their_figures_told(fdvv: Run) -> None:
+def test_the_exported_parts_are_good_and_their_figures_printed(fdvv: Run) -> None:
     pytest.importorskip("manifold3d", reason="manifold3d is not installed")
     ran = fdvv("hardware", "check", str(HARDWARE), "--json")
     assert ran.status == 0
-    told = ran.json
-    assert told["good"]
-    assert told["limiter"]["from_mm"] <= 0
-    assert told["limiter"]["to_mm"] >= 6.2
+    report = ran.json
+    assert report["good"]
+    assert report["limiter"]["from_mm"] <= 0
+    assert report["limiter"]["to_mm"] >= 6.2
     assert (
-        told["sensor_mount"]["float_mm"] + told["sensor_mount"]["room_mm"] >= told["sensor_mount"]["worst_mm"]
+        report["sensor_mount"]["float_mm"] + report["sensor_mount"]["room_mm"]
+        >= report["sensor_mount"]["worst_mm"]
     )
-    assert min(gap["gap_mm"] for gap in told["clearances"]) > 0.15
+    assert min(gap["gap_mm"] for gap in report["clearances"]) > 0.15
 
 
 @pytest.mark.slow

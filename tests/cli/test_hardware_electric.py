@@ -15,25 +15,25 @@ Run = Callable[..., Ran]
 
 
 def test_the_bill_has_a_total_beside_the_papers(fdvv: Run) -> None:
-    told = fdvv("hardware", "bill", "--json").json
-    assert told["total_USD"] == pytest.approx(
-        sum(line["packs"] * line["price_USD"] for line in told["lines"])
+    bill = fdvv("hardware", "bill", "--json").json
+    assert bill["total_USD"] == pytest.approx(
+        sum(line["packs"] * line["price_USD"] for line in bill["lines"])
     )
-    assert told["paper_USD"] == 550
+    assert bill["paper_USD"] == 550
     shown = fdvv("hardware", "bill").out
     assert "HVCM-025-022-003-01" in shown
     assert "estimates" in shown
     rows = list(csv.DictReader(io.StringIO(fdvv("hardware", "bill", "--csv").out)))
-    assert len(rows) == len(told["lines"])
+    assert len(rows) == len(bill["lines"])
     ran = fdvv("hardware", "bill", "--csv", "--json")
     assert (ran.status, ran.out) == (2, "")
 
 
-def test_the_circuit_is_checked_and_told_with_units(fdvv: Run) -> None:
-    told = fdvv("hardware", "circuit", "--json").json
-    assert told["violations"] == []
-    assert told["paper_parts_cutoff_Hz"] == pytest.approx(477.94, abs=0.01)
-    assert len(told["netlist"]["parts"]) == told["parts"]
+def test_the_circuit_is_checked_and_printed_with_units(fdvv: Run) -> None:
+    circuit = fdvv("hardware", "circuit", "--json").json
+    assert circuit["violations"] == []
+    assert circuit["paper_parts_cutoff_Hz"] == pytest.approx(477.94, abs=0.01)
+    assert len(circuit["netlist"]["parts"]) == circuit["parts"]
     shown = fdvv("hardware", "circuit").out
     assert "every rule holds" in shown
     assert "479.5" in shown

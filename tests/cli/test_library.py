@@ -37,8 +37,8 @@ def library(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("library") / "library"
     result = asked("build", str(folder), "--output", str(path), "--processes", "1", "--json")
     assert result.exit_code == 0, result.output
-    told = json.loads(result.stdout)
-    assert (told["files"], told["buttons"], told["refused"], told["read"]) == (3, 2, 1, 3)
+    report = json.loads(result.stdout)
+    assert (report["files"], report["buttons"], report["refused"], report["read"]) == (3, 2, 1, 3)
     return path
 
 
@@ -54,25 +54,25 @@ def test_a_search_tells_figures_and_units_as_a_table_json_and_csv(library: Path,
     assert "navy" in table.stdout
     assert table.stdout.endswith("1 found\n")
     path = tmp_path / "hits.csv"
-    told = json.loads(asked("search", str(library), "--json", "-o", str(path)).stdout)
-    assert (told["buttons"], told["found"]) == (2, 2)
-    assert {hit["name"] for hit in told["hits"]} == {"red", "navy"}
+    report = json.loads(asked("search", str(library), "--json", "-o", str(path)).stdout)
+    assert (report["buttons"], report["found"]) == (2, 2)
+    assert {hit["name"] for hit in report["hits"]} == {"red", "navy"}
     with path.open() as stream:
         rows = list(csv.DictReader(stream))
-    assert [float(row["travel_mm"]) for row in rows] == [hit["travel_mm"] for hit in told["hits"]]
+    assert [float(row["travel_mm"]) for row in rows] == [hit["travel_mm"] for hit in report["hits"]]
 
 
-def test_the_nearest_are_told_with_their_distance(library: Path, folder: Path) -> None:
-    told = json.loads(asked("like", str(library), str(folder / "red.csv"), "-n", "1", "--json").stdout)
-    assert len(told["hits"]) == 1
-    assert told["hits"][0]["distance_JND"] == pytest.approx(0.0, abs=1e-3)
+def test_the_nearest_are_listed_with_their_distance(library: Path, folder: Path) -> None:
+    report = json.loads(asked("like", str(library), str(folder / "red.csv"), "-n", "1", "--json").stdout)
+    assert len(report["hits"]) == 1
+    assert report["hits"][0]["distance_JND"] == pytest.approx(0.0, abs=1e-3)
     assert (
         asked("like", str(library), "mx-clear", "--by", "landmarks").stdout.splitlines()[0].split()[3]
         == "JND"
     )
 
 
-def test_refused_files_are_told_with_their_reason(library: Path) -> None:
+def test_refused_files_are_listed_with_their_reason(library: Path) -> None:
     assert "broken.csv: " in asked("refused", str(library)).stdout
     (refused,) = json.loads(asked("refused", str(library), "--json").stdout)["refused"]
     assert refused["place"].endswith("broken.csv")
@@ -91,7 +91,7 @@ def test_refused_files_are_told_with_their_reason(library: Path) -> None:
         (["search", "LIBRARY", "-o", "hits.txt"], "end it in .csv"),
     ],
 )
-def test_what_cannot_be_is_told_in_one_line(
+def test_impossible_requests_are_refused_in_one_line(
     library: Path, folder: Path, tmp_path: Path, arguments: list[str], said: str
 ) -> None:
     names = {"LIBRARY": library, "FOLDER": folder, "NEW": tmp_path / "new"}
@@ -121,6 +121,6 @@ def test_ctrl_c_says_what_is_kept_and_the_same_command_goes_on(tmp_path: Path) -
     out, err = process.communicate()
     assert (process.returncode, out) == (130, b"")
     assert err == f"fdvv: interrupted; what is done is kept in {library}, the same command goes on\n".encode()
-    told = json.loads(subprocess.run([*command, "--json"], capture_output=True, check=True).stdout)
-    assert told["kept"] >= 64
-    assert told["buttons"] == 400
+    report = json.loads(subprocess.run([*command, "--json"], capture_output=True, check=True).stdout)
+    assert report["kept"] >= 64
+    assert report["buttons"] == 400

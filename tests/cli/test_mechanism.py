@@ -10,7 +10,7 @@ import pytest
 from tests.cli.conftest import Run
 
 
-def test_a_spring_is_told_with_what_it_misses_and_why(fdvv: Run) -> None:
+def test_a_spring_is_printed_with_its_residual_and_the_reason(fdvv: Run) -> None:
     ran = fdvv("mechanism", "mx-red", "--kind", "spring", "--speed", "100")
     assert ran.status == 0
     for said in (
@@ -25,15 +25,15 @@ def test_a_spring_is_told_with_what_it_misses_and_why(fdvv: Run) -> None:
 
 def test_a_miss_has_status_1_and_its_json_says_so(fdvv: Run) -> None:
     ran = fdvv("mechanism", "mx-brown", "--kind", "spring", "--speed", "100", "--json")
-    told = json.loads(ran.out)
+    report = json.loads(ran.out)
     assert ran.status == 1
-    assert told["met"] is False
-    assert told["residual"]["press"]["rms_cN"] > told["wanted_cN"]
-    assert [p["speed_mm_s"] for p in told["twin"]["pressed"]] == [0.5, 100.0]
-    assert told["twin"]["simulated"] is True
+    assert report["met"] is False
+    assert report["residual"]["press"]["rms_cN"] > report["wanted_cN"]
+    assert [p["speed_mm_s"] for p in report["twin"]["pressed"]] == [0.5, 100.0]
+    assert report["twin"]["simulated"] is True
 
 
-def test_what_cannot_be_used_is_told_in_one_line(fdvv: Run, tmp_path: Path) -> None:
+def test_unusable_input_is_refused_in_one_line(fdvv: Run, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     for arguments in (
         ("mechanism", "nothing"),

@@ -149,10 +149,10 @@ def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(
     process = started(tmp_path, 24)
     wait_for_lines(tmp_path, 7, process)
     process.send_signal(stop)
-    told = process.communicate()[1]
+    stderr = process.communicate()[1]
     if stop is signal.SIGINT:
         assert process.returncode == 130
-        assert told.rstrip().endswith("go on with: fdvv optimize resume run")
+        assert stderr.rstrip().endswith("go on with: fdvv optimize resume run")
     ran = fdvv("optimize", "resume", "run", "--json")
     assert ran.status == 0, ran.err
     resumed = ran.json
@@ -162,7 +162,7 @@ def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(
 
 
 @pytest.mark.parametrize(
-    ("asked", "told"),
+    ("arguments", "message"),
     [
         (("--engine", "foo"), "foo: no engine has this name; use one of random, sobol"),
         (("--engine", "tpe:[1]"), "the options of tpe are no JSON object"),
@@ -178,11 +178,11 @@ def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(
     ],
 )
 def test_bad_options_get_one_line_and_leave_no_folder(
-    fdvv: Run, tmp_path: Path, asked: tuple[str, ...], told: str
+    fdvv: Run, tmp_path: Path, arguments: tuple[str, ...], message: str
 ) -> None:
-    ran = begun(fdvv, "run", *asked)
+    ran = begun(fdvv, "run", *arguments)
     assert ran.status == 2
-    assert told in ran.err
+    assert message in ran.err
     assert ran.err.count("\n") == 1
     assert not (tmp_path / "run").exists()
 

@@ -16,15 +16,15 @@ def asked(*arguments: str) -> Result:
 
 
 @pytest.mark.slow
-def test_a_grid_is_told_as_json_that_says_simulated_and_becomes_a_prior(tmp_path: Path) -> None:
+def test_a_grid_is_printed_as_json_that_says_simulated_and_becomes_a_prior(tmp_path: Path) -> None:
     first, second = str(tmp_path / "grid"), str(tmp_path / "people")
     sizes = ["--people", "2", "--processes", "1", "--json"]
     grid = asked(first, "--grid", "3", "--seed", "1", "--shift", "pace_mm_s=1.2", *sizes)
     assert grid.exit_code == 0, grid.output
-    told = json.loads(grid.stdout)
-    assert told["simulated"]
-    assert told["plan"]["shifts"] == {"pace_mm_s": 1.2}
-    assert set(told["best"]["parameters"]) >= {"actuation_mm", "y3_cN"}
+    summary = json.loads(grid.stdout)
+    assert summary["simulated"]
+    assert summary["plan"]["shifts"] == {"pace_mm_s": 1.2}
+    assert set(summary["best"]["parameters"]) >= {"actuation_mm", "y3_cN"}
     people = asked(second, "--engine", "tpe", "--budget", "2", "--prior", first, *sizes)
     assert people.exit_code == 0, people.output
     found = json.loads(people.stdout)

@@ -49,9 +49,9 @@ def test_the_document_tells_curves_with_spread_and_every_press(fdvv: Run, record
     assert set(report["landmark_errors"]["travel_mm"]) == {"error", "presses"}
 
 
-def test_the_mass_of_the_cap_is_taken_and_told(fdvv: Run, recording: Path) -> None:
+def test_the_mass_of_the_cap_is_used_and_recorded(fdvv: Run, recording: Path) -> None:
     report = fdvv("process", recording, "--json", "--cap-mass-g", "2.5").json
-    assert any("moves 2.5 g" in told for told in report["assumptions"])
+    assert any("moves 2.5 g" in assumption for assumption in report["assumptions"])
 
 
 @pytest.fixture
@@ -70,20 +70,20 @@ def shaken(tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
-def test_vibrations_are_listed_and_missing_ones_told_or_scaled_if_asked(fdvv: Run, shaken: Path) -> None:
+def test_vibrations_are_listed_and_missing_ones_reported_or_scaled_if_asked(fdvv: Run, shaken: Path) -> None:
     plain, text = fdvv("process", shaken, "--json").json, fdvv("process", shaken).out
-    told = plain["vibrations"]
-    assert [(v["stroke"], v["velocity_mm_s"]) for v in told["in_model"]] == [
+    vibrations = plain["vibrations"]
+    assert [(v["stroke"], v["velocity_mm_s"]) for v in vibrations["in_model"]] == [
         ("press", 50.0),
         ("press", 200.0),
     ]
-    for vibration in told["in_model"]:
+    for vibration in vibrations["in_model"]:
         assert vibration["presses"] > 1
         assert vibration["onset_spread_mm"] > 0
         assert f"{vibration['frequency_Hz']:.0f} ± {vibration['frequency_spread_Hz']:.0f}" in text
-    missing = [h for h in told["heard"] if h["reason"]]
+    missing = [h for h in vibrations["heard"] if h["reason"]]
     assert all(any(h["reason"] in line for line in plain["warnings"]) for h in missing)
-    assert [s["stroke"] for s in told["scalings"]] == ["press"]
+    assert [s["stroke"] for s in vibrations["scalings"]] == ["press"]
     assert not any("scaled from other paces" in line for line in plain["assumptions"])
     asked = fdvv("process", shaken, "--json", "--extrapolate-vibration").json
     (scaled,) = [v for v in asked["vibrations"]["in_model"] if v["presses"] is None]

@@ -13,19 +13,19 @@ from .conftest import Run
 
 
 def test_list_tells_every_program_with_its_parameters(fdvv: Run) -> None:
-    told = fdvv("program", "list")
-    assert told.status == 0
+    ran = fdvv("program", "list")
+    assert ran.status == 0
     entries = fdvv("program", "list", "--json").json["programs"]
     assert [e["name"] for e in entries] == [p.name for p in programs()]
     for entry in entries:
-        assert f"{entry['name']}: " in told.out
+        assert f"{entry['name']}: " in ran.out
         promised = entry["summary"] + entry["details"]
-        assert [n for n in entry["parameters"] if n not in promised or n not in told.out] == []
+        assert [n for n in entry["parameters"] if n not in promised or n not in ran.out] == []
 
 
 def test_show_tells_states_and_ways(fdvv: Run) -> None:
-    told = fdvv("program", "show", "rapid-trigger")
-    assert "up: fallen by 0.15 mm if deeper than 0.3 mm → down" in told.out.splitlines()
+    ran = fdvv("program", "show", "rapid-trigger")
+    assert "up: fallen by 0.15 mm if deeper than 0.3 mm → down" in ran.out.splitlines()
     assert fdvv("program", "show", "rapid-trigger", "--json").json["start"] == "up"
 
 

@@ -140,14 +140,14 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("mistake", REFUSED)
-def test_a_mistake_is_told_in_one_line_with_status_2(fdvv: Run, bad: Path, mistake: str) -> None:
-    command, told = REFUSED[mistake]
+def test_a_mistake_is_reported_in_one_line_with_status_2(fdvv: Run, bad: Path, mistake: str) -> None:
+    command, message = REFUSED[mistake]
     before = {p: p.read_bytes() for p in bad.rglob("*") if p.is_file()}
     ran = fdvv(*command)
     *others, line = ran.err.splitlines()
     assert ran.status == 2
     assert line.startswith("fdvv: ")
-    assert told in ran.err
+    assert message in ran.err
     assert all(other.startswith(("warning: ", "refused: ")) for other in others)
     assert {p: p.read_bytes() for p in bad.rglob("*") if p.is_file()} == before
 

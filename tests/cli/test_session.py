@@ -60,13 +60,13 @@ def test_a_session_that_was_stopped_loses_no_press_and_ends_in_a_valid_result(
     running = started(*learn, folder=tmp_path)
     wait_for(5, path)
     running.send_signal(how)
-    _, told = running.communicate(timeout=20)
+    _, stderr = running.communicate(timeout=20)
     kept = path.read_bytes()
     _, before, end = PressLog.read(path)
     assert 5 <= len(before) < 48
     if how is signal.SIGINT:
         assert running.returncode == 130
-        last = told.splitlines()[-1]
+        last = stderr.splitlines()[-1]
         kept_in = f"{len(before)} presses are kept in s; run the same command again to go on"
         assert last == f"fdvv: interrupted; {kept_in}"
     assert not (tmp_path / "a.actuation.json").exists()
@@ -95,8 +95,8 @@ def test_ctrl_c_ends_in_one_line_that_says_how_to_go_on(fdvv: Run, monkeypatch: 
 
     monkeypatch.setattr("fdvv.rendering.session.open_device", lambda *_: Stopped())
     ran = fdvv("compensate", "mx-clear", *SHORT, "--session", "s", "--json")
-    told = "fdvv: interrupted; 2 presses are kept in s; run the same command again to go on\n"
-    assert (ran.status, ran.err, ran.out) == (130, told, "")
+    message = "fdvv: interrupted; 2 presses are kept in s; run the same command again to go on\n"
+    assert (ran.status, ran.err, ran.out) == (130, message, "")
     shown = fdvv("show", "s").out.splitlines()
     assert shown[-2:] == ["2 presses used, 0 not", "not finished; run the session's command again to go on"]
     ran = fdvv("probe", "mx-clear", *SHORT[:4], "--session", "p", "--presses", "2")
@@ -116,7 +116,7 @@ def test_a_session_killed_before_its_first_run_can_be_shown(fdvv: Run, tmp_path:
     assert (shown.status, shown.out.splitlines()[-2]) == (0, "0 presses used, 0 not")
 
 
-def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_room(
+def test_a_full_disk_is_reported_in_one_line_and_the_session_goes_on_once_there_is_room(
     fdvv: Run, tmp_path: Path
 ) -> None:
     limit = 400_000
@@ -126,9 +126,9 @@ def test_a_full_disk_is_told_in_one_line_and_the_session_goes_on_once_there_is_r
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 
     full = started(*learn, folder=tmp_path, preexec_fn=small_disk)
-    _, told = full.communicate(timeout=30)
+    _, stderr = full.communicate(timeout=30)
     assert full.returncode == 2
-    assert told.splitlines()[-1].startswith("fdvv: s/presses.jsonl: File too large")
+    assert stderr.splitlines()[-1].startswith("fdvv: s/presses.jsonl: File too large")
     _, before, end = PressLog.read(tmp_path / "s" / PRESSES)
     assert end == (tmp_path / "s" / PRESSES).stat().st_size <= limit
     assert 0 < len(before) < 8
@@ -166,7 +166,7 @@ def test_the_same_command_again_gives_the_result_again_and_says_so(fdvv: Run) ->
     )
 
 
-def test_beside_a_document_nothing_is_told(fdvv: Run) -> None:
+def test_when_json_is_printed_nothing_else_is(fdvv: Run) -> None:
     for _ in range(2):
         ran = fdvv("compensate", "mx-clear", *SHORT, "--session", "s", "--json")
         assert (ran.status, ran.err) == (0, "")
@@ -237,7 +237,7 @@ def test_a_board_without_a_force_sensor_is_not_learned_from(fdvv: Run) -> None:
     assert ran.err.count("\n") == 1
 
 
-def test_a_tight_pace_is_told_with_what_to_do(fdvv: Run) -> None:
+def test_a_tight_speed_tolerance_is_reported_with_its_remedy(fdvv: Run) -> None:
     ran = fdvv("compensate", "mx-clear", *SHORT, "--pace-tolerance", "0.05", "--session", "s")
     assert re.search(r"not used, \d+ mm/s instead of \d+: press (slower|faster)", ran.err)
 
@@ -253,8 +253,8 @@ def test_the_board_as_a_program_goes_on_where_it_stopped(fdvv: Run, tmp_path: Pa
     path.write_bytes(b"".join(lines[:6]) + lines[6][:100])
     gone_on = fdvv(*learn, "--json")
     assert gone_on.status == 0
-    told = "the last record is not whole and is left out; presses kept: 5"
-    assert gone_on.err == f"warning: s/{PRESSES}: {told}\n"
+    warning = "the last record is not whole and is left out; presses kept: 5"
+    assert gone_on.err == f"warning: s/{PRESSES}: {warning}\n"
     receipt = fdvv("show", "s", "--json").json
     assert (receipt["used"], len(receipt["runs"])) == (8, 2)
     assert receipt["device"]["settings"]["force_gain_q14"] > 0

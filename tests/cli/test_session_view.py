@@ -37,7 +37,7 @@ def plain(stream: io.StringIO) -> str:
     return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", stream.getvalue())
 
 
-def test_a_press_is_told_by_what_was_achieved_and_changed_or_why_it_was_not_used() -> None:
+def test_a_press_is_shown_by_what_it_achieved_and_changed_or_why_it_was_not_used() -> None:
     assert press_line(event()) == "3 of 12, 100 mm/s: achieved 96 mm/s; moved it"
     assert press_line(event(2, "press slower")) == "2 of 12, 100 mm/s: not used, press slower"
 
@@ -56,7 +56,7 @@ def test_a_person_without_a_terminal_gets_a_line_before_and_after_each_press(
     ]
 
 
-def test_simulated_presses_are_told_in_about_ten_lines_and_not_at_all_beside_a_document(
+def test_simulated_presses_are_shown_in_about_ten_lines_and_not_at_all_when_json_is_printed(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     for quiet, lines in ((False, 12), (True, 0)):

@@ -23,17 +23,17 @@ def paper(tmp_path: Path) -> Path:
     return tmp_path / "paper"
 
 
-def test_the_papers_statistics_are_told_as_json(fdvv: Run, paper: Path) -> None:
-    told = fdvv("study", "analyse", paper, "--json").json
-    assert [one["button"] for one in told["tests"]][:2] == ["Clear", "Brown"]
-    for one in told["tests"]:
+def test_the_papers_statistics_are_printed_as_json(fdvv: Run, paper: Path) -> None:
+    analysis = fdvv("study", "analyse", paper, "--json").json
+    assert [one["button"] for one in analysis["tests"]][:2] == ["Clear", "Brown"]
+    for one in analysis["tests"]:
         assert round(one["z"], 2) == -3.06
         assert round(one["p_asymptotic"], 3) == 0.002
         assert round(one["p_exact"], 4) == 0.0005
         assert one["effect"] == 1.0
-    assert round(100 * told["preference"]["share"], 2) == 77.31
-    assert told["preference"]["low"] < told["preference"]["share"] < told["preference"]["high"]
-    assert not told["simulated"]
+    assert round(100 * analysis["preference"]["share"], 2) == 77.31
+    assert analysis["preference"]["low"] < analysis["preference"]["share"] < analysis["preference"]["high"]
+    assert not analysis["simulated"]
 
 
 def test_people_read_the_claim_the_share_and_a_table(fdvv: Run, paper: Path) -> None:
@@ -50,17 +50,17 @@ def test_a_foreign_table_is_analysed_as_its_columns_are_mapped(fdvv: Run, tmp_pa
     mapped = ["person=subject", "item=switch", "choice=answer", "realism:FD=fd", "realism:FDVV=fdvv"]
     options = [word for one in mapped for word in ("--map", one)]
     codes = ["--code", "1=FDVV", "--code", "2=FD"]
-    told = fdvv("study", "analyse", "foreign.csv", "--kind", "realism", *options, *codes, "--json").json
-    (test,) = told["tests"]
+    analysis = fdvv("study", "analyse", "foreign.csv", "--kind", "realism", *options, *codes, "--json").json
+    (test,) = analysis["tests"]
     assert (test["n"], test["w_minus"], test["p_exact"]) == (8, 0.0, 2 / 2**8)
-    assert told["preference"]["share"] == 0.5
+    assert analysis["preference"]["share"] == 0.5
 
 
 def test_a_plan_beside_a_table_says_what_was_registered(fdvv: Run, paper: Path, tmp_path: Path) -> None:
     write_template("realism", tmp_path / "plan")
-    told = fdvv("study", "analyse", paper, "--plan", tmp_path / "plan" / "study.toml", "--json").json
-    assert told["claim"]["registered"]
-    assert told["claim"]["supported"]
+    analysis = fdvv("study", "analyse", paper, "--plan", tmp_path / "plan" / "study.toml", "--json").json
+    assert analysis["claim"]["registered"]
+    assert analysis["claim"]["supported"]
 
 
 @pytest.mark.slow

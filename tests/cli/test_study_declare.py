@@ -37,14 +37,14 @@ def test_every_kind_can_be_begun_checked_and_previewed() -> None:
         assert checked.stdout.startswith(f"{kind}: can be run")
 
 
-def test_the_papers_study_is_new_by_default_and_told_in_words() -> None:
+def test_the_papers_study_is_the_default_and_described_in_words() -> None:
     begun = asked("new", "pilot")
     assert "written to pilot/study.toml" in begun.stdout
-    told = asked("preview", "pilot")
-    assert told.exit_code == 0
+    preview = asked("preview", "pilot")
+    assert preview.exit_code == 0
     for words in ("36 trials (6 buttons, 6 rounds)", "2 fall due", "Kumpi on lähempänä X:ää?", "HP PR1101U",
                   "stands 12 times", "FDVV is chosen above FD"):  # fmt: skip
-        assert words in told.stdout
+        assert words in preview.stdout
 
 
 def test_no_preview_is_wider_than_a_terminal() -> None:
@@ -72,12 +72,12 @@ def test_all_that_is_wrong_is_listed_at_once() -> None:
     assert checked.stdout.count("problem: ") == 2
     assert "cannot be run, 2 problems" in checked.stdout
     assert asked("preview", "pilot").exit_code == 1
-    told = json.loads(asked("check", "pilot", "--json").stdout)
-    assert told["ok"] is False
-    assert len(told["problems"]) == 2
+    report = json.loads(asked("check", "pilot", "--json").stdout)
+    assert report["ok"] is False
+    assert len(report["problems"]) == 2
 
 
-def test_doubts_are_told_and_do_not_stop() -> None:
+def test_warnings_are_printed_and_do_not_stop() -> None:
     asked("new", "pilot")
     change("people = 12", "people = 7")
     change("rounds = 6", "rounds = 5")

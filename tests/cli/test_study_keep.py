@@ -125,7 +125,7 @@ def test_status_tells_how_far_everybody_is_and_nothing_that_is_hidden(fdvv: Run,
     assert "FDVV" not in ran.out + document.out
 
 
-def test_simulated_people_are_told_of_wherever_people_are(fdvv: Run, study: Study, tmp_path: Path) -> None:
+def test_simulated_people_are_marked_wherever_people_are(fdvv: Run, study: Study, tmp_path: Path) -> None:
     assert "simulated" not in fdvv("study", "status", "s").out + fdvv("study", "verify", "s").out
     assert not fdvv("study", "status", "s", "--json").json["simulated"]
     other = Study.declare(tmp_path / "t", study.folder / "study.toml")

@@ -54,7 +54,7 @@ def test_what_makes_no_sense_is_refused_in_one_line(fdvv: Run, study: Path, wron
     assert wrong[0] in ran.err
 
 
-def test_a_study_without_a_claim_is_told_what_is_missing(fdvv: Run, tmp_path: Path) -> None:
+def test_for_a_study_without_a_claim_the_missing_entry_is_named(fdvv: Run, tmp_path: Path) -> None:
     path = write_template("staircase", tmp_path / "stairs")
     ran = fdvv("study", "power", path)
     assert ran.status == 2

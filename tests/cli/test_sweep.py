@@ -34,15 +34,15 @@ def plan(tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
-def test_results_are_told_as_json_and_as_a_table_that_say_simulated(plan: Path, tmp_path: Path) -> None:
+def test_results_are_printed_as_json_and_as_a_table_that_say_simulated(plan: Path, tmp_path: Path) -> None:
     command = (str(plan), "--output", str(tmp_path / "run"), "--processes", "1")
     first = asked(*command, "--json")
     assert first.exit_code == 0, first.output
-    told = json.loads(first.stdout)
-    assert told["simulated"]
-    assert (told["cells"], told["failed"], told["worked"]) == (2, 0, 2)
-    assert Path(told["results"]).is_file()
-    assert [row["value"] for row in told["summary"][0]["rows"]] == ["mx-clear", "mx-red"]
+    summary = json.loads(first.stdout)
+    assert summary["simulated"]
+    assert (summary["cells"], summary["failed"], summary["worked"]) == (2, 0, 2)
+    assert Path(summary["results"]).is_file()
+    assert [row["value"] for row in summary["summary"][0]["rows"]] == ["mx-clear", "mx-red"]
     again = asked(*command)
     assert "2 cells (simulated), 0 failed" in again.stdout
     assert "closing_ms by button" in again.stdout
@@ -54,9 +54,9 @@ def test_a_preview_tells_what_it_would_try(plan: Path) -> None:
 
 
 def test_a_preview_tells_cells_and_time_and_writes_nothing(plan: Path, tmp_path: Path) -> None:
-    told = json.loads(asked(str(plan), "--preview", "--processes", "2", "--json").stdout)
-    assert (told["cells"], told["done"], told["processes"], told["failed"]) == (2, 0, 2, [])
-    assert told["estimated_s"] == pytest.approx(told["cell_s"])
+    preview = json.loads(asked(str(plan), "--preview", "--processes", "2", "--json").stdout)
+    assert (preview["cells"], preview["done"], preview["processes"], preview["failed"]) == (2, 0, 2, [])
+    assert preview["estimated_s"] == pytest.approx(preview["cell_s"])
     assert [path.name for path in tmp_path.iterdir()] == ["plan.toml"]
 
 
@@ -73,7 +73,7 @@ def test_options_that_cannot_be_are_refused(plan: Path, options: list[str], said
     assert said in result.stderr
 
 
-def test_a_file_that_is_no_plan_is_told(tmp_path: Path) -> None:
+def test_a_file_that_is_no_plan_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "other.toml"
     path.write_text("[coil]\n")
     result = asked(str(path), "--preview")

@@ -37,9 +37,9 @@ def person(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     answers: list[str] = []
 
     def prompt(text: str, type: click.Choice[str], **_: Any) -> str:
-        told = answers.pop(0)
-        assert told in type.choices
-        return told
+        answer = answers.pop(0)
+        assert answer in type.choices
+        return answer
 
     monkeypatch.setattr("fdvv.rendering.session.open_device", lambda *_: Rig())
     monkeypatch.setattr("fdvv.cli.rendering.tune.click.prompt", prompt)
@@ -136,7 +136,7 @@ def test_show_tells_how_far_a_tuning_is(fdvv: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "message"),
     [
         (("tune", "mx-clear"), "nobody can feel a simulated device"),
         (("tune", "mx-clear", "--simulated-observer", "--device", "serial:x"), "a person presses it"),
@@ -145,10 +145,12 @@ def test_show_tells_how_far_a_tuning_is(fdvv: Run) -> None:
         ((*SHORT, "--exciter", "none.exciter.json"), "does not exist"),
     ],
 )
-def test_what_cannot_be_done_is_told_in_one_line(fdvv: Run, arguments: tuple[str, ...], told: str) -> None:
+def test_what_cannot_be_done_is_refused_in_one_line(
+    fdvv: Run, arguments: tuple[str, ...], message: str
+) -> None:
     ran = fdvv(*arguments)
     assert ran.status == 2
-    assert told in ran.err
+    assert message in ran.err
     assert ran.err.count("\n") == 1
 
 
@@ -158,8 +160,8 @@ def test_an_answer_means_what_the_question_says(monkeypatch: pytest.MonkeyPatch)
     view = _tune_view.TuneView(True, True)
     pair, single = Question(0, (3, 1), 1, 9), Question(0, (3,), 1, 9)
     meant = {"1": Preferred.FIRST, "2": Preferred.SECOND, "0": Preferred.NEITHER, "r": None}
-    for told, wanted in meant.items():
-        monkeypatch.setattr(_tune_view, "_prompt", lambda *_, told=told: told)
+    for answer, wanted in meant.items():
+        monkeypatch.setattr(_tune_view, "_prompt", lambda *_, answer=answer: answer)
         assert view.answer(pair) == wanted
     monkeypatch.setattr(_tune_view, "_prompt", lambda *_: "6")
     assert view.answer(single) == 6

@@ -28,22 +28,22 @@ def test_a_models_vibrations_are_listed(fdvv: Run) -> None:
     assert "likeness" not in ran.out
 
 
-def test_with_an_exciter_it_is_told_how_alike_they_become(fdvv: Run, exciter: str) -> None:
+def test_with_an_exciter_the_similarity_is_printed(fdvv: Run, exciter: str) -> None:
     (press, release) = fdvv("vibration", "mx-clear", "--exciter", exciter, "--json").json["vibrations"]
     assert press["expected"]["way"] == "inverse"
     assert 0.9 < press["expected"]["likeness"] < 1
     assert release["stroke"] == "release"
 
 
-def test_a_sound_is_written_and_its_scale_told(fdvv: Run, tmp_path: Path) -> None:
-    told = fdvv("vibration", "mx-clear", "--wav", "snap.wav", "--json").json["wav"]
+def test_a_sound_is_written_and_its_scale_printed(fdvv: Run, tmp_path: Path) -> None:
+    report = fdvv("vibration", "mx-clear", "--wav", "snap.wav", "--json").json["wav"]
     sound = read_wav(tmp_path / "snap.wav")
     wanted = load_builtin("mx-clear").vibration("press", 100.0)
     assert wanted is not None
     peak = np.abs(wanted.acceleration_m_s2(np.arange(0, 0.016, 1 / 48_000))).max()
     assert sound.rate_Hz == 48_000
-    assert told["full_scale"] == pytest.approx(peak, rel=1e-6)
-    assert told["unit"] == "m/s2"
+    assert report["full_scale"] == pytest.approx(peak, rel=1e-6)
+    assert report["unit"] == "m/s2"
 
 
 def test_the_boards_samples_are_written_at_their_rate(fdvv: Run, tmp_path: Path, exciter: str) -> None:
@@ -53,17 +53,19 @@ def test_the_boards_samples_are_written_at_their_rate(fdvv: Run, tmp_path: Path,
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "message"),
     [
         (("mx-red",), "it has none"),
         (("mx-clear", "--wav", "x.mp3"), "end it in .wav"),
         (("none",), "no such file or built-in button"),
     ],
 )
-def test_what_cannot_be_shown_is_told_in_one_line(fdvv: Run, arguments: tuple[str, ...], told: str) -> None:
+def test_what_cannot_be_shown_is_refused_in_one_line(
+    fdvv: Run, arguments: tuple[str, ...], message: str
+) -> None:
     ran = fdvv("vibration", *arguments)
     assert ran.status == 2
-    assert told in ran.err
+    assert message in ran.err
     assert ran.err.count("\n") == 1
 
 

@@ -44,8 +44,8 @@ ALIKE = {"friction rose from 5.": "weight fell from 18."}
 @pytest.mark.parametrize("seed", range(50, 54))
 @pytest.mark.parametrize(("says", "worn"), WORN.items(), ids=WORN)
 def test_the_change_is_named_with_its_size(known: RigModel, says: str, worn: Plant, seed: int) -> None:
-    told = detect_drift(known, worn.press(100.0, seed), TRAVEL_mm)
-    assert told.startswith((says, ALIKE.get(says, says)))
+    message = detect_drift(known, worn.press(100.0, seed), TRAVEL_mm)
+    assert message.startswith((says, ALIKE.get(says, says)))
 
 
 def test_the_size_of_a_change_is_that_of_the_plant(known: RigModel) -> None:

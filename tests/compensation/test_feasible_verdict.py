@@ -68,20 +68,20 @@ def test_the_bump_decides_by_the_part_that_is_left(kept: float, following: Follo
 
 
 @pytest.mark.parametrize(
-    ("onset", "following", "told"),
+    ("onset", "following", "message"),
     [
         (300.0, Following.FOLLOWS, None),
         (66.0, Following.PARTLY, "may buzz under a finger"),
         (28.0, Following.CANNOT, "buzzes under a finger"),
     ],
 )
-def test_a_rise_is_held_against_the_onset(onset: float, following: Following, told: str | None) -> None:
+def test_a_rise_is_held_against_the_onset(onset: float, following: Following, message: str | None) -> None:
     verdict = judged(stable=replace(STABLE, finger_cN_mm=onset))
     assert verdict.following is following
-    if told:
+    if message:
         assert verdict.reasons == (
-            f"{told}: it rises by 60 cN/mm, stable up to {onset:.0f}: shorten the loop, or soften the rise "
-            "between 1.75 and 1.85 mm",
+            f"{message}: it rises by 60 cN/mm, stable up to {onset:.0f}: shorten the loop, or soften the "
+            "rise between 1.75 and 1.85 mm",
         )
 
 
@@ -91,7 +91,7 @@ def test_a_step_between_strokes_is_a_reason_but_never_forbids() -> None:
     assert "release lies 90 cN below press at 1.70 mm, stable up to 20" in verdict.reasons[0]
 
 
-def test_warmth_is_told_in_presses_a_minute_and_seconds_held() -> None:
+def test_warmth_is_expressed_in_presses_a_minute_and_seconds_held() -> None:
     verdict = judged(dose=replace(DOSE, presses_per_min=40.0, held_s=4.0))
     assert verdict.following is Following.PARTLY
     assert "more than 40 presses a minute (90 cN rms)" in verdict.reasons[0]
@@ -111,7 +111,7 @@ def test_the_gravest_reason_comes_first() -> None:
     assert [r.split()[0] for r in verdict.reasons] == ["buzzes", "needs"]
 
 
-def test_a_slew_limit_is_told_by_its_number_per_tick() -> None:
+def test_a_slew_limit_is_expressed_per_tick() -> None:
     rows = (X_mm > 1.0) & (X_mm < 1.2)
     lagging = replace(REACHED, slewed=rows, achievable_cN=np.where(rows, 52.0, 60.0))
     (reason,) = judged(lagging).reasons
@@ -121,6 +121,6 @@ def test_a_slew_limit_is_told_by_its_number_per_tick() -> None:
     assert "up to 8 cN are missing" in reason
 
 
-def test_what_smear_alone_takes_is_told() -> None:
+def test_the_loss_by_smear_alone_is_reported() -> None:
     (reason,) = judged(replace(REACHED, achievable_cN=REACHED.intended_cN + 3.0)).reasons
     assert reason.startswith("holding and lag smear 3.0 cN of it on average")

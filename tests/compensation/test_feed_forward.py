@@ -1,4 +1,4 @@
-"""What a known rig is told: fed back into its plant it gives the target; first tables, spreads."""
+"""The command for a known rig: fed back into its plant it gives the target; first tables, spreads."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def fed_back_cN(plant: Plant, velocity_mm_s: float, down: bool) -> float:
     known = known_of(plant)
     tuning = tuning_of(known, TRAVEL_mm, 100.0, FRICTION_mm_s)
     t, x, v, a = motion = plant.motion(velocity_mm_s, tremor_mm=0.0)
-    # what a press on any table would have told of the rig itself
+    # what a press on any table would have shown of the rig itself
     coil, own = plant.forces_cN(motion, np.full(t.size, 80.0))
     rows = rows_of(x, v, down)
     stroke = StrokeSample(
@@ -51,7 +51,7 @@ def fed_back_cN(plant: Plant, velocity_mm_s: float, down: bool) -> float:
     np.testing.assert_array_equal(place, x[rows])
     order = np.argsort(place)
     table = command_cN(known, GRID_mm, TARGET_cN) + np.interp(GRID_mm, place[order], more[order])
-    # a controller that foresees place and speed without error, each as far ahead as it is told to
+    # a controller that foresees place and speed without error, each as far ahead as its settings say
     late_s = known.position_lag_s
     soon, speed = (
         np.interp(t + lead_s - late_s, t, column)

@@ -151,9 +151,9 @@ def broken() -> Press:
     ],
 )
 def test_presses_that_tell_nothing_give_one_line(presses: list[Press], says: str) -> None:
-    with pytest.raises(FitError, match=says) as told:
+    with pytest.raises(FitError, match=says) as caught:
         identify(presses, TRAVEL_mm)
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(caught.value)
 
 
 def test_a_prior_knows_its_names_and_spreads() -> None:
@@ -183,7 +183,7 @@ def test_presses_of_the_twin_tell_its_force_within_a_few_centinewtons(drive: str
         assert after < floor + 2.0
 
 
-def test_what_was_found_is_told_with_its_errors_and_what_is_weak() -> None:
+def test_identified_parameters_are_reported_with_their_errors_and_weak_ones_marked() -> None:
     known = identify([NOISY.press(100.0)], TRAVEL_mm)
     text = explain_rig(known)
     assert f"mass {known.mass_g:.1f} +- {known.error['mass_g']:.1f} g" in text

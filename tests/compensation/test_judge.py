@@ -64,7 +64,7 @@ def test_a_press_that_stops_short_has_no_speed_and_says_where_it_stopped() -> No
     assert np.isnan(verdict.achieved_mm_s)
 
 
-def test_a_finger_lifted_on_its_way_is_told_with_the_place() -> None:
+def test_a_finger_lifted_during_a_stroke_is_reported_with_the_place() -> None:
     lifted = along((0.0, 0.0), (0.02, 2.1), (0.025, 1.6), (0.05, 4.0), (0.1, 4.0), (0.14, 0.0))
     assert (
         judge_press(lifted, 4.0).reason
@@ -72,7 +72,7 @@ def test_a_finger_lifted_on_its_way_is_told_with_the_place() -> None:
     )
 
 
-def test_a_finger_that_pauses_on_its_way_is_told_with_place_and_time() -> None:
+def test_a_finger_that_pauses_during_a_stroke_is_reported_with_place_and_time() -> None:
     paused = along((0.0, 0.0), (0.01, 2.1), (0.034, 2.15), (0.044, 4.0), (0.09, 4.0), (0.13, 0.0))
     assert judge_press(paused, 4.0).reason.startswith("the finger paused at 2.1")
     assert "ms; press without stopping" in judge_press(paused, 4.0).reason

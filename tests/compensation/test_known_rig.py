@@ -29,9 +29,9 @@ def test_opposing_is_what_is_felt_without_command_once_the_lag_has_passed() -> N
     v = 1000 * a * t
     x = 0.5 * v * t
     felt = RIG.felt_cN(t, np.zeros(400), v, np.full(400, a), np.zeros(400))
-    told = RIG.opposing_cN(v, np.full(400, a), np.zeros(400))
-    np.testing.assert_allclose(felt[40:], told[40:], atol=1e-6)
-    assert not np.allclose(RIG.opposing_cN(v, a + 0 * v, x)[100:], told[100:], atol=0.1)
+    opposing_cN = RIG.opposing_cN(v, np.full(400, a), np.zeros(400))
+    np.testing.assert_allclose(felt[40:], opposing_cN[40:], atol=1e-6)
+    assert not np.allclose(RIG.opposing_cN(v, a + 0 * v, x)[100:], opposing_cN[100:], atol=0.1)
 
 
 def test_where_the_gain_is_one_drag_and_mass_are_as_stated() -> None:

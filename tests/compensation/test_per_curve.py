@@ -84,7 +84,7 @@ def test_a_job_that_is_not_finished_says_how_far_it_came() -> None:
     assert outcome.sentence == "stopped after 1 presses"
 
 
-def test_what_a_press_changed_is_told_in_numbers_and_the_end_of_a_round_in_words() -> None:
+def test_the_changes_of_a_press_are_explained_in_numbers_and_the_end_of_a_round_in_words() -> None:
     method = PerCurve(replace(LAW, rounds=2))
     state = method.init(job((50.0,)))
     assert method.explain(state) == ""
@@ -93,8 +93,8 @@ def test_what_a_press_changed_is_told_in_numbers_and_the_end_of_a_round_in_words
         np.abs(new.command_cN - old.command_cN).max()
         for new, old in zip(after.pairs[0], state.pairs[0], strict=True)
     ]
-    told = f"moved the press by up to {moved[0]:.1f} cN, the release by up to {moved[1]:.1f} cN"
-    assert method.explain(after) == told
+    message = f"moved the press by up to {moved[0]:.1f} cN, the release by up to {moved[1]:.1f} cN"
+    assert method.explain(after) == message
     after = method.step(press(), after)
     assert method.explain(after) == "round 1 of 2 is over; the next round begins"
     for _ in range(2):

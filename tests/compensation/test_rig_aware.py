@@ -76,11 +76,11 @@ def test_done_works_at_any_time_and_is_complete_at_the_end_alone(states: list[Ri
 
 
 def test_every_press_is_explained(states: list[RigState]) -> None:
-    told = [METHOD.explain(state) for state in states]
-    assert told[:3] == ["", "1 of 4 identification presses", "2 of 4 identification presses"]
-    assert "from 4 presses" in told[4]
-    assert all(text.startswith("mean error ") and "tables moved by up to" in text for text in told[5:])
-    assert not any("\n" in text for text in told)
+    texts = [METHOD.explain(state) for state in states]
+    assert texts[:3] == ["", "1 of 4 identification presses", "2 of 4 identification presses"]
+    assert "from 4 presses" in texts[4]
+    assert all(text.startswith("mean error ") and "tables moved by up to" in text for text in texts[5:])
+    assert not any("\n" in text for text in texts)
 
 
 def test_a_state_is_never_changed_and_a_step_repeats_itself(states: list[RigState]) -> None:
@@ -115,8 +115,8 @@ def test_a_memory_gives_tables_without_a_press() -> None:
         (outcome.surface.press_cN, TARGET.press_cN, 3.0),
         (outcome.surface.release_cN, TARGET.release_cN, -3.0),
     ):
-        told = command_cN(known, TARGET.displacement_mm, target) + more
-        np.testing.assert_allclose(table[:, beyond], told[:, beyond])
+        expected_cN = command_cN(known, TARGET.displacement_mm, target) + more
+        np.testing.assert_allclose(table[:, beyond], expected_cN[:, beyond])
     assert [c.mean_error_cN for c in outcome.curves] == [2.0] * 6
     with_presses = replace(method, rounds=1)
     assert with_presses.count(with_presses.init(JOB)) == PressCount(0, 3, (1, 1, 1))
@@ -207,9 +207,9 @@ TELL_NOTHING: dict[str, Any] = {
 def test_a_press_that_tells_nothing_is_refused_in_one_line_and_changes_nothing(spoilt: Any) -> None:
     method = RigAware(learned_rig=learned_on(known_of(PLANT)))
     state = method.init(JOB)
-    with pytest.raises(ModelError) as told:
+    with pytest.raises(ModelError) as caught:
         method.step(spoilt(PLANT.press(50.0)), state)
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(caught.value)
     assert method.trial(state) is not None
 
 

@@ -57,16 +57,16 @@ def test_a_file_is_written_whole_and_read_back(tmp_path: Path) -> None:
         ({"colour": 1}, "unknown field `colour`"),
     ],
 )
-def test_a_broken_file_is_told_in_one_line(tmp_path: Path, change: dict[str, object], says: str) -> None:
+def test_a_broken_file_is_refused_in_one_line(tmp_path: Path, change: dict[str, object], says: str) -> None:
     path = tmp_path / "a.rig.json"
     save_rig(RigModel(), path)
     path.write_text(json.dumps({**json.loads(path.read_text()), **change}))
-    with pytest.raises(InputError, match=says) as told:
+    with pytest.raises(InputError, match=says) as caught:
         load_rig(path)
-    assert str(told.value).startswith(f"{path}: ")
+    assert str(caught.value).startswith(f"{path}: ")
 
 
-def test_a_missing_file_is_told(tmp_path: Path) -> None:
+def test_a_missing_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="check the path"):
         load_rig(tmp_path / "none.rig.json")
 
@@ -94,9 +94,9 @@ def test_what_was_taught_comes_back_to_the_bit(tmp_path: Path, seed: int) -> Non
 
 def test_a_rigs_numbers_alone_have_taught_nothing(tmp_path: Path) -> None:
     save_rig(RigModel(), tmp_path / "a.rig.json")
-    with pytest.raises(InputError, match=r"\$\.learned: holds the rig's model.*--save-rig") as told:
+    with pytest.raises(InputError, match=r"\$\.learned: holds the rig's model.*--save-rig") as caught:
         load_learned_rig(tmp_path / "a.rig.json")
-    assert "\n" not in str(told.value)
+    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -112,7 +112,7 @@ def test_a_rigs_numbers_alone_have_taught_nothing(tmp_path: Path) -> None:
         ({"surprise": 1}, "unknown field `surprise`"),
     ],
 )
-def test_damage_in_what_was_taught_is_told_in_one_line(
+def test_damage_in_learned_values_is_refused_in_one_line(
     tmp_path: Path, change: dict[str, object], says: str
 ) -> None:
     path = tmp_path / "a.rig.json"
@@ -121,13 +121,13 @@ def test_damage_in_what_was_taught_is_told_in_one_line(
     document["learned"] |= change
     path.write_text(json.dumps(document))
     for read in (load_learned_rig, load_rig):
-        with pytest.raises(InputError, match=says) as told:
+        with pytest.raises(InputError, match=says) as caught:
             read(path)
-        assert str(told.value).startswith(f"{path}: ")
-        assert "\n" not in str(told.value)
+        assert str(caught.value).startswith(f"{path}: ")
+        assert "\n" not in str(caught.value)
 
 
-def test_a_cut_file_is_told_and_a_failed_write_leaves_the_old_one(
+def test_a_cut_file_is_refused_and_a_failed_write_leaves_the_old_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "a.rig.json"

@@ -109,7 +109,7 @@ def test_what_is_noise_alone_teaches_nothing() -> None:
     np.testing.assert_allclose(after.covariance_cN2, before.covariance_cN2, rtol=1e-9)
 
 
-def test_a_row_that_many_presses_have_told_moves_little_more() -> None:
+def test_a_row_that_many_presses_have_updated_moves_little_more() -> None:
     table = fresh()
     moved = []
     for _ in range(12):

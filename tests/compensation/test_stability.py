@@ -149,8 +149,8 @@ def test_what_holds_weakens_as_the_curve_gets_steeper() -> None:
     bounds = [first.passive_cN_mm, first.alone_cN_mm, first.finger_cN_mm]
     assert bounds == sorted(bounds)
     steep = (0.9 * bounds[0], 0.5 * (bounds[0] + bounds[1]), 1.1 * bounds[1], 1.4 * bounds[2], 3000.0)
-    told = [stability(sticky, LIMITS, *flank(rise)).holds for rise in steep]
-    assert told == [
+    holds = [stability(sticky, LIMITS, *flank(rise)).holds for rise in steep]
+    assert holds == [
         "passive for every finger",
         "stable even alone",
         "stable with a finger on it",

@@ -39,7 +39,7 @@ def test_what_presses_without_a_pause_settle_at_is_the_rise_of_their_mean_square
     assert dose.rms_cN == pytest.approx(np.sqrt((0.15 * 200.0**2 + 0.1 * 100.0**2) / 0.25))
 
 
-def test_as_many_presses_a_minute_as_are_told_end_where_derating_begins() -> None:
+def test_at_the_reported_presses_a_minute_derating_begins() -> None:
     hot = replace(LIMITS, full_duty_rise_K=5000.0)
     strong = np.full(10, 0.4 * hot.full_duty_cN)
     hot = replace(hot, force_limit_cN=hot.full_duty_cN)
@@ -53,12 +53,12 @@ def test_as_many_presses_a_minute_as_are_told_end_where_derating_begins() -> Non
     assert end + 0.5 * ripple == pytest.approx(hot.derate_start_K, rel=0.01)
 
 
-def test_a_hold_derates_when_it_is_told_to() -> None:
+def test_a_hold_derates_at_the_reported_time() -> None:
     hot = replace(LIMITS, full_duty_rise_K=2000.0)
     strong = 0.5 * hot.full_duty_cN
-    told = held_until_s(hot, rise_K(hot, strong**2))
+    held_s = held_until_s(hot, rise_K(hot, strong**2))
     _, found = settled_K(hot, [(1.0, strong)], 2 * hot.heat_s)
-    assert told == pytest.approx(found, abs=0.1)
+    assert held_s == pytest.approx(found, abs=0.1)
 
 
 def test_a_gentle_button_never_derates() -> None:

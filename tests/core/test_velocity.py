@@ -14,7 +14,7 @@ from tests.support.core.programs import REST, armed, image
 from tests.support.inputs import inputs_at
 
 SPEEDS_MM_S16 = [0, 2000, 4000, 8000, 12000, 16000]
-# a force in cN64 that is the velocity in mm_s16, told from 0 to 1000 mm/s
+# a force in cN64 that is the velocity in mm_s16, defined from 0 to 1000 mm/s
 TELLS = image(
     states=[(replace(REST, velocity_source=1), ())],
     tables=[(0, 16000, SPEEDS_MM_S16, [[speed, speed] for speed in SPEEDS_MM_S16])],

@@ -67,7 +67,7 @@ def test_a_paced_bench_shows_the_whole_cue_in_its_own_time() -> None:
     assert clock[0] == pytest.approx(52.0, abs=0.01)
 
 
-def test_what_cannot_be_opened_or_pressed_is_told_in_one_line() -> None:
+def test_what_cannot_be_opened_or_pressed_is_refused_in_one_line() -> None:
     with pytest.raises(InputError, match="names no capture bench"):
         open_bench("rig", "mx-clear")
     with pytest.raises(InputError, match="no-such"):
@@ -129,7 +129,7 @@ def test_takes_after_another_start_are_on_a_clock_of_their_own() -> None:
     assert {s.clock for s in take.streams} == {m.clock for m in take.marks} == {"board from take 17"}
 
 
-def test_events_of_the_board_are_marks_and_garbled_lines_are_told_and_left_out() -> None:
+def test_events_of_the_board_are_marks_and_garbled_lines_are_reported_and_left_out() -> None:
     said = {
         1.0: b"! 6000000 light on\n",
         1.2: b"FD 62\xff\xfe00 garb\nF D\n",
@@ -158,7 +158,7 @@ def test_what_does_not_answer_as_a_bench_is_refused_in_one_line_and_let_go(board
     assert not board.open
 
 
-def test_a_bench_that_falls_silent_or_is_unplugged_is_told_at_once() -> None:
+def test_a_bench_that_falls_silent_or_is_unplugged_is_reported_at_once() -> None:
     silent = SerialBench(spoken(silent_s=1.0))
     with pytest.raises(DeviceError, match="/dev/bench: the bench fell silent; check its power"):
         silent.take(1, Stage.PRESS, 100.0, CUE)

@@ -60,7 +60,7 @@ def test_a_bad_line_loses_telemetry_that_is_counted() -> None:
     assert 0 < (~press.tick).sum() <= telemetry.missing_ticks + 16
 
 
-def test_a_dead_line_is_told_within_a_second() -> None:
+def test_a_dead_line_is_reported_within_a_second() -> None:
     board = BadLine(1, 1.0)
     board.spoiled = lambda data: b""  # type: ignore[method-assign]
     port = LockstepPort(board, ScriptedPerson().rest(Settings()), 250)

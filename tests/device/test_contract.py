@@ -101,11 +101,13 @@ def test_what_the_twin_is_configured_with_is_at_work() -> None:
 
 def test_the_pace_is_found_under_what_is_configured() -> None:
     rig, finger, image = Rig(), Finger(), image_of(plain_surface(), 4.0).image
-    told = replace(settings_of(rig), **DRAG)
+    with_drag = replace(settings_of(rig), **DRAG)
     speeds = []
-    for settings in (told, None):
+    for settings in (with_drag, None):
         gesture = plan(finger, 4e-3, solve_program_pace(rig, finger, image, 100.0, settings=settings))
-        trace = simulate_program(rig, finger, gesture, image, silence(rig, gesture), 100.0, settings=told)
+        trace = simulate_program(
+            rig, finger, gesture, image, silence(rig, gesture), 100.0, settings=with_drag
+        )
         speeds.append(mean_speed_mm_s(trace.t_s, trace.displacement_mm, 4.0))
     assert speeds[0] == pytest.approx(100, rel=0.01)
     assert abs(speeds[1] - 100) > 2

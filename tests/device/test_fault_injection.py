@@ -239,14 +239,14 @@ def attack(siege: Siege, frames: int, recover_every: int = 12) -> None:
     siege.counts["attacking frames"] = sent
 
 
-def told(title: str, counts: Counter[str]) -> None:
+def print_counts(title: str, counts: Counter[str]) -> None:
     print(f"\n{title}: " + ", ".join(f"{name} {count}" for name, count in sorted(counts.items())))  # noqa: T201
 
 
 def test_thirty_thousand_bad_frames_do_no_harm() -> None:
     siege = Siege(LibraryBoard, 1)
     attack(siege, 30_000)
-    told("in this process", siege.counts)
+    print_counts("in this process", siege.counts)
     assert siege.counts["attacking frames"] >= 30_000
     assert siege.counts["recovered"] > 10
     assert siege.counts["looks at an accepted hostile program"] > 100
@@ -256,7 +256,7 @@ def test_hundreds_of_bad_frames_over_a_terminal_do_no_harm() -> None:
     siege = Siege(HostBoard, 2)
     attack(siege, 600, 2)
     siege.board.close()
-    told("host program", siege.counts)
+    print_counts("host program", siege.counts)
     assert siege.counts["recovered"] >= 2
 
 
@@ -267,7 +267,7 @@ def test_a_sanitised_build_finds_nothing_wrong_under_attack(tmp_path: Path) -> N
     siege = Siege(lambda: HostBoard(tmp_path / "fdvv-host"), 5)
     attack(siege, 600, 2)
     siege.board.close()
-    told("sanitised", siege.counts)
+    print_counts("sanitised", siege.counts)
     assert siege.counts["recovered"] >= 2
 
 
@@ -277,7 +277,7 @@ def test_a_sanitised_build_finds_nothing_wrong_under_attack(tmp_path: Path) -> N
 def test_a_long_siege_does_no_harm(seed: int) -> None:
     siege = Siege(LibraryBoard, seed)
     attack(siege, 50_000)
-    told(f"seed {seed}", siege.counts)
+    print_counts(f"seed {seed}", siege.counts)
 
 
 def test_a_cable_pulled_after_any_byte_of_an_upload_leaves_the_old_program() -> None:
@@ -298,7 +298,7 @@ def test_a_cable_pulled_after_any_byte_of_an_upload_leaves_the_old_program() -> 
         assert siege.board.program() == old
         siege.counts["pulls"] += 1
     siege.recover()
-    told("pulled cables", siege.counts)
+    print_counts("pulled cables", siege.counts)
     assert siege.counts["pulls"] == len(stream) + 1
 
 
@@ -320,4 +320,4 @@ def test_a_host_that_dies_at_any_time_leaves_no_force_behind(make: Callable[[], 
         siege.counts["deaths"] += 1
         siege.recover()
     siege.board.close()
-    told(make.__name__, siege.counts)
+    print_counts(make.__name__, siege.counts)

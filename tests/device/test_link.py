@@ -55,8 +55,8 @@ def refusal(frame: Frame) -> Refusal:
 
 
 def begin(bench: Bench, image: bytes, crc32: int | None = None) -> Frame:
-    told = int.from_bytes(image[4:8], "little") if crc32 is None else crc32
-    return bench.ask(Message.BEGIN, BeginRequest(size_bytes=len(image), crc32=told))
+    checksum = int.from_bytes(image[4:8], "little") if crc32 is None else crc32
+    return bench.ask(Message.BEGIN, BeginRequest(size_bytes=len(image), crc32=checksum))
 
 
 def send_data(bench: Bench, image: bytes, end: int | None = None) -> None:
@@ -97,7 +97,7 @@ def test_before_hello_only_hello_and_ping_are_answered(bench: Bench) -> None:
     assert PingReply.unpack(bench.ask(Message.PING, PingRequest(host_us=5)).payload).host_us == 5
 
 
-def test_another_hash_is_told_and_shuts_everything_but_ping(bench: Bench) -> None:
+def test_another_hash_is_reported_and_blocks_everything_but_ping(bench: Bench) -> None:
     reply = bench.ask(Message.HELLO, HelloRequest(version=VERSION, hash=HASH ^ 1))
     assert HelloReply.unpack(reply.payload).hash == HASH
     assert refusal(bench.ask(Message.READ_SETTINGS)) is Refusal.HASH_MISMATCH
@@ -240,8 +240,8 @@ def test_while_a_check_runs_the_host_may_ping_and_stop_but_nothing_else(known: B
     assert sorted(f.sequence for f in found) == [50, 51, 52, 53]
     answers = {f.sequence: f for f in found}
     assert refusal(answers.pop(51)) is Refusal.BUSY
-    told = {sequence: frame.message - 0x80 for sequence, frame in answers.items()}
-    assert told == {50: Message.COMMIT, 52: Message.PING, 53: Message.DISARM}
+    messages = {sequence: frame.message - 0x80 for sequence, frame in answers.items()}
+    assert messages == {50: Message.COMMIT, 52: Message.PING, 53: Message.DISARM}
 
 
 def test_settings_are_written_whole_while_idle_and_forget_the_program(known: Bench) -> None:
@@ -279,11 +279,11 @@ def test_settings_are_refused_while_armed(known: Bench) -> None:
 def test_settings_that_hold_the_device_in_a_fault_can_be_replaced(known: Bench) -> None:
     known.ask(Message.WRITE_SETTINGS, Settings(reading_low=4000))
     known.run(10)
-    told = ReadFaultReply.unpack(known.ask(Message.READ_FAULT).payload)
-    assert told.fault == Fault.POSITION_LOW
+    reply = ReadFaultReply.unpack(known.ask(Message.READ_FAULT).payload)
+    assert reply.fault == Fault.POSITION_LOW
     known.ask(Message.WRITE_SETTINGS, Settings())
     known.run(10)
-    known.ask(Message.CLEAR_FAULT, ClearFaultRequest(fault=told.fault))
+    known.ask(Message.CLEAR_FAULT, ClearFaultRequest(fault=reply.fault))
     assert ReadFaultReply.unpack(known.ask(Message.READ_FAULT).payload).fault == Fault.NONE
 
 
@@ -304,10 +304,10 @@ def test_telemetry_for_which_there_is_no_room_is_counted(known: Bench) -> None:
     for _ in range(400):
         known.port.step()  # nobody reads
     heads = heads_of(known.run(100))
-    told = sum(h.count for h in heads)
+    received = sum(h.count for h in heads)
     last = heads[-1]
     assert last.lost > 300
-    assert told + last.lost == last.first_tick + last.count - heads[0].first_tick
+    assert received + last.lost == last.first_tick + last.count - heads[0].first_tick
     known.ask(Message.TELEMETRY, TelemetryRequest(every=0))
     counters = ReadCountersReply.unpack(known.ask(Message.READ_COUNTERS).payload)
     assert counters.lost_records >= last.lost
@@ -336,7 +336,7 @@ def test_a_missed_tick_is_a_gap_and_no_record(known: Bench) -> None:
     assert heads[-1].late == 2
 
 
-def test_a_fault_is_told_at_once_with_its_evidence(known: Bench) -> None:
+def test_a_fault_is_reported_at_once_with_its_evidence(known: Bench) -> None:
     upload(known)
     known.ask(Message.ARM)
     plant = known.person.rest(Settings())

@@ -155,7 +155,7 @@ def test_other_settings_are_used_and_want_a_new_upload() -> None:
     assert np.diff(press.t_s[press.tick]) == pytest.approx(0.0005)
 
 
-def test_a_board_is_told_what_suits_the_rig() -> None:
+def test_a_board_is_configured_for_its_rig() -> None:
     settings = Settings(tick_us=1000, position_offset_um16=-90000, slew_cN64_tick=16000)
     device = LinkedDevice(LibraryBoard(), ScriptedPerson(settings=settings))
     assert device.client.read_settings() == settings
@@ -174,7 +174,7 @@ def test_a_table_that_no_program_holds_is_refused_with_what_it_would_lose() -> N
         linked().upload(surface, 4.0)
 
 
-def test_a_board_that_ends_is_told_in_one_line() -> None:
+def test_a_board_whose_process_ends_is_reported_in_one_line() -> None:
     board = HostBoard()
     device = LinkedDevice(board, ScriptedPerson())
     device.upload(plain_surface(), 4.0)

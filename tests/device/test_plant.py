@@ -9,9 +9,9 @@ from fdvv.firmware.core import INPUTS, OUTPUTS
 
 
 def test_inputs_are_those_of_the_core() -> None:
-    told = Inputs(7, 51200, 2000, 2100, 3, 12345, 99, 5)
+    inputs = Inputs(7, 51200, 2000, 2100, 3, 12345, 99, 5)
     assert (INPUTS_BYTES, Inputs._fields) == (INPUTS.itemsize, INPUTS.names)
-    assert np.frombuffer(told.pack(), INPUTS)[0].item() == tuple(told)
+    assert np.frombuffer(inputs.pack(), INPUTS)[0].item() == tuple(inputs)
 
 
 def test_outputs_are_those_of_the_core() -> None:

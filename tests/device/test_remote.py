@@ -51,7 +51,7 @@ def test_a_person_s_press_is_found_in_the_telemetry_of_a_serial_line(rig: Callab
     assert np.median(press.commanded_cN) == pytest.approx(50, abs=10)
 
 
-def test_without_a_press_one_is_told_after_the_patience(rig: Callable[..., Rig]) -> None:
+def test_without_a_press_an_error_is_raised_after_the_patience(rig: Callable[..., Rig]) -> None:
     device = opened(rig(presses=0), 0.2)
     device.upload(plain_surface(), 4.0)
     with pytest.raises(DeviceError, match=r"nobody pressed within 0\.2 s"):
@@ -79,13 +79,13 @@ def test_a_line_that_was_closed_and_opened_again_goes_on(rig: Callable[..., Rig]
     device.close()
 
 
-def test_a_port_that_is_not_there_is_told_in_one_line() -> None:
+def test_a_port_that_is_not_there_is_refused_in_one_line() -> None:
     with pytest.raises(DeviceError, match="cannot be opened") as caught:
         SerialPort("/dev/there-is-none")
     assert "\n" not in str(caught.value)
 
 
-def test_a_line_without_a_device_is_told(rig: Callable[..., Rig]) -> None:
+def test_a_line_without_a_device_is_reported(rig: Callable[..., Rig]) -> None:
     line, slave = os.openpty()
     tty.setraw(slave)
     with pytest.raises(DeviceError, match="no answer to hello"):

@@ -25,9 +25,9 @@ typedef struct {
     uint64_t *sent_cycles;
     uint8_t *sent;
     uint32_t room, sent_count;
-    /* what the host was told, and has not taken */
-    uint8_t told[ROOM];
-    uint32_t told_count;
+    /* what the board sent to the host, not yet taken */
+    uint8_t replies[ROOM];
+    uint32_t reply_count;
     /* what is still to happen, in order */
     change keys[ROOM];
     uint32_t key_next, key_count;
@@ -50,7 +50,7 @@ static void on_strip(struct avr_irq_t *irq, uint32_t value, void *param) {
 static void on_serial(struct avr_irq_t *irq, uint32_t value, void *param) {
     uno *u = param;
     (void)irq;
-    if (u->told_count < ROOM) u->told[u->told_count++] = (uint8_t)value;
+    if (u->reply_count < ROOM) u->replies[u->reply_count++] = (uint8_t)value;
 }
 
 /* simavr offers no door to the peripheral itself, but every peripheral is on one list */
@@ -152,10 +152,10 @@ int strip_ask(uno *u, const uint8_t *bytes, uint32_t count) {
     return 1;
 }
 
-uint32_t strip_told(uno *u, uint8_t *bytes) {
-    const uint32_t count = u->told_count;
-    memcpy(bytes, u->told, count);
-    u->told_count = 0;
+uint32_t strip_replies(uno *u, uint8_t *bytes) {
+    const uint32_t count = u->reply_count;
+    memcpy(bytes, u->replies, count);
+    u->reply_count = 0;
     return count;
 }
 

@@ -31,7 +31,7 @@ SIGNATURES: dict[str, Signature] = {
     "strip_run": (None, [BOARD, U64]),
     "strip_key_at": (ctypes.c_int, [BOARD, U64, U8]),
     "strip_ask": (ctypes.c_int, [BOARD, ctypes.c_char_p, U32]),
-    "strip_told": (U32, [BOARD, ctypes.c_void_p]),
+    "strip_replies": (U32, [BOARD, ctypes.c_void_p]),
     "strip_sent": (U32, [BOARD, ctypes.c_void_p, ctypes.c_void_p]),
     "strip_last": (U64, [BOARD]),
     "strip_peek": (U8, [BOARD, ctypes.c_uint16]),
@@ -110,7 +110,7 @@ class UnoStrip:
     def read(self, until_s: float) -> bytes:
         room = (U8 * 4096)()
         while True:
-            count = self._emulator.strip_told(self._board, room)
+            count = self._emulator.strip_replies(self._board, room)
             if count or self.now_s() >= until_s:
                 return bytes(room[:count])
             self._run_to(min(self.cycle + GLANCE_CYCLES, round(until_s * CLOCK_HZ) + 1))

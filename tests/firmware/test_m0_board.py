@@ -28,14 +28,14 @@ def elf() -> Path:
 
 
 class Scripted:
-    """Gives each tick readings from a list or a function, and keeps what it was told."""
+    """Gives each tick readings from a list or a function, and records the board's outputs."""
 
     def __init__(self, give: Callable[[int], TickInputs] = lambda tick: TickInputs(2048)) -> None:
         self.give = give
-        self.told: list[TickOutputs] = []
+        self.outputs: list[TickOutputs] = []
 
     def __call__(self, outputs: TickOutputs) -> TickInputs:
-        self.told.append(outputs)
+        self.outputs.append(outputs)
         return self.give(outputs.tick)
 
 
@@ -62,7 +62,7 @@ def test_what_the_host_sends_comes_back(elf: Path) -> None:
     assert frames(emulator.read())[1] == data
 
 
-def test_every_tick_is_told_with_the_sum_and_extremes_of_its_readings(elf: Path) -> None:
+def test_every_tick_is_reported_with_the_sum_and_extremes_of_its_readings(elf: Path) -> None:
     randomness = random.Random(2)
     script = [
         TickInputs(
@@ -72,22 +72,22 @@ def test_every_tick_is_told_with_the_sum_and_extremes_of_its_readings(elf: Path)
     ]
     emulator = M0Emulator(elf, Scripted(lambda tick: script[tick % 600]))
     emulator.run_ticks(600)
-    told = frames(emulator.read())[0]
-    assert len(told) > 480
-    for frame in told:
+    telemetry = frames(emulator.read())[0]
+    assert len(telemetry) > 480
+    for frame in telemetry:
         tick, rest_us = divmod(frame.time_us, TICK_US)
         readings = script[tick].readings
         assert isinstance(readings, tuple)
         assert (rest_us, frame.elapsed_ticks) == (0, 1)
         assert (frame.sum, frame.lowest, frame.highest) == (sum(readings), min(readings), max(readings))
-    assert [b.time_us - a.time_us for a, b in pairwise(told)] == [TICK_US] * (len(told) - 1)
+    assert [b.time_us - a.time_us for a, b in pairwise(telemetry)] == [TICK_US] * (len(telemetry) - 1)
 
 
 def test_supply_and_force_are_read_in_turn_between_two_bursts(elf: Path) -> None:
     emulator = started(elf, Scripted(lambda tick: TickInputs(2048, 2686, 1234)))
-    told = frames(emulator.read())[0][2:]
-    assert {frame.force_counts for frame in told} == {1234}
-    assert {frame.supply_mV for frame in told} == {2686 * 3300 * 122 // 22 // 4096}
+    telemetry = frames(emulator.read())[0][2:]
+    assert {frame.force_counts for frame in telemetry} == {1234}
+    assert {frame.supply_mV for frame in telemetry} == {2686 * 3300 * 122 // 22 // 4096}
 
 
 def test_a_burst_of_25_readings_takes_100_us_from_the_tick(elf: Path) -> None:
@@ -124,7 +124,7 @@ def test_without_supply_the_bridge_is_off_in_the_same_tick(elf: Path) -> None:
     emulator.run_ticks(40)
     off = next(change for change in emulator.pwm_log if not change.enable and change.written_us > 1000)
     # supply and force take turns, so it is seen within two ticks
-    assert off.written_us - world.told[151].time_us < 2 * TICK_US + 200
+    assert off.written_us - world.outputs[151].time_us < 2 * TICK_US + 200
     assert emulator.pwm.inputs() == (0.0, 0.0)
 
 
@@ -160,7 +160,7 @@ def test_a_message_to_the_vibration_board_leaves_at_400_kHz(elf: Path) -> None:
     say(f"five bytes on the bus take {min(spent):.0f} to {max(spent):.0f} us, {bits * 2.5:.0f} of them bits")
     assert bits * 2.5 < min(spent)
     assert max(spent) < 400
-    assert sum(len(outputs.messages) for outputs in world.told) == pytest.approx(
+    assert sum(len(outputs.messages) for outputs in world.outputs) == pytest.approx(
         len(emulator.wire_log), abs=1
     )
 
@@ -230,12 +230,12 @@ def test_a_pulled_cable_stops_the_port_and_not_the_ticks(elf: Path) -> None:
     emulator.read()
     emulator.run_ticks(100)
     assert emulator.read() == b""
-    assert {outputs.duty_q15 for outputs in world.told[-16:]} == {-576, 640}
+    assert {outputs.duty_q15 for outputs in world.outputs[-16:]} == {-576, 640}
     emulator.plug()
     emulator.run_ticks(BOOT_TICKS)
     assert emulator.usb.is_open
-    told, _echo = frames(emulator.read())
-    assert told[-1].elapsed_ticks == 1
+    telemetry, _echo = frames(emulator.read())
+    assert telemetry[-1].elapsed_ticks == 1
 
 
 def test_ticks_that_the_processor_missed_are_counted_and_the_clock_stays_true(elf: Path) -> None:
@@ -248,12 +248,12 @@ def test_ticks_that_the_processor_missed_are_counted_and_the_clock_stays_true(el
 
     emulator.append(M0Emulator(elf, world))
     emulator[0].run_ticks(400)
-    told, _echo = frames(emulator[0].read())
-    late = [frame for frame in told if frame.elapsed_ticks != 1]
+    telemetry, _echo = frames(emulator[0].read())
+    late = [frame for frame in telemetry if frame.elapsed_ticks != 1]
     assert len(late) == len(stalls)
-    assert all(b.time_us - a.time_us == TICK_US * b.elapsed_ticks for a, b in pairwise(told))
+    assert all(b.time_us - a.time_us == TICK_US * b.elapsed_ticks for a, b in pairwise(telemetry))
     # the readings of a tick that was served late are those of its own burst, not of a later one
-    assert all(frame.highest - frame.lowest == 0 for frame in told)
+    assert all(frame.highest - frame.lowest == 0 for frame in telemetry)
 
 
 def test_running_in_pieces_is_running_at_once(elf: Path) -> None:
@@ -267,21 +267,21 @@ def test_running_in_pieces_is_running_at_once(elf: Path) -> None:
 
 
 @pytest.mark.parametrize("is_cached", [True, False])
-def test_no_tick_is_late_while_every_tick_is_told_over_usb(elf: Path, is_cached: bool) -> None:
+def test_no_tick_is_late_while_every_tick_is_reported_over_usb(elf: Path, is_cached: bool) -> None:
     emulator = started(elf, Scripted(hopping), is_cached=is_cached)
     emulator.read()
     emulator.run_ticks(1000)
-    told, _echo = frames(emulator.read())
+    telemetry, _echo = frames(emulator.read())
     costs = emulator.costs[BOOT_TICKS:]
     worst_us = max(cost.latency_us or TICK_US for cost in costs)
     say(
         f"tick to duty at most {worst_us:.0f} us, longest pass {max(c.longest_pass_us for c in costs):.0f} us"
     )
-    assert {frame.elapsed_ticks for frame in told} == {1}
-    assert len(told) >= 990
+    assert {frame.elapsed_ticks for frame in telemetry} == {1}
+    assert len(telemetry) >= 990
     assert worst_us < 200
     # what the program says of itself ends a little later and is cut to whole microseconds
-    assert all(abs(frame.served_us - worst_us) < 60 for frame in told)
+    assert all(abs(frame.served_us - worst_us) < 60 for frame in telemetry)
 
 
 def test_the_board_support_leaves_room_for_the_controller(elf: Path) -> None:

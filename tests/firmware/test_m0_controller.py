@@ -83,7 +83,7 @@ def test_no_tick_is_late_while_a_long_program_is_uploaded_and_pressed(emulated: 
     latencies_us = sorted(cost.latency_us for cost in costs if cost.latency_us is not None)
     longest_us = max(cost.longest_pass_us for cost in costs)
     median_us = latencies_us[len(latencies_us) // 2]
-    say(f"{len(costs)} ticks, all told: tick to duty {median_us:.0f} us in the middle")
+    say(f"{len(costs)} ticks, all of them reported: tick to duty {median_us:.0f} us in the middle")
     say(f"at most {counters.worst_tick_us} us by the board's own clock")
     say(f"longest time between two looks for readings {longest_us:.0f} us")
     assert counters.late == 0
@@ -129,12 +129,12 @@ def held_down(device: LinkedDevice, key_mm: float = 3.5) -> M0Emulator:
 def test_the_key_line_rises_and_falls_in_the_tick_that_decides(emulated: LinkedDevice) -> None:
     emulated.upload_program(BUTTON)
     emulated.press(100.0)
-    told, emulator = emulated.client.telemetry.columns(), board_of(emulated).emulator
+    telemetry, emulator = emulated.client.telemetry.columns(), board_of(emulated).emulator
     tick_us, down, up = emulator.tick_us, *emulator.key_log
     last_us = emulator.time_us - SHARE_OF_TICK * tick_us  # the board in lockstep stops there in each tick
     late_us = [(edge.time_us - last_us) % tick_us for edge in (down, up)]
     ticks = [emulator.tick + (edge.time_us - last_us) // tick_us for edge in (down, up)]
-    flagged = told.tick[np.flatnonzero(told.flags & TickFlag.KEY_DOWN)]
+    flagged = telemetry.tick[np.flatnonzero(telemetry.flags & TickFlag.KEY_DOWN)]
     say(f"key line {max(late_us):.0f} us after the tick at most, duty {emulator.costs[-1].latency_us:.0f} us")
     assert (down.is_down, up.is_down) == (True, False)
     assert ticks == [flagged[0], flagged[-1] + 1]

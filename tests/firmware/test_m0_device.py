@@ -56,6 +56,6 @@ def test_an_emulated_board_says_that_it_is_simulated_and_what_it_is(elf: Path) -
     assert (info.name, info.simulated) == ("emulated itsybitsy-m0", True)
 
 
-def test_a_program_that_is_not_there_is_told_in_one_line() -> None:
+def test_a_program_that_is_not_there_is_refused_in_one_line() -> None:
     with pytest.raises(InputError, match="no such file"):
         open_device("emulated:nowhere.elf")

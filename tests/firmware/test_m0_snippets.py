@@ -62,27 +62,27 @@ def test_a_nested_loop_takes_its_cycles_to_the_exact_one(tmp_path: Path) -> None
         assert emulator.processor.register(2) == is_done, emulator.time_us - start
 
 
-def test_a_peripheral_without_its_bus_clock_is_told(tmp_path: Path) -> None:
+def test_a_peripheral_without_its_bus_clock_is_reported(tmp_path: Path) -> None:
     code = [0x4801, 0x6001, 0xE7FE, 0x0000, 0x2040, 0x4200]  # ldr r0, =0x42002040; str r1, [r0]; b .
     emulator = M0Emulator(write_elf(tmp_path / "a.elf", code), no_world)
     with pytest.raises(DeviceError, match=r"0x42002040 used without its bus clock"):
         emulator.run_us(10)
 
 
-def test_a_dfll_set_up_in_the_wrong_order_is_told(tmp_path: Path) -> None:
+def test_a_dfll_set_up_in_the_wrong_order_is_reported(tmp_path: Path) -> None:
     code = [0x4801, 0x6001, 0xE7FE, 0x0000, 0x082C, 0x4000]  # DFLLMUL before DFLLCTRL.ENABLE
     emulator = M0Emulator(write_elf(tmp_path / "a.elf", code), no_world)
     with pytest.raises(DeviceError, match="erratum 9905"):
         emulator.run_us(10)
 
 
-def test_a_program_without_ticks_is_told_where_it_stays(tmp_path: Path) -> None:
+def test_the_loop_of_a_program_without_ticks_is_named(tmp_path: Path) -> None:
     emulator = M0Emulator(write_elf(tmp_path / "a.elf", [0xE7FE]), no_world)
     with pytest.raises(DeviceError, match="come to no tick; it is at 0x2010"):
         emulator.run_ticks(1)
 
 
-def test_an_access_to_nowhere_is_told(tmp_path: Path) -> None:
+def test_an_access_to_nowhere_is_reported(tmp_path: Path) -> None:
     emulator = M0Emulator(write_elf(tmp_path / "a.elf", [0x2080, 0x0600, 0x6801, 0xE7FE]), no_world)
     with pytest.raises(DeviceError, match=r"fails at 0x2014"):
         emulator.run_us(10)

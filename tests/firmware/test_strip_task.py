@@ -41,11 +41,11 @@ def uno(tmp_path: Path) -> Iterator[UnoStrip]:
 
 def test_what_a_simulated_person_does_comes_back_from_the_strip_and_is_scored(uno: UnoStrip) -> None:
     presses = simulate_task(HARD, BROWN, SimulatedUser(), 5)
-    told = play_on_strip(LedPointingTask(uno), HARD, 5, presser=played_presser(uno, presses))
-    there, here = ([HARD.asynchrony_ms(press) for press in found] for found in (told, presses))
+    reported = play_on_strip(LedPointingTask(uno), HARD, 5, presser=played_presser(uno, presses))
+    there, here = ([HARD.asynchrony_ms(press) for press in found] for found in (reported, presses))
     assert None not in there
     apart_us = 1e3 * np.abs(np.array(there, float) - np.array(here, float))
-    score, wanted = (HARD.scores(found)["asynchrony_ms"] for found in (told, presses))
+    score, wanted = (HARD.scores(found)["asynchrony_ms"] for found in (reported, presses))
     say(f"{HARD.rounds} rounds: {score.value:.3f} ms, of {wanted.value:.3f}; {apart_us.max():.2f} us apart")
     assert apart_us.max() < 2.0
     assert score.value == pytest.approx(wanted.value, abs=2e-3)
@@ -68,9 +68,9 @@ def test_the_controllers_own_key_line_ends_as_an_asynchrony(uno: UnoStrip) -> No
                 wanted_ms.append(1e3 * (at_s - start.target_s))
                 uno.press_at(at_s)
 
-    told = play_on_strip(LedPointingTask(uno), replace(HARD, rounds=2), 1, presser=press)
-    late_ms = [late for late in map(HARD.asynchrony_ms, told) if late is not None]
+    reported = play_on_strip(LedPointingTask(uno), replace(HARD, rounds=2), 1, presser=press)
+    late_ms = [late for late in map(HARD.asynchrony_ms, reported) if late is not None]
     say(f"the controller's key line {wanted_ms[0]:.4f}, {wanted_ms[1]:.4f} ms after the target")
-    say(f"told by the strip's board {late_ms[0]:.4f}, {late_ms[1]:.4f} ms")
+    say(f"reported by the strip's board {late_ms[0]:.4f}, {late_ms[1]:.4f} ms")
     assert late_ms == pytest.approx(wanted_ms, abs=2e-3)
     assert all(-150 < at_ms < 300 for at_ms in wanted_ms)

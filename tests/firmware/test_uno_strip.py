@@ -82,9 +82,9 @@ def played_with(uno: UnoStrip, task: LedPointingTask, order: StripRound, cycles:
 
 
 def errors_us(result: StripResult, cycles: list[int]) -> list[float]:
-    """How far the told asynchronies are from the true ones."""
-    told = [1e6 * (at_s - result.target_s) for at_s in result.activations_s]
-    return [found - cycle / CYCLES_us for found, cycle in zip(told, cycles, strict=True)]
+    """Return the errors of the reported asynchronies."""
+    reported_us = [1e6 * (at_s - result.target_s) for at_s in result.activations_s]
+    return [found - cycle / CYCLES_us for found, cycle in zip(reported_us, cycles, strict=True)]
 
 
 # -- timing ----------------------------------------------------------------------------
@@ -102,7 +102,7 @@ def cycles_around_frames(order: StripRound, seed: int) -> list[int]:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_an_edge_is_told_to_a_microsecond_whatever_the_board_is_sending(
+def test_an_edge_is_reported_to_a_microsecond_whatever_the_board_is_sending(
     uno: UnoStrip, task: LedPointingTask, seed: int
 ) -> None:
     uno.frames()
@@ -112,13 +112,13 @@ def test_an_edge_is_told_to_a_microsecond_whatever_the_board_is_sending(
     frames = uno.frames()
     at_us = [1e6 * result.target_s + cycle / CYCLES_us for cycle in cycles]
     sending = [any(f.begun_us <= at <= f.ended_us for f in frames) for at in at_us]
-    say(f"{sum(sending)} of 8 edges in a frame: told {min(found):+.2f} to {max(found):+.2f} us off")
+    say(f"{sum(sending)} of 8 edges in a frame: reported {min(found):+.2f} to {max(found):+.2f} us off")
     assert result.presses == 8
     assert sum(sending) >= 4
     assert max(map(abs, found)) <= 1.0
 
 
-def test_an_edge_at_the_timers_overflow_is_told_to_a_microsecond(
+def test_an_edge_at_the_timers_overflow_is_reported_to_a_microsecond(
     uno: UnoStrip, task: LedPointingTask
 ) -> None:
     found = []

@@ -31,7 +31,7 @@ def _read_back(model: FDVVModel, form: str, folder: Path) -> list[tuple[ForceCur
     write(model).save(path)
     found = read_force_file(path)
     assert found.format == form
-    # where a model knows only one of the contact's points, the other is told as missing
+    # where a model knows only one of the contact's points, the other is reported as missing
     assert [w for w in found.warnings if "reset point" not in w and "actuation point" not in w] == []
     read = []
     for number, cycle in enumerate(found.cycles):
@@ -84,7 +84,7 @@ def test_a_bench_layout_takes_the_curve_nearest_in_velocity(tmp_path: Path) -> N
     np.testing.assert_allclose(press.force_cN, wanted.force_cN(press.displacement_mm), atol=1e-9)
 
 
-def test_what_is_lost_is_told() -> None:
+def test_losses_are_listed() -> None:
     assert "2 vibrations" in curves_csv(load_builtin("mx-clear")).lost
     assert "8 curves at other velocities" in bluepylons_csv(load_builtin("mx-clear")).lost
     assert "contact points" in haata_csv(load_builtin("mx-red")).lost

@@ -106,9 +106,9 @@ def presses(draw: st.DrawFn) -> Press:
     flags = hnp.arrays(np.bool_, count)
     t = np.cumsum(draw(hnp.arrays(np.float64, count, elements=st.floats(1e-4, 1))))
     rig = {n: draw(st.one_of(st.none(), column)) for n in ("sensed_mm", "sensed_cN", "commanded_cN")}
-    told = {n: draw(st.one_of(st.none(), flags)) for n in ("saturated", "tick")}
+    optional = {n: draw(st.one_of(st.none(), flags)) for n in ("saturated", "tick")}
     speed, simulated = draw(st.floats(1, 300)), draw(st.booleans())
-    return Press(t, draw(column), draw(column), speed, **rig, **told, simulated=simulated)
+    return Press(t, draw(column), draw(column), speed, **rig, **optional, simulated=simulated)
 
 
 @settings(max_examples=12, deadline=None)
@@ -177,5 +177,5 @@ def test_without_pandas_the_extra_is_named() -> None:
         "from fdvv import load_builtin\n"
         "try:\n    model_to_xarray(load_builtin('mx-red'))\nexcept Exception as error:\n    print(error)"
     )
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert 'pip install "fdvv[frames]"' in told
+    output = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert 'pip install "fdvv[frames]"' in output

@@ -41,25 +41,26 @@ def test_the_drop_of_a_click_bar_is_left_alone(files: Any, tmp_path: Path) -> No
     assert press(file).displacement_mm.size == 701
 
 
-def test_a_spike_is_left_out_and_told(files: Any, tmp_path: Path) -> None:
+def test_a_spike_is_left_out_and_reported(files: Any, tmp_path: Path) -> None:
     x, force = fine_run()
     force[400:402] = -200.0
     file = read(files, tmp_path, x, force)
-    (told,) = file.warnings
+    (warning,) = file.warnings
     assert (
-        "press of run from 2.000 to 2.005 mm: the force leaps to -200.0 cN and back; 2 samples were" in told
+        "press of run from 2.000 to 2.005 mm: the force leaps to -200.0 cN and back; 2 samples were"
+        in warning
     )
     assert press(file).force_cN.min() == 0.0
     assert press(file).displacement_mm.size == 699
 
 
-def test_a_probe_that_sticks_is_told_from_a_click(files: Any, tmp_path: Path) -> None:
+def test_a_probe_that_sticks_is_distinguished_from_a_click(files: Any, tmp_path: Path) -> None:
     x, force = fine_run()
     climb = slice(120, 160)  # 0.6 to 0.8 mm, 500 cN/mm
     force[climb] += 500.0 * (x[climb] - x[119])
     file = read(files, tmp_path, x, force)
-    (told,) = file.warnings
-    assert "the probe stuck, the force climbs to 144.0 cN" in told
+    (warning,) = file.warnings
+    assert "the probe stuck, the force climbs to 144.0 cN" in warning
     assert press(file).force_cN[(x[:701] < 0.9)[: press(file).force_cN.size]].max() < 50.0
 
 
@@ -107,7 +108,7 @@ def test_a_stage_that_wavers_keeps_every_sample_where_it_was(files: Any, tmp_pat
     assert pairs == set(zip(np.round(x[:151], 9).tolist(), force[:151].tolist(), strict=True))
 
 
-def test_a_missing_stretch_is_told_and_not_made_up(files: Any, tmp_path: Path) -> None:
+def test_a_missing_stretch_is_reported_and_not_made_up(files: Any, tmp_path: Path) -> None:
     x, force = files.run()
     keep = ~((x > 1.0) & (x < 1.9) & (np.arange(x.size) < 151))
     file = read(files, tmp_path, x[keep], force[keep])
@@ -133,8 +134,10 @@ def test_axes_that_point_the_other_way_are_turned(files: Any, tmp_path: Path) ->
     np.testing.assert_allclose(press(pull).force_cN, files.stroke()[1])
 
 
-@pytest.mark.parametrize(("edges", "told"), [(7, "the contact chatters, 7 edges"), (0, "never closed")])
-def test_a_contact_without_one_edge_gives_no_point(edges: int, told: str, files: Any, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("edges", "message"), [(7, "the contact chatters, 7 edges"), (0, "never closed")])
+def test_a_contact_without_one_edge_gives_no_point(
+    edges: int, message: str, files: Any, tmp_path: Path
+) -> None:
     x, force = files.run()
     contact = np.zeros(x.size, dtype=int)
     for i in range(edges):
@@ -142,7 +145,7 @@ def test_a_contact_without_one_edge_gives_no_point(edges: int, told: str, files:
     rows = [f"{round(1000 * a)},{b},{c}" for a, b, c in zip(x, force, contact, strict=True)]
     file = read_force_file(files.write(tmp_path, "a.csv", "\n".join(["x_um,force_gf,actuated", *rows])))
     assert file.cycles[0].actuation_mm is None
-    assert any(told in warning for warning in file.warnings)
+    assert any(message in warning for warning in file.warnings)
 
 
 def test_a_copied_release_is_anchored_at_its_release_point(files: Any, tmp_path: Path) -> None:
@@ -173,9 +176,9 @@ def test_a_slipped_position_counter_is_put_back(files: Any, tmp_path: Path) -> N
             cells[6], cells[7] = f'"{5.0 + 0.01 * i}"', '"225"'
         text[i] = ",".join(cells)
     file = read_force_file(files.write(tmp_path, "a.csv", "\r\n".join(text)))
-    told = [warning for warning in file.warnings if "slipped" in warning]
-    assert len(told) == 1
-    assert told[0].startswith("Press 2: the position counter slipped by 2.00 mm")
+    warnings = [warning for warning in file.warnings if "slipped" in warning]
+    assert len(warnings) == 1
+    assert warnings[0].startswith("Press 2: the position counter slipped by 2.00 mm")
     assert file.cycles[1].press is not None
     assert file.cycles[1].press.displacement_mm[5] == pytest.approx(0.12, abs=1e-9)
 

@@ -88,9 +88,9 @@ def test_every_file_is_read_or_refused_in_one_line(folder: str, shared_data: Pat
         assert "excerpt" in key or any(cycle.release for cycle in cycles), key
 
 
-@pytest.mark.parametrize(("path", "told"), DEFECTS)
-def test_each_known_defect_is_told(path: str, told: str, shared_data: Path) -> None:
-    assert any(told in warning for warning in read_force_file(shared_data / path).warnings)
+@pytest.mark.parametrize(("path", "message"), DEFECTS)
+def test_each_known_defect_is_reported(path: str, message: str, shared_data: Path) -> None:
+    assert any(message in warning for warning in read_force_file(shared_data / path).warnings)
 
 
 @pytest.mark.parametrize("name", ["Jade", "Navy"])

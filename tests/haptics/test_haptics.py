@@ -141,7 +141,7 @@ def test_sharpness_and_frequency_are_each_others_inverse_within_their_range() ->
 
 
 @pytest.mark.parametrize("write", WRITERS[:2])
-def test_a_frequency_that_sharpness_cannot_hold_is_told(write: Callable[[Vibration], Exported]) -> None:
+def test_a_frequency_that_sharpness_cannot_hold_is_reported(write: Callable[[Vibration], Exported]) -> None:
     high = Vibration(Stroke.PRESS, None, 1.0, 0.02, (Mode(670.0, 1.0, 100.0),))
     assert any("670 Hz lies outside 65 to 300 Hz" in lost for lost in write(high).lost)
 

@@ -38,13 +38,13 @@ def _reads_or_says_why(form: str, data: bytes) -> None:
     try:
         found = read(data, 1.0)
     except InputError as error:
-        told = str(error)
+        message = str(error)
     else:
         if form != "hjif" and found.amplitude_m_s2.any():
             mode_of(found)
         return
-    assert "\n" not in told
-    assert len(told) < 500
+    assert "\n" not in message
+    assert len(message) < 500
 
 
 @pytest.mark.parametrize("form", FILES)
@@ -68,7 +68,7 @@ def _places(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
 @pytest.mark.parametrize("form", FILES)
 @settings(max_examples=60, deadline=None)
 @given(data=st.data())
-def test_any_value_in_any_place_is_read_or_told(form: str, data: st.DataObject) -> None:
+def test_any_value_in_any_place_is_read_or_refused(form: str, data: st.DataObject) -> None:
     record = json.loads(FILES[form][0])
     place = data.draw(st.sampled_from(_places(record)))
     inside = record
@@ -105,15 +105,15 @@ def test_more_points_than_a_snap_has_are_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         ({"version": {"major": 2}}, "version 2 is not known here"),
         ({"signals": {"continuous": {"envelopes": {"amplitude": []}}}}, "2 or more times"),
     ],
 )
-def test_a_haptic_file_of_another_kind_is_told(change: dict[str, Any], told: str) -> None:
+def test_a_haptic_file_of_another_kind_is_refused(change: dict[str, Any], message: str) -> None:
     record = {**json.loads(FILES["haptic"][0]), **change}
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         read_meta_haptic(json.dumps(record).encode())
 
 

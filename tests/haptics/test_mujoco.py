@@ -196,7 +196,7 @@ def test_a_scene_without_the_sensor_still_has_the_force() -> None:
     assert data.qfrc_passive[0] < -0.3
 
 
-def test_without_mujoco_the_way_to_get_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_mujoco_its_installation_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with (
         pytest.raises(BuildError, match="pip install mujoco"),

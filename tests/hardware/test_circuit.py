@@ -33,8 +33,8 @@ def test_every_rule_holds_for_the_rigs_own_circuit_and_every_part_is_drawn() -> 
 
 def test_the_controllers_pins_are_those_of_the_firmware() -> None:
     text = (BOARDS / "itsybitsy_m0" / "pins.h").read_text()
-    told = re.findall(r"(PIN_\w+) = (\d+),?\s*/\* \((\w+)\)", text)
-    firmware = {(name, f"PA{int(number):02d}", board) for name, number, board in told}
+    declared = re.findall(r"(PIN_\w+) = (\d+),?\s*/\* \((\w+)\)", text)
+    firmware = {(name, f"PA{int(number):02d}", board) for name, number, board in declared}
     pins = CIRCUIT.parts["U1"].kind.pins.values()
     assert {(pin.signal, pin.chip, pin.name) for pin in pins if pin.signal} == firmware
 

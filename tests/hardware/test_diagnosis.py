@@ -125,6 +125,6 @@ def test_the_coils_gain_does_not_depend_on_the_movers_weight_or_friction(
 
 
 @given(scale=st.floats(0.4, 1.6))
-def test_a_scale_is_told_exactly_when_it_is_beyond_its_bound(scale: float) -> None:
+def test_a_scale_is_reported_exactly_when_it_is_beyond_its_bound(scale: float) -> None:
     found = named(gauge_mm=(4.5 * scale, 2.0 * scale))
     assert (found == "position sensor") == (abs(scale - 1) > Bounds().scale_ratio)

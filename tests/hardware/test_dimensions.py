@@ -1,4 +1,4 @@
-"""Every dimension is told; what a person writes is read, and refused where parts would not fit."""
+"""Every dimension is listed; what a person writes is read, and refused where parts would not fit."""
 
 import dataclasses
 import itertools
@@ -175,7 +175,7 @@ def test_a_travel_beyond_the_limiter_is_refused() -> None:
         Limiter(DEFAULT).angle_deg(9.0)
 
 
-def test_the_tolerances_that_the_sensors_mount_takes_up_are_told_by_cause() -> None:
+def test_the_tolerances_that_the_sensors_mount_takes_up_are_listed_by_cause() -> None:
     stack = core_stack(DEFAULT)
     assert stack.worst_mm == pytest.approx(sum(cause.either_way_mm for cause in stack.causes))
     assert stack.likely_mm < stack.worst_mm
@@ -184,7 +184,7 @@ def test_the_tolerances_that_the_sensors_mount_takes_up_are_told_by_cause() -> N
     assert stack.worst_mm <= room_mm + DEFAULT.float_mm
 
 
-def test_the_first_miss_is_the_one_that_is_told() -> None:
+def test_the_first_misfit_is_the_one_that_is_reported() -> None:
     bad = with_(travel_mm=13.0, wall_mm=0.5)
     first = next(misses(bad))
     with pytest.raises(InputError, match=first[0]):

@@ -64,15 +64,15 @@ def test_the_exports_are_of_todays_dimensions() -> None:
 def test_every_file_is_the_one_that_was_exported_and_no_other_lies_there() -> None:
     from hashlib import sha256
 
-    told = {
+    recorded = {
         name: digest for made in read_manifest(HARDWARE).parts.values() for name, digest in made.files.items()
     }
     there = {
         str(p.relative_to(HARDWARE)): p for kind in ("parts", "drawings") for p in (HARDWARE / kind).iterdir()
     }
-    assert set(told) == set(there)
+    assert set(recorded) == set(there)
     for name, path in there.items():
-        assert sha256(path.read_bytes()).hexdigest() == told[name], "run python tools/make_hardware.py"
+        assert sha256(path.read_bytes()).hexdigest() == recorded[name], "run python tools/make_hardware.py"
 
 
 def test_the_package_tells_of_the_parts_what_the_manifest_tells() -> None:

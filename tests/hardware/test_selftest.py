@@ -110,12 +110,12 @@ def test_a_line_of_known_height_is_found() -> None:
     for frequency in (310.0, SLOW_PWM_Hz):  # the second lies above half the rate of ticks
         place = 2.0 + 0.3 * t_s + 0.004 * np.sin(2 * np.pi * frequency * t_s + 0.7)
         none = np.zeros(800)
-        told = TickColumns(np.arange(800), place, none, none, none, none.astype(int), none.astype(int))
-        assert line_um(told, 1e-3, frequency) == pytest.approx(4.0, rel=0.02)
-        assert line_um(told, 1e-3, frequency + 40) < 0.1
+        telemetry = TickColumns(np.arange(800), place, none, none, none, none.astype(int), none.astype(int))
+        assert line_um(telemetry, 1e-3, frequency) == pytest.approx(4.0, rel=0.02)
+        assert line_um(telemetry, 1e-3, frequency + 40) < 0.1
 
 
-def test_the_slow_pwm_of_the_fault_has_the_mean_it_was_told() -> None:
+def test_the_slow_pwm_of_the_fault_has_the_commanded_mean() -> None:
     ticks = [_slow_pwm(-0.3, i * 1e-3, 1e-3) for i in range(20_000)]
     assert np.mean(ticks) == pytest.approx(-0.3, abs=1e-3)
     assert min(ticks) < -0.4

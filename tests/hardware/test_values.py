@@ -60,10 +60,10 @@ def test_the_settings_that_follow_give_millimetres_and_centinewtons_back() -> No
 
 
 def test_the_coil_is_reckoned_as_the_firmwares_settings_are() -> None:
-    drive, told = coil_drive(CIRCUIT, Settings()), Settings()
-    assert round(drive.full_duty_rise_K) == told.full_duty_rise_K
-    assert drive.rise_K < told.derate_start_K
-    duty = told.force_limit_cN64 * told.duty_gain_q16 / 2**16 / 2**15
+    drive, settings = coil_drive(CIRCUIT, Settings()), Settings()
+    assert round(drive.full_duty_rise_K) == settings.full_duty_rise_K
+    assert drive.rise_K < settings.derate_start_K
+    duty = settings.force_limit_cN64 * settings.duty_gain_q16 / 2**16 / 2**15
     bridge_ohm = 0.2  # that of the default settings, of the coil's own 2.9
     assert duty * 12 / (2.9 + bridge_ohm) == pytest.approx(drive.current_A, rel=0.08)
     assert drive.current_A < drive.chop_A < 3.6
@@ -184,6 +184,6 @@ def test_the_csv_has_a_row_for_every_line() -> None:
 
 
 def test_the_report_bears_units_and_no_violation() -> None:
-    told = circuit_report(CIRCUIT)
-    assert told["violations"] == []
-    assert all("Hz" in key for key in told["filters"][0] if key.endswith("cutoff_Hz"))
+    report = circuit_report(CIRCUIT)
+    assert report["violations"] == []
+    assert all("Hz" in key for key in report["filters"][0] if key.endswith("cutoff_Hz"))

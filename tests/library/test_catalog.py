@@ -91,7 +91,7 @@ def test_an_id_outlives_a_move_of_the_folder_and_tells_no_path(tmp_path: Path) -
     assert len(before[0]) == len("measured:") + 16
 
 
-def test_folders_of_one_name_are_told_apart(tmp_path: Path) -> None:
+def test_folders_of_one_name_are_distinguished(tmp_path: Path) -> None:
     one = write_folder(tmp_path / "1" / "bench", {"x.csv": 0})
     two = write_folder(tmp_path / "2" / "bench", {"x.csv": 0})
     assert places(one, two) == ["bench/x.csv", "bench (2)/x.csv"]

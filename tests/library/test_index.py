@@ -50,9 +50,9 @@ def test_a_scan_reads_every_file_or_says_why_not(tmp_path: Path, bench: Path) ->
 
 def test_a_restart_reads_nothing_that_did_not_change(tmp_path: Path, bench: Path) -> None:
     first = indexed(tmp_path, bench).status
-    told = (bench / "a.csv").stat()
-    (bench / "a.csv").write_bytes(b"x" * told.st_size)
-    os.utime(bench / "a.csv", ns=(told.st_atime_ns, told.st_mtime_ns))
+    status = (bench / "a.csv").stat()
+    (bench / "a.csv").write_bytes(b"x" * status.st_size)
+    os.utime(bench / "a.csv", ns=(status.st_atime_ns, status.st_mtime_ns))
     again = indexed(tmp_path, bench).status
     assert again.rows == first.rows
     assert again.refused == first.refused
@@ -97,7 +97,7 @@ def test_a_damaged_cache_costs_a_reading_and_nothing_else(tmp_path: Path, bench:
     assert {row.id: row for row in found.rows} == {row.id: row for row in expected}
 
 
-def test_a_cache_that_cannot_be_written_is_told_and_harms_nothing(tmp_path: Path, bench: Path) -> None:
+def test_a_cache_that_cannot_be_written_is_reported_and_harms_nothing(tmp_path: Path, bench: Path) -> None:
     (tmp_path / "project").write_text("a file where the folder should be")
     stand = indexed(tmp_path, bench).status
     assert measured(stand) == ["a", "b", "c"]

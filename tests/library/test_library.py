@@ -87,10 +87,10 @@ def test_the_columns_of_the_file_are_those_of_the_code_and_of_the_document(libra
     names = [column.name for column in LIBRARY_COLUMNS]
     assert found.names == names == library_schema().names
     lines = REFERENCE.read_text().splitlines()
-    told = {line.split("|")[1].strip(): line for line in lines if line.startswith("| `")}
+    table_rows = {line.split("|")[1].strip(): line for line in lines if line.startswith("| `")}
     for column in LIBRARY_COLUMNS:
-        assert column.type in told[f"`{column.name}`"], column.name
-        assert column.meaning in told[f"`{column.name}`"], column.name
+        assert column.type in table_rows[f"`{column.name}`"], column.name
+        assert column.meaning in table_rows[f"`{column.name}`"], column.name
 
 
 def test_pandas_reads_the_file_and_its_curves(library: Library) -> None:
@@ -214,7 +214,7 @@ def test_hits_are_written_as_csv_with_their_units(library: Library, tmp_path: Pa
         ("peak_cN >= 50", "neither a word nor a condition"),
     ],
 )
-def test_a_condition_that_cannot_be_is_told_with_what_can(text: str, said: str) -> None:
+def test_an_impossible_condition_is_refused_with_the_possible_ones(text: str, said: str) -> None:
     with pytest.raises(InputError, match=said):
         library_query(text)
 
@@ -282,7 +282,7 @@ def test_a_build_killed_at_random_moments_loses_nothing(tmp_path: Path) -> None:
         ) as process:
             assert process.stdout is not None
             first = int(process.stdout.readline() or done)
-            assert first >= done  # what was told as done is still there
+            assert first >= done  # what was reported as done is still there
             until = time.monotonic() + random.uniform(0.0, 0.6)
             for line in process.stdout:
                 done = int(line)
@@ -313,7 +313,7 @@ def test_whoever_builds_it_the_library_is_the_same(
 
 
 @pytest.mark.slow
-def test_a_worker_that_fails_is_told(source: Path, tmp_path: Path) -> None:
+def test_a_worker_that_fails_is_reported(source: Path, tmp_path: Path) -> None:
     with open_executor(processes=1) as executor, pytest.raises(WorkerError, match="is not there on"):
         build_library([source], tmp_path / "library", executor, work=LibraryWork((tmp_path / "gone",)))
 

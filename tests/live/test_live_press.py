@@ -1,4 +1,4 @@
-"""A button pressed live: felt as meant, told as it happens, safe."""
+"""A button pressed live: rendered as intended, reported as it happens, safe."""
 
 from __future__ import annotations
 
@@ -107,16 +107,16 @@ def test_the_same_seed_and_hand_give_the_same_press() -> None:
     assert found[0][1] == found[1][1]
 
 
-def test_a_press_is_told_with_its_depth_and_speed() -> None:
+def test_a_press_is_reported_with_its_depth_and_speed() -> None:
     press = LivePress(model_subject(load_builtin("mx-red")))
     press.replay(drawn_trace("slow press"))
     ticks, events = press.advance(5.5)
-    told = [event for event in events if event.kind is LiveEventKind.PRESSED]
-    assert len(told) == 1
-    assert told[0].displacement_mm == pytest.approx(ticks.displacement_mm.max(), abs=0.03)
+    presses = [event for event in events if event.kind is LiveEventKind.PRESSED]
+    assert len(presses) == 1
+    assert presses[0].displacement_mm == pytest.approx(ticks.displacement_mm.max(), abs=0.03)
     x, t = ticks.displacement_mm, ticks.t_s
     first, last = (int(np.argmax(x > limit)) for limit in (0.1, 0.9 * x.max()))
-    assert told[0].velocity_mm_s == pytest.approx((x[last] - x[first]) / (t[last] - t[first]), rel=0.1)
+    assert presses[0].velocity_mm_s == pytest.approx((x[last] - x[first]) / (t[last] - t[first]), rel=0.1)
 
 
 @pytest.mark.parametrize("name", ["slow press", "firm press", "hesitant press", "drumming"])
@@ -146,7 +146,7 @@ def test_every_shipped_program_can_be_pressed_and_comes_back(recipe: str) -> Non
     assert ticks.state.max() < len(subject.states)
 
 
-def test_levels_are_told_in_their_order() -> None:
+def test_levels_are_reported_in_their_order() -> None:
     press = LivePress(program_subject(load_shipped("multi-level")))
     press.replay(drawn_trace("slow press"))
     events = press.advance(5.5)[1]
@@ -158,11 +158,11 @@ def test_levels_are_told_in_their_order() -> None:
 
 def test_a_host_event_lets_a_spent_button_come_back_at_once() -> None:
     backs = []
-    for told in (False, True):
+    for sends_event in (False, True):
         press = LivePress(program_subject(load_shipped("returning-later")))
         press.replay(drawn_trace("firm press"))
         press.advance(0.6)
-        if told:
+        if sends_event:
             press.event(0)
         backs.append(press.advance(0.5)[0].displacement_mm[-1])
     assert backs[0] > 3.0
@@ -189,7 +189,7 @@ def test_a_fault_ends_the_force_with_a_reason_and_can_be_cleared() -> None:
 
 
 def test_a_sensor_that_dies_is_found_by_the_firmware_itself() -> None:
-    """Not told of from outside: readings that never change."""
+    """No event causes it: readings that never change."""
     subject = model_subject(load_builtin("mx-red"))
     press = LivePress(replace(subject, settings=replace(subject.settings, stuck_ticks=500)), seed=None)
     ticks, events = press.advance(0.2)

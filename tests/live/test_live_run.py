@@ -29,7 +29,7 @@ class Seen:
             self.frames.append(frame)
             self._more.notify_all()
 
-    def told(self, line: str) -> None:
+    def add_line(self, line: str) -> None:
         with self._more:
             self.lines.append(line)
             self._more.notify_all()
@@ -45,10 +45,10 @@ class Seen:
 
 def begun(seen: Seen, silent_s: float = 60.0) -> LiveRun:
     press = LivePress(model_subject(load_builtin("mx-clear")))
-    return LiveRun(press, seen.show, seen.told, seen.told, silent_s=silent_s)
+    return LiveRun(press, seen.show, seen.add_line, seen.add_line, silent_s=silent_s)
 
 
-def test_time_that_cannot_be_kept_up_with_is_dropped_and_told() -> None:
+def test_time_that_cannot_be_kept_up_with_is_dropped_and_counted() -> None:
     times = iter([0.0, 0.01, 0.02, 0.52, 0.53])
     pace = RealTimeClock(lambda: next(times))
     found = [pace.due() for _ in range(5)]
@@ -129,7 +129,7 @@ def test_a_pause_lasts_until_the_page_is_seen_again() -> None:
     run.close()
 
 
-def test_what_cannot_be_done_is_told_and_the_rest_goes_on() -> None:
+def test_an_impossible_request_is_reported_and_the_rest_goes_on() -> None:
     def impossible(_press: LivePress) -> None:
         raise DeviceError("it cannot be done")
 

@@ -36,8 +36,8 @@ def test_pieces_of_any_size_give_the_least_and_the_most_of_every_bin(
     edges = [0, *sorted(min(cut, len(gaps)) for cut in cuts), len(gaps)]
     found = [binner.add(part(whole, a, b)) for a, b in pairwise(edges)]
     number = np.floor(whole.t_s / binner.bin_s).astype(int)
-    told = [n for bins in found for n in bins.number]
-    assert told == [n for n in dict.fromkeys(number.tolist()) if n != number[-1]]
+    numbers = [n for bins in found for n in bins.number]
+    assert numbers == [n for n in dict.fromkeys(number.tolist()) if n != number[-1]]
     for bins in found:
         for i, n in enumerate(bins.number):
             inside = number == n

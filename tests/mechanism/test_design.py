@@ -59,9 +59,9 @@ def test_a_cam_keeps_its_limits_ends_level_and_closes_its_circuit_once(
 def test_a_softer_limit_lets_more_of_the_curve_through(clear: Target, clear_leaf: Mechanism) -> None:
     tight = replace(MAKING, slope_ratio=0.25)
     found = design(clear, "leaf", tight)
-    told = residual_of(clear, found, tight)
-    assert told.worst_cN > residual_of(clear, clear_leaf, MAKING).worst_cN
-    assert any("be steeper than the limit of 0.25" in reason for reason in told.reasons)
+    residual = residual_of(clear, found, tight)
+    assert residual.worst_cN > residual_of(clear, clear_leaf, MAKING).worst_cN
+    assert any("be steeper than the limit of 0.25" in reason for reason in residual.reasons)
 
 
 @pytest.mark.slow

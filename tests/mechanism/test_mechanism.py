@@ -82,7 +82,9 @@ def test_at_speed_a_model_that_knows_speeds_is_compared_at_its_own(clear: Mechan
     assert not pressed[1].own_speed
 
 
-def test_the_folder_holds_all_and_its_button_presses_as_told(clear: MechanismResult, tmp_path: Path) -> None:
+def test_the_folder_is_complete_and_its_button_presses_as_reported(
+    clear: MechanismResult, tmp_path: Path
+) -> None:
     for extra in ("ezdxf", "matplotlib"):
         pytest.importorskip(extra)
     written = write_mechanism(clear, tmp_path / "switch")
@@ -91,14 +93,14 @@ def test_the_folder_holds_all_and_its_button_presses_as_told(clear: MechanismRes
         *("mechanism.json", "curves.csv", "cam.csv", "spring.dxf", "cam.dxf", "leaf.dxf", "button.toml"),
         "report.html",
     }
-    told = json.loads((tmp_path / "switch" / "mechanism.json").read_text())
-    assert told["kind"] == "leaf"
-    assert told["parts"]["spring"]["wire_mm"] > 0
+    document = json.loads((tmp_path / "switch" / "mechanism.json").read_text())
+    assert document["kind"] == "leaf"
+    assert document["parts"]["spring"]["wire_mm"] > 0
     with (tmp_path / "switch" / "curves.csv").open() as file:
         rows = list(csv.DictReader(file))
     press, target = (np.array([float(r[c]) for r in rows]) for c in ("press_cN", "target_press_cN"))
     miss = float(np.sqrt(np.mean((press - target) ** 2)))
-    assert miss == pytest.approx(told["residual"]["press"]["rms_cN"], abs=0.01)
+    assert miss == pytest.approx(document["residual"]["press"]["rms_cN"], abs=0.01)
     assert clear.button is not None
     again = load_button(tmp_path / "switch" / "button.toml")
     np.testing.assert_allclose(probe_button(again).press_cN, probe_button(clear.button).press_cN, atol=0.1)
@@ -107,7 +109,7 @@ def test_the_folder_holds_all_and_its_button_presses_as_told(clear: MechanismRes
     assert report.count("<svg") == 2
 
 
-def test_where_nothing_can_be_made_every_reason_is_told() -> None:
+def test_where_nothing_can_be_made_every_reason_is_listed() -> None:
     tiny = Making(envelope=Envelope(outer_mm=3.0, inner_mm=2.6))
     model: FDVVModel = load_builtin("mx-red")
     with pytest.raises(InputError, match="spring: no spring of"):
@@ -116,6 +118,6 @@ def test_where_nothing_can_be_made_every_reason_is_told() -> None:
 
 def test_a_model_without_release_is_refused_and_named_once() -> None:
     model = load_builtin("mx-red")
-    with pytest.raises(InputError, match="no release") as told:
+    with pytest.raises(InputError, match="no release") as caught:
         design_mechanism(replace(model, curves=model.of("press")))
-    assert str(told.value).count("mx-red") == 1
+    assert str(caught.value).count("mx-red") == 1

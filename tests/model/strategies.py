@@ -67,8 +67,8 @@ def vibrations(draw: st.DrawFn, stroke: Stroke, velocity_mm_s: float | None) -> 
     )
     modes = tuple(draw(st.lists(mode, min_size=1, max_size=3)))
     of_modes = st.lists(st.builds(ModeSpread, maybe, maybe, maybe), min_size=len(modes), max_size=len(modes))
-    told = st.builds(VibrationSpread, presses, maybe, maybe, st.one_of(st.just(()), of_modes))
-    spread = draw(st.one_of(st.none(), told))
+    spreads = st.builds(VibrationSpread, presses, maybe, maybe, st.one_of(st.just(()), of_modes))
+    spread = draw(st.one_of(st.none(), spreads))
     return Vibration(stroke, velocity_mm_s, draw(st.floats(-1, 5)), draw(st.floats(1e-4, 1)), modes, spread)
 
 

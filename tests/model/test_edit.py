@@ -68,7 +68,7 @@ def test_two_curves_of_one_stroke_and_velocity_are_refused_by_the_names_of_both(
 
 
 @pytest.mark.parametrize(("conflict", "end_cN"), [("first", 60.0), ("last", 70.0)])
-def test_a_conflict_is_resolved_when_told_how(conflict: str, end_cN: float) -> None:
+def test_a_conflict_is_resolved_as_requested(conflict: str, end_cN: float) -> None:
     merged = merge([model("left", curve(60)), curve(70)], "both", conflict=conflict)
     assert float(merged.force_cN(4.0, 50.0)) == end_cN
 

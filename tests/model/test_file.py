@@ -36,11 +36,11 @@ TEXT = model_to_json(CLEAR)
 
 def spread_model() -> FDVVModel:
     """The published button as if it had been measured on presses."""
-    told = CurveSpread(np.array([0.0, 1.5, 3.9]), np.array([0.5, 2.5, 0.75]), 14, 48.5, 3.25)
+    force_spread = CurveSpread(np.array([0.0, 1.5, 3.9]), np.array([0.5, 2.5, 0.75]), 14, 48.5, 3.25)
     shaken = VibrationSpread(12, 0.05, None, (ModeSpread(6.5, None, 20.0),))
     return replace(
         CLEAR,
-        curves=(*(replace(c, spread=told) for c in CLEAR.curves[:2]), *CLEAR.curves[2:]),
+        curves=(*(replace(c, spread=force_spread) for c in CLEAR.curves[:2]), *CLEAR.curves[2:]),
         vibrations=(replace(CLEAR.vibrations[0], spread=shaken), *CLEAR.vibrations[1:]),
         travel_spread=PointSpread(0.0125, 46),
         actuation_spread=PointSpread(0.025, 44),
@@ -270,25 +270,25 @@ def test_a_file_of_version_1_is_written_back_byte_for_byte(name: str) -> None:
 
 
 def test_what_differs_in_nothing_but_a_spread_is_another_model() -> None:
-    told = model_from_json(SPREAD)
-    assert told == spread_model()
-    assert hash(told) == hash(spread_model())
-    assert told != CLEAR
-    assert replace(told, travel_spread=None) != told
+    model = model_from_json(SPREAD)
+    assert model == spread_model()
+    assert hash(model) == hash(spread_model())
+    assert model != CLEAR
+    assert replace(model, travel_spread=None) != model
     other = CurveSpread(np.array([0.0, 1.5, 3.9]), np.array([0.5, 2.5, 0.75]), 15, 48.5, 3.25)
-    assert replace(told, curves=(replace(told.curves[0], spread=other), *told.curves[1:])) != told
+    assert replace(model, curves=(replace(model.curves[0], spread=other), *model.curves[1:])) != model
 
 
 def test_spreads_come_back_as_they_were() -> None:
-    told = model_from_json(SPREAD)
-    spread = told.curves[0].spread
+    model = model_from_json(SPREAD)
+    spread = model.curves[0].spread
     assert spread is not None
     np.testing.assert_array_equal(spread.spread_cN, [0.5, 2.5, 0.75])
     assert (spread.presses, spread.achieved_mm_s, spread.achieved_spread_mm_s) == (14, 48.5, 3.25)
-    assert told.curves[2].spread is None
-    assert told.actuation_spread == PointSpread(0.025, 44)
-    assert told.reset_spread is None
-    shaken = told.vibrations[0].spread
+    assert model.curves[2].spread is None
+    assert model.actuation_spread == PointSpread(0.025, 44)
+    assert model.reset_spread is None
+    shaken = model.vibrations[0].spread
     assert shaken == VibrationSpread(12, 0.05, None, (ModeSpread(6.5, None, 20.0),))
 
 
@@ -357,6 +357,6 @@ def test_the_schema_refuses_what_the_reader_refuses(change: Callable[[dict[str, 
 def test_every_field_of_the_schema_is_described_and_documented() -> None:
     page = (ROOT / "docs" / "reference" / "model-file.md").read_text()
     for record in schema()["$defs"].values():
-        for field, told in record.get("properties", {}).items():
-            assert told.get("description"), field
+        for field, field_schema in record.get("properties", {}).items():
+            assert field_schema.get("description"), field
             assert f"`{field}`" in page, field

@@ -85,7 +85,7 @@ def test_rows_that_repeat_a_displacement_count_as_their_mean() -> None:
     assert doubled.samples == plain.samples
 
 
-def test_smoothing_is_scored_against_the_raw_curve_and_its_loss_of_bump_is_told() -> None:
+def test_smoothing_is_scored_against_the_raw_curve_and_its_loss_of_bump_is_reported() -> None:
     rough, smoothed = fit_curve(switch()), fit_curve(switch(), smoothing_mm=0.4)
     assert rough.bump_kept_ratio is not None
     assert smoothed.bump_kept_ratio is not None

@@ -45,9 +45,9 @@ def test_places_have_the_errors_of_their_own_presses() -> None:
 
 
 def test_errors_stand_only_beside_landmarks_that_are_there() -> None:
-    told = landmark_errors(replace(measured(), actuation_spread=PointSpread(0.06, 9)))
+    errors = landmark_errors(replace(measured(), actuation_spread=PointSpread(0.06, 9)))
     marks = landmarks(measured()).to_dict()
-    assert all(marks[name] is not None for name in told)
+    assert all(marks[name] is not None for name in errors)
 
 
 def test_a_force_beyond_what_was_measured_has_no_error() -> None:

@@ -24,8 +24,8 @@ def test_a_standard_error_is_the_spread_over_the_root_of_the_presses() -> None:
 def test_the_standard_error_is_that_of_a_mean_of_drawn_presses() -> None:
     rng = np.random.default_rng(11)
     drawn = rng.normal(50.0, 3.0, (4000, 12))
-    told = CurveSpread(np.array([0.0, 1.0]), np.full(2, 3.0), 12).error_cN(0.5)
-    assert float(np.std(drawn.mean(axis=1))) == pytest.approx(float(told), rel=0.04)
+    error_cN = CurveSpread(np.array([0.0, 1.0]), np.full(2, 3.0), 12).error_cN(0.5)
+    assert float(np.std(drawn.mean(axis=1))) == pytest.approx(float(error_cN), rel=0.04)
 
 
 @pytest.mark.parametrize(

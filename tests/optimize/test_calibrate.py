@@ -54,7 +54,7 @@ def test_a_clock_that_scales_tells_unknown_people_better_than_one_normal_for_all
     assert spread_error_ratio(np.full(3, known.late_ms.std()), unknown) > 0.5
 
 
-def test_people_can_be_split_and_spreads_are_told_person_by_person() -> None:
+def test_people_can_be_split_and_spreads_are_reported_person_by_person() -> None:
     taps = drawn(4, 3)
     assert taps.of([1, 3]).people == (1, 3)
     assert np.array_equal(person_spreads_ms(taps)[[1, 3]], person_spreads_ms(taps.of([1, 3])))

@@ -136,7 +136,7 @@ def test_random_designs_hold_the_space_and_differ_between_people() -> None:
     assert len({tuple(design.values()) for design in designs}) == 20
 
 
-def test_an_effect_that_is_there_is_found_and_its_size_told() -> None:
+def test_an_effect_that_is_there_is_found_with_its_size() -> None:
     verdict = judge_experiment(invented(-16.0))
     assert verdict.anova.of("button").corrected_p < 1e-6
     assert verdict.anova.of("level").effect_ss > 0

@@ -34,7 +34,7 @@ def test_an_effect_tells_corrected_freedom_epsilon_and_size() -> None:
     assert effect_text(effect(1)).startswith("F(1, 9) = 10.72, p < .001, ")
 
 
-def test_sphericity_is_told_where_there_is_something_to_tell() -> None:
+def test_sphericity_is_reported_where_it_applies() -> None:
     assert sphericity_text(effect()) == "Sphericity of button is denied (Mauchly's W = 0.02, p = .001)."
     assert sphericity_text(effect(1)) == ""
 

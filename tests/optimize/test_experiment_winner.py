@@ -64,9 +64,9 @@ def test_designs_are_ranked_by_how_they_did_against_the_same_persons_switches() 
 def test_a_design_is_rendered_measured_and_captured_back_near_itself() -> None:
     winner = Winner(0, "easy", DESIGN, 0.2)
     found = render_winner(winner, *open_winner_devices(winner.rendered, 1))
-    told = found.to_dict()
-    assert told["simulated"] is True
-    for errors in (told["probed_mean_error_cN"], told["captured_difference_cN"]):
+    document = found.to_dict()
+    assert document["simulated"] is True
+    for errors in (document["probed_mean_error_cN"], document["captured_difference_cN"]):
         assert set(errors) == {"press", "release"}
         # of a button of 60 to 110 cN, on a rig that is not perfect
         assert all(0.2 < error < 6.0 for error in errors.values())

@@ -123,8 +123,8 @@ def test_what_others_did_counts_in_the_scores_own_unit_however_near_the_best_one
     belief = believe(scores_of(BOWL, case.objectives[0], tried), prior_basis(case))
     far = BOWL.of_unit([[0.1, 0.1, 0.9]])
     # six scores that differ by their noise alone do not make the bowl shallow
-    told = belief.predict(BOWL.to_unit(far))[0][0] - belief.predict(BOWL.to_unit(near[:1]))[0][0]
-    assert told == pytest.approx(bowl_ms(far[0]) - bowl_ms(near[0]), rel=0.4)
+    predicted_ms = belief.predict(BOWL.to_unit(far))[0][0] - belief.predict(BOWL.to_unit(near[:1]))[0][0]
+    assert predicted_ms == pytest.approx(bowl_ms(far[0]) - bowl_ms(near[0]), rel=0.4)
 
 
 @pytest.mark.parametrize("name", ["gp", pytest.param("botorch", marks=NO_TORCH)])

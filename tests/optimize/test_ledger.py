@@ -69,7 +69,7 @@ def test_what_is_not_there_is_refused(tmp_path: Path) -> None:
     ledger.close()
 
 
-def test_a_cut_last_line_is_left_out_and_told(tmp_path: Path) -> None:
+def test_a_cut_last_line_is_left_out_and_reported(tmp_path: Path) -> None:
     path = tmp_path / "trials.jsonl"
     whole = filled(path)
     whole.close()

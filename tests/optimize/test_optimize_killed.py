@@ -128,8 +128,8 @@ class Hatchery:
         assert self.process.stdin is not None
         self.process.stdin.write(f"{folder}\t{after_s!r}\n")
         self.process.stdin.flush()
-        told = (pair.split(":") for pair in self._line().split())
-        return {int(number): float(value) for number, value in told}
+        pairs = (pair.split(":") for pair in self._line().split())
+        return {int(number): float(value) for number, value in pairs}
 
     def close(self) -> None:
         self.process.communicate(timeout=30)
@@ -179,7 +179,7 @@ def test_no_finished_trial_is_lost_at_two_hundred_random_moments(
     check_kills(tmp_path / "run", engine, seed, kills, 0.05 if engine in ("random", "sobol") else 0.2)
 
 
-def test_a_second_process_on_a_folder_is_told_so_in_one_line(tmp_path: Path) -> None:
+def test_a_second_process_on_a_folder_is_refused_in_one_line(tmp_path: Path) -> None:
     code = "import sys; from pathlib import Path; from fdvv.optimize.run.session import Optimization\n"
     code += "from fdvv.errors import InputError\n"
     code += "try: Optimization.open(Path(sys.argv[1]))\nexcept InputError as error: print(error)"

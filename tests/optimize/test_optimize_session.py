@@ -83,7 +83,7 @@ def test_a_batch_that_was_half_written_comes_out_as_the_whole_one(tmp_path: Path
         assert not {trial.number for trial in session.ask()} & {trial.number for trial in whole}
 
 
-def test_the_start_is_tried_first_and_told_apart(tmp_path: Path) -> None:
+def test_the_start_is_tried_first_and_marked(tmp_path: Path) -> None:
     with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol", start=MIDDLE)) as session:
         first, second = session.ask(2)
         assert (first.design, first.origin) == (MIDDLE, "start")

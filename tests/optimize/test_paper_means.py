@@ -31,14 +31,14 @@ USER = replace(SimulatedUser(), adaptation_ratio=0.0)
 def test_the_mean_of_an_absolute_normal_is_that_of_draws() -> None:
     draws = np.random.default_rng(0).standard_normal(400_000)
     for mean, spread in ((0.0, 36.0), (30.0, 36.0), (64.8, 36.0), (-90.0, 20.0)):
-        told = float(folded_normal_mean(mean, spread))
-        assert told == pytest.approx(np.abs(mean + spread * draws).mean(), abs=0.15)
+        mean_ms = float(folded_normal_mean(mean, spread))
+        assert mean_ms == pytest.approx(np.abs(mean + spread * draws).mean(), abs=0.15)
 
 
 def test_the_papers_means_are_those_of_the_biases_worked_out_for_them_by_hand() -> None:
     """Inversions at a spread of 36 ms: biases of 64.8 and 100.7 ms give 65.8 and 100.8, best and random."""
-    told = folded_normal_mean(np.array([64.8, 100.7]), 36.0)
-    assert told == pytest.approx([PAPER_MEANS_ms["easy"][0], PAPER_MEANS_ms["easy"][5]], abs=0.2)
+    mean_ms = folded_normal_mean(np.array([64.8, 100.7]), 36.0)
+    assert mean_ms == pytest.approx([PAPER_MEANS_ms["easy"][0], PAPER_MEANS_ms["easy"][5]], abs=0.2)
 
 
 def test_what_is_expected_of_presses_is_what_played_tasks_come_to() -> None:

@@ -127,10 +127,10 @@ def test_a_run_killed_as_a_whole_goes_on_where_it_was(people: PopulationResult, 
         while process.stdout.readline().strip() not in ("2", ""):
             pass
         process.kill()
-    told: list[int] = []
+    done_counts: list[int] = []
     with open_executor(processes=1) as executor:
-        found = run_population(folder, PEOPLE, executor, progress=lambda done, _: told.append(done))
-    assert told[0] >= 2
+        found = run_population(folder, PEOPLE, executor, progress=lambda done, _: done_counts.append(done))
+    assert done_counts[0] >= 2
     assert same(found, people)
     assert same(read_population(folder), people)
 

@@ -60,7 +60,7 @@ def test_threads_do_not_disturb_each_other() -> None:
         assert list(pool.map(lambda seed: simulate_task(EASY, BROWN, user, seed), range(4))) == alone
 
 
-def test_a_deeper_actuation_is_told_later_by_what_the_finger_takes_for_the_way() -> None:
+def test_a_deeper_actuation_closes_later_by_the_time_the_finger_takes() -> None:
     """Identity: twenty presses on one force are one motion, so only the way between the points can differ."""
     shallow, deep = late_ms(flat(50.0, 1.0)), late_ms(flat(50.0, 3.0))
     press = PressSimulator(flat(50.0), STILL).press(np.random.default_rng([0, 0]))
@@ -102,7 +102,7 @@ def test_a_heavy_resting_finger_triggers_a_light_button_before_the_bullet_comes(
     )
 
 
-def test_a_design_that_the_firmware_cannot_hold_is_lost_and_the_reason_is_told() -> None:
+def test_a_design_that_the_firmware_cannot_hold_is_lost_with_the_reason() -> None:
     heavy = flat(900.0)
     assert "900" in refusal_of(heavy)
     assert refusal_of(BROWN) == ""

@@ -30,8 +30,8 @@ def test_errors_of_a_rate_are_those_of_repeated_scores() -> None:
         keys = np.cumsum(0.2 * (1 + 0.1 * random.standard_normal(20)))
         scores.append(RapidTapping().scores([TaskPress(None, (key,)) for key in keys.tolist()]))
     for name in ("rate_Hz", "interval_spread_ratio"):
-        told = np.mean([score[name].error for score in scores])
-        assert told == pytest.approx(np.std([score[name].value for score in scores]), rel=0.1)
+        mean_error = np.mean([score[name].error for score in scores])
+        assert mean_error == pytest.approx(np.std([score[name].value for score in scores]), rel=0.1)
 
 
 def test_one_who_never_gets_through_has_a_rate_of_nothing() -> None:

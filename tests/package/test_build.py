@@ -152,7 +152,7 @@ def test_the_c_compiles_without_a_warning_for_every_system(
     build: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, zig: list[str], target: str
 ) -> None:
     system, first = TARGETS[target]
-    # another system is told its version by the target
+    # the target names the other system's version
     monkeypatch.setattr(build, "_architectures", lambda _: [])
     monkeypatch.setattr(build, "STRICT", ["-Werror"])
     monkeypatch.setenv("CC", " ".join([*zig, "-target", target, "-mcpu=baseline"]))
@@ -176,13 +176,13 @@ def test_fits_and_presses_of_pips_compiler_are_those_of_the_systems(
     monkeypatch.setenv("CC", " ".join([*zig, "-mcpu=baseline"]))
     library, _ = build.compile_native(tmp_path, "linux")
     ours = Path(_native.__file__).with_name(_native.LIBRARY)
-    told = {
+    printed = {
         subprocess.run(
             [sys.executable, "-c", EXERCISE, str(path)], capture_output=True, text=True, check=True
         ).stdout
         for path in (library, ours)
     }
-    assert len(told) == 1
+    assert len(printed) == 1
 
 
 @pytest.mark.slow
@@ -203,7 +203,7 @@ def test_fits_and_ticks_are_the_same_to_the_bit_on_other_systems(
         pytest.skip(f"{emulator} is not installed")
     sources = [Path(__file__).with_name("portable.c"), *sorted(build.NATIVE.glob("*.c"))]
     sources += [*sorted(build.CORE.glob("*.c")), build.HOST / "board.c"]
-    told = []
+    printed = []
     for compiler, prefix in ((["cc"], []), ([*zig, "-target", target, "-mcpu=baseline"], runner)):
         program = tmp_path / f"{len(prefix)}-{len(compiler)}.exe"
         command = [*compiler, *build.FLAGS, "-o", str(program), *map(str, sources), "-lm"]
@@ -212,6 +212,6 @@ def test_fits_and_ticks_are_the_same_to_the_bit_on_other_systems(
         ran = subprocess.run(
             [*prefix, str(program)], env=environment, capture_output=True, text=True, check=True
         )
-        told.append(ran.stdout.split())
-    assert told[0] == told[1]
-    assert len(told[0]) == 4
+        printed.append(ran.stdout.split())
+    assert printed[0] == printed[1]
+    assert len(printed[0]) == 4

@@ -121,7 +121,7 @@ def unnamed(tree: ast.AST) -> list[int]:
 
 
 def test_text_is_read_and_written_in_a_named_encoding() -> None:
-    # Windows reads another one than UTF-8 unless told
+    # Windows reads another one than UTF-8 unless asked for it
     wrong = {
         str(path.relative_to(REPOSITORY)): lines
         for sources in SOURCES

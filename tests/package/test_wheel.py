@@ -74,13 +74,13 @@ def test_the_sdist_holds_all_sources_and_nothing_that_was_built(packages: Packag
 def test_the_tag_of_the_wheel_is_the_glibc_that_its_symbols_need(packages: Packages, tmp_path: Path) -> None:
     zipfile.ZipFile(packages.wheel).extractall(tmp_path)
     native = tmp_path / "fdvv" / "_native"
-    told = "".join(
+    symbols = "".join(
         subprocess.run(
             ["objdump", "-T", str(native / name)], capture_output=True, text=True, check=True
         ).stdout
         for name in ("libfdvv.so", "fdvv-host")
     )
-    needed = max((int(a), int(b)) for a, b in re.findall(r"GLIBC_(\d+)\.(\d+)", told))
+    needed = max((int(a), int(b)) for a, b in re.findall(r"GLIBC_(\d+)\.(\d+)", symbols))
     tag = re.fullmatch(r"fdvv-.*-py3-none-manylinux_(\d+)_(\d+)_\w+\.whl", packages.wheel.name)
     assert tag, packages.wheel.name
     assert (int(tag[1]), int(tag[2])) == needed

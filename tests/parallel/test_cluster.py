@@ -50,9 +50,9 @@ def cluster() -> Iterator[tuple[str, list[int]]]:
         for command in started:
             if command[0] == "-w":
                 command = [sys.executable, "-m", "distributed.cli.dask_worker", *command[1:]]
-            told = [word.replace("10.0.0.5", "127.0.0.1").replace("8786", port) for word in command]
+            arguments = [word.replace("10.0.0.5", "127.0.0.1").replace("8786", port) for word in command]
             process = stack.enter_context(
-                subprocess.Popen(told, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                subprocess.Popen(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             )
             stack.callback(process.terminate)
             pids.append(process.pid)

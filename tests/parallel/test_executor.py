@@ -148,7 +148,7 @@ def test_a_cluster_without_workers_is_refused() -> None:
         pass
 
 
-def test_an_address_where_nobody_answers_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_address_where_nobody_answers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fdvv.parallel.open.ANSWER_s", 0.5)
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))

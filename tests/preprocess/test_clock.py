@@ -42,7 +42,7 @@ def lit(at_s: FloatArray, times: FloatArray, exposure_s: float) -> FloatArray:
 @given(
     st.integers(0, 2**32 - 1), st.floats(-50, 500), st.floats(-1e-2, 1e-2), st.sampled_from([0.0, EXPOSURE_s])
 )
-def test_offset_and_drift_are_found_within_the_doubt_that_is_told(
+def test_offset_and_drift_are_found_within_the_reported_uncertainty(
     seed: int, offset_s: float, drift: float, exposure_s: float
 ) -> None:
     random = np.random.default_rng(seed)
@@ -88,7 +88,7 @@ def test_brightness_may_be_in_any_measure() -> None:
     assert abs(fit.offset_s - 3.0) < 3e-4
 
 
-def test_a_light_that_was_never_seen_is_told() -> None:
+def test_a_light_that_was_never_seen_is_reported() -> None:
     edges = Edges(np.array([1.0, 1.01, 1.05, 1.1]), np.array([True, False, True, False]))
 
     with pytest.raises(ModelError, match="no pattern in common"):

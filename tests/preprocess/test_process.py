@@ -170,7 +170,9 @@ def only(recording: Recording, keep: frozenset[Quantity]) -> Recording:
         (frozenset({Quantity.FORCE, Quantity.MARKER}), "no stream shows the light"),
     ],
 )
-def test_what_is_missing_is_told(session: CapturedSession, keep: frozenset[Quantity], reason: str) -> None:
+def test_what_is_missing_is_reported(
+    session: CapturedSession, keep: frozenset[Quantity], reason: str
+) -> None:
     presses = replace(
         session.recording,
         takes=tuple(
@@ -185,7 +187,7 @@ def test_what_is_missing_is_told(session: CapturedSession, keep: frozenset[Quant
         process(only(presses, keep))
 
 
-def test_too_few_presses_are_told(session: CapturedSession) -> None:
+def test_too_few_presses_are_reported(session: CapturedSession) -> None:
     few = replace(session.recording, takes=session.recording.takes[:4])
 
     with pytest.raises(ModelError, match="fewer than 3 presses of any pace"):

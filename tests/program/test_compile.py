@@ -43,13 +43,13 @@ def test_an_image_holds_what_the_program_says(program: Program) -> None:
 
 @settings(max_examples=30, deadline=None)
 @given(program_strategies.surfaces("s"), st.floats(0, 6), st.floats(0, 600))
-def test_forces_are_within_the_error_that_was_told(surface: Surface, x_mm: float, v_mm_s: float) -> None:
+def test_forces_are_within_the_reported_error(surface: Surface, x_mm: float, v_mm_s: float) -> None:
     program = Program("p", 6.2, "a", (State("a", "s", "s"),), (surface,))
     compiled = compile_program(program, Limits(worst_grid_error_cN=400.0))
     held = describe(compiled.image).surfaces[0]
-    told_cN = compiled.grid_error_cN["s"] + compiled.rounding_cN
+    reported_cN = compiled.grid_error_cN["s"] + compiled.rounding_cN
     assert compiled.rounding_cN <= 1 / 128
-    assert abs(held.force_at_cN(x_mm, v_mm_s) - surface.force_at_cN(x_mm, v_mm_s)) <= told_cN + 1e-9
+    assert abs(held.force_at_cN(x_mm, v_mm_s) - surface.force_at_cN(x_mm, v_mm_s)) <= reported_cN + 1e-9
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -68,7 +68,7 @@ def test_a_non_newtonian_button_follows_a_change_of_speed_within_a_press() -> No
     assert force[middle] * 0.5 == pytest.approx([0.6, 0.505, 1.0], rel=0.03)
 
 
-def test_levels_are_told_by_depth_and_come_with_their_clicks() -> None:
+def test_levels_are_entered_by_depth_and_come_with_their_clicks() -> None:
     program = make("multi-level", levels=3)
     pressed = press(program, path((0, 0), (0.2, 3.8), (0.4, 0.0)))
     entries = pressed.entries()

@@ -106,7 +106,7 @@ def test_text_that_is_no_json_is_refused_by_line_and_column() -> None:
         program_from_json('{\n "format": "fdvv-program",\n oops}', "p")
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="No such file"):
         load_program(tmp_path / "none.fdvv-program.json")
 
@@ -125,13 +125,13 @@ def test_names_must_be_known_and_differ() -> None:
 
 
 def test_conditions_read_like_sentences() -> None:
-    told = [
+    transitions = [
         Transition("b", Condition(When.FALLEN_BY, 0.1), Condition(When.DEEPER_THAN, 0.3)),
         Transition("b", Condition(When.FASTER_THAN, 80)),
         Transition("b", Condition(When.HOST_EVENT, 3)),
         Transition("b", Condition(When.TURNED_TO_RELEASE)),
     ]
-    assert [str(t) for t in told] == [
+    assert [str(t) for t in transitions] == [
         "fallen by 0.1 mm if deeper than 0.3 mm → b",
         "faster than 80 mm/s → b",
         "host event 3 → b",

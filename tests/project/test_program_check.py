@@ -1,4 +1,4 @@
-"""What is wrong with a program is told with the place in its document."""
+"""Faults of a program are reported with the place in its document."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def test_a_shipped_program_stands_well_and_its_sizes_are_those_of_its_image(reci
     assert {s.name: s.columns for s in standing.surfaces} == compiled.columns
 
 
-def test_a_state_that_holds_the_cap_down_is_told_with_its_place() -> None:
+def test_a_state_that_holds_the_cap_down_is_reported_with_its_place() -> None:
     up, down = plain().states
     held = replace(down, press="hold", release="hold")
     (finding,) = findings(plain(states=(up, held), surfaces=(PUSH, flat("hold", -20.0))))
@@ -62,25 +62,25 @@ def test_a_state_that_holds_the_cap_down_is_told_with_its_place() -> None:
     assert "after_ms" in finding.remedy
 
 
-def test_a_transition_beyond_the_travel_is_told_at_the_transition() -> None:
+def test_a_transition_beyond_the_travel_is_reported_at_the_transition() -> None:
     up, down = plain().states
     far = Transition("down", Condition("deeper_than_mm", 5.0))  # type: ignore[arg-type]
     found = findings(plain(states=(replace(up, transitions=(*up.transitions, far)), down)))
     assert [(f.path, f.severity) for f in found] == [("states[0].transitions[1]", Severity.WARNING)]
 
 
-def test_a_steep_surface_is_told_at_the_surface_and_the_displacement() -> None:
+def test_a_steep_surface_is_reported_at_the_surface_and_the_displacement() -> None:
     steep = line("push", (0, 40), (2.0, 40), (2.1, 90), (4.0, 90))
     found = [f for f in findings(plain(surfaces=(steep,))) if "buzz" in f.reason]
     assert [(f.path, f.at_mm) for f in found] == [("surfaces[0]", 2.0)] * 2
     assert {f.state for f in found} == {"up", "down"}
 
 
-def test_a_surface_too_strong_for_the_rig_is_told_at_the_surface() -> None:
+def test_a_surface_too_strong_for_the_rig_is_reported_at_the_surface() -> None:
     assert "surfaces[0]" in {f.path for f in findings(plain(surfaces=(flat("push", 500.0),)))}
 
 
-def test_a_travel_beyond_the_stop_is_told_at_the_travel() -> None:
+def test_a_travel_beyond_the_stop_is_reported_at_the_travel() -> None:
     assert "travel_mm" in {f.path for f in findings(plain(travel_mm=6.3))}
 
 
@@ -97,11 +97,11 @@ BROKEN: dict[str, Callable[[dict[str, Any]], object]] = {
 
 
 @pytest.mark.parametrize("path", BROKEN)
-def test_what_makes_a_document_no_program_is_told_with_its_path(path: str) -> None:
+def test_an_invalid_program_document_is_refused_with_the_path_of_the_fault(path: str) -> None:
     assert broken(BROKEN[path]).path == path
 
 
-def test_a_way_to_a_missing_state_is_told_at_its_transition() -> None:
+def test_a_missing_target_state_is_reported_at_its_transition() -> None:
     found = broken(lambda d: d["states"][0]["transitions"][0].update(to="nowhere"))
     assert found.path == "states[0].transitions[0]"
     assert "'nowhere'" in found.reason

@@ -37,7 +37,7 @@ def motive(
     error = "Error Per Marker" if version == "1.21" else "Mean Marker Error"
     columns = [*body, ("Rigid Body", "cap", error, ""), *columns] if rigid_body else columns
     blank, bare = ["" for _ in code], version == "1.21"
-    told = [
+    header = [
         *("Format Version", version, "Take Name", "made up", "Take Notes", ""),
         *("Capture Frame Rate", f"{rate:.6f}", "Export Frame Rate", f"{rate:.6f}"),
         *("Capture Start Time", start, "Capture Start Frame", "78593", "Total Frames in Take", f"{frames}"),
@@ -56,7 +56,7 @@ def motive(
         time = f"{round(frame / rate, digits):.6f}"
         clock = [f"15:26:46:{frame // 4:02}.{frame % 4:02}" for _ in code]
         rows.append([f"{frame}", time, *clock, *_cells(columns, frame)])
-    return end.join([",".join(told), "", *(",".join(row) for row in rows), ""])
+    return end.join([",".join(header), "", *(",".join(row) for row in rows), ""])
 
 
 def _cells(columns: Sequence[tuple[str, str, str, str]], frame: int) -> list[str]:
@@ -106,8 +106,8 @@ def forcepeaks(taps: Sequence[int] = (900, 1350, 2180, 2700, 3100), beats: int =
         values += [400 - i for i in range(count)] + [0] * (begin + tap + 100 <= end)
     lines = [(begin + step * n, f"S {n} {begin + step * n}") for n in range(beats)]
     lines += [(begin + tap, f"R {n} {begin + tap}") for n, tap in enumerate(taps)]
-    told = [line for _, line in sorted(lines)] + [f"V {i} {value}" for i, value in enumerate(values)]
-    return "\n".join([*told, ""])
+    log_lines = [line for _, line in sorted(lines)] + [f"V {i} {value}" for i, value in enumerate(values)]
+    return "\n".join([*log_lines, ""])
 
 
 def counts(samples: int = 100) -> str:

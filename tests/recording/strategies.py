@@ -58,12 +58,12 @@ def recordings(draw: st.DrawFn) -> Recording:
     )
 
 
-def told(value: Any) -> Any:
+def contents(value: Any) -> Any:
     """Give everything that a record holds as plain values, arrays as kind, shape and bytes."""
     if isinstance(value, np.ndarray):
         return value.dtype.str, value.shape, value.tobytes()
     if isinstance(value, tuple):
-        return [told(item) for item in value]
+        return [contents(item) for item in value]
     if isinstance(value, Recording | Take | Stream | Mark | Source | Bench):
-        return {name: told(item) for name, item in vars(value).items()}
+        return {name: contents(item) for name, item in vars(value).items()}
     return repr(value)

@@ -59,10 +59,10 @@ def test_a_cut_recording_can_be_read_and_says_what_to_do(tmp_path: Path) -> None
     path.write_bytes(path.read_bytes()[:-9])
     found = check_recording(path)
     assert (found.status, found.facts["takes"]) == (1, 2)
-    told = (
+    message = (
         "the last record is not whole and is left out; go on with it, which cuts the rest off; takes kept: 2"
     )
-    assert str(found.problems[0]) == f"end of file: {told}"
+    assert str(found.problems[0]) == f"end of file: {message}"
 
 
 def test_a_damaged_recording_is_unusable_with_its_line(tmp_path: Path) -> None:
@@ -102,11 +102,11 @@ FAULTS: dict[str, tuple[Callable[[Take], Take], str]] = {
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_of_a_take_is_told_with_its_place(tmp_path: Path, fault: str) -> None:
-    change, told = FAULTS[fault]
+def test_a_fault_of_a_take_is_reported_with_its_place(tmp_path: Path, fault: str) -> None:
+    change, message = FAULTS[fault]
     found = check_recording(saved(tmp_path / "a", take(1), change(take(2)), take(3)))
     assert found.status == 1
-    assert [str(problem)[: len(told)] for problem in found.problems] == [told]
+    assert [str(problem)[: len(message)] for problem in found.problems] == [message]
 
 
 def test_clocks_that_begin_anew_may_do_so(tmp_path: Path) -> None:

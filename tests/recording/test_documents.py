@@ -24,7 +24,7 @@ def block(page: str, language: str, number: int = 0) -> str:
     """Give a block of code of a page."""
     text = (REFERENCE / page).read_text()
     blocks: list[tuple[str, str]] = re.findall(r"^```(\w*)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
-    return [code for told, code in blocks if told == language][number]
+    return [code for tag, code in blocks if tag == language][number]
 
 
 @pytest.fixture

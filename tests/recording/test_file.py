@@ -17,7 +17,7 @@ from fdvv.eventlog import line_of
 from fdvv.recording.file import RECORDING_SUFFIX, Correction, load_recording, save_recording
 from fdvv.recording.log import RecordingLog
 from fdvv.recording.types import Bench, Quantity, Recording, Stream
-from tests.recording.strategies import recordings, told
+from tests.recording.strategies import contents, recordings
 from tests.recording.takes import ABOUT, TAKE, head, take
 
 SMALL = settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25, deadline=None)
@@ -36,7 +36,7 @@ def test_a_recording_comes_back_to_the_bit(tmp_path: Path, recording: Recording)
     path = tmp_path / f"a{RECORDING_SUFFIX}"
     path.unlink(missing_ok=True)
     save_recording(recording, path)
-    assert told(load_recording(path)) == told(recording)
+    assert contents(load_recording(path)) == contents(recording)
 
 
 @SMALL
@@ -131,11 +131,11 @@ def test_wherever_it_is_cut_the_whole_takes_before_are_there_and_it_goes_on(
         assert bool(log.warnings) == bool(data and not data.endswith(b"\n"))
         log.add(take(whole + 1))
     found = load_recording(path)
-    assert told(found.takes) == told(tuple(take(n) for n in range(1, whole + 2)))
+    assert contents(found.takes) == contents(tuple(take(n) for n in range(1, whole + 2)))
     assert found.warnings == ()
 
 
-def test_a_cut_take_is_told_of_when_it_is_read(tmp_path: Path) -> None:
+def test_a_cut_take_is_reported_when_it_is_read(tmp_path: Path) -> None:
     path = written(tmp_path / "a")
     path.write_bytes(path.read_bytes()[:-1])
     assert load_recording(path).warnings == ("the last record is not whole and is left out; takes kept: 2",)
@@ -154,11 +154,11 @@ def test_a_calibration_is_mended_without_touching_a_sample(tmp_path: Path) -> No
         mended = log.recording
     found = load_recording(path)
     assert path.read_bytes().startswith(before)
-    assert told(found) == told(mended)
+    assert contents(found) == contents(mended)
     assert [t.streams[0].scale for t in found.takes] == [0.06, 0.06, 0.06, 0.05]
     assert (found.takes[1].remark, found.takes[1].stage, found.takes[0].remark) == ("slipped", "probe", "")
     assert (found.bench.tip_mass_g, found.bench.force_filter_ms, found.licence) == (3.0, 1.0, "CC BY 4.0")
-    assert told(found.takes[0].streams[0].raw) == told(take().streams[0].raw)
+    assert contents(found.takes[0].streams[0].raw) == contents(take().streams[0].raw)
 
 
 WRONG = [

@@ -16,7 +16,7 @@ import pytest
 from fdvv.recording.file import load_recording
 from fdvv.recording.log import RecordingLog
 from fdvv.recording.types import Take
-from tests.recording.strategies import told
+from tests.recording.strategies import contents
 from tests.recording.takes import ABOUT, take
 
 LONGEST_s = 0.08
@@ -56,7 +56,7 @@ def server() -> Iterator[subprocess.Popen[str]]:
 
 
 def killed(server: subprocess.Popen[str], path: Path, after_s: float) -> int:
-    """Let a child record and kill it; give the last number that it told."""
+    """Let a child record and kill it; return the last number that it reported."""
     assert server.stdin is not None
     assert server.stdout is not None
     server.stdin.write(f"{path}\n")
@@ -87,15 +87,15 @@ def survive(server: subprocess.Popen[str], folder: Path, moments: int) -> None:
     for moment in range(moments):
         path = folder / f"{moment // 10}.recording.jsonl"
         before = len(takes_of(path))
-        told_of = max(before, killed(server, path, rng.uniform(0, LONGEST_s)))
+        reported = max(before, killed(server, path, rng.uniform(0, LONGEST_s)))
         found = takes_of(path)
-        assert told_of <= len(found) <= told_of + 1
-        assert told(found[before:]) == told(tuple(take(t.number) for t in found[before:]))
+        assert reported <= len(found) <= reported + 1
+        assert contents(found[before:]) == contents(tuple(take(t.number) for t in found[before:]))
     for path in folder.iterdir():
         with RecordingLog(path, ABOUT) as log:
             log.add(take(log.next_number))
         every = load_recording(path).takes
-        assert told(every) == told(tuple(take(number) for number in range(1, len(every) + 1)))
+        assert contents(every) == contents(tuple(take(number) for number in range(1, len(every) + 1)))
 
 
 def test_killed_at_twenty_random_moments_no_finished_take_is_lost(

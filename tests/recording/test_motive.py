@@ -47,7 +47,7 @@ def test_lengths_come_out_in_mm_and_stay_on_file_as_they_were(
     assert left.values[0].tolist() == [0, scale, 2 * scale]
 
 
-def test_what_motive_computed_bears_another_name_and_the_rest_is_told(tmp_path: Path) -> None:
+def test_what_motive_computed_has_another_name_and_the_rest_is_reported(tmp_path: Path) -> None:
     blocks = [("Rigid Body Marker", "cap:Marker1"), ("Marker", "cap:Marker1"), ("Marker", "Unlabeled 7")]
     found = read(tmp_path, motive(blocks=blocks, rigid_body=True))
     names = [stream.name for stream in found.takes[0].streams]
@@ -89,7 +89,7 @@ def test_an_export_that_begins_later_keeps_its_times(tmp_path: Path) -> None:
     assert found.warnings == ("the head tells of 40 frames, 30 are there",)
 
 
-def test_frames_that_are_missing_are_told(tmp_path: Path) -> None:
+def test_missing_frames_are_reported(tmp_path: Path) -> None:
     lines = motive().split("\n")
     found = read(tmp_path, "\n".join([*lines[:20], *lines[25:]]))
     assert found.warnings[0] == "5 frames missing in between"
@@ -127,7 +127,7 @@ def test_the_start_is_read_in_english_and_hungarian(tmp_path: Path, start: str) 
 
 
 @pytest.mark.parametrize("start", NO_STARTS)
-def test_a_start_that_tells_no_moment_is_told_and_left_open(tmp_path: Path, start: str) -> None:
+def test_a_start_without_a_time_is_reported_and_left_open(tmp_path: Path, start: str) -> None:
     found = read(tmp_path, motive(start=start))
     assert found.takes[0].made == ""
     assert "tells no certain moment" in found.warnings[0]

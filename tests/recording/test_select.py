@@ -1,4 +1,4 @@
-"""Markers of the cap and the light are told from the others of an export."""
+"""Markers of the cap and the light are distinguished from the others of an export."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ def test_a_sum_that_does_not_fit_gives_a_changed_digit_away(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     "line", ["# fdvv-capture 7", "# fdvv-capture", "# fdvv-capture x", "# channel F g scale=nan"]
 )
-def test_a_head_told_again_that_differs_is_garbled(tmp_path: Path, line: str) -> None:
+def test_a_repeated_head_that_differs_is_garbled(tmp_path: Path, line: str) -> None:
     found = read(tmp_path, serial() + line)
     assert found.takes[0].streams[0].quantity is Quantity.FORCE
     assert found.warnings == (("line 57 garbled and left out",) if line != "# fdvv-capture" else ())

@@ -1,4 +1,4 @@
-"""Sound files: every width, one microphone told from two, and no volts that nobody stated."""
+"""Sound files: every width, one microphone distinguished from two, and no volts that nobody stated."""
 
 from __future__ import annotations
 

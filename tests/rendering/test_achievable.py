@@ -1,4 +1,4 @@
-"""What the editor is told of a rig while a curve is being drawn. Simulated."""
+"""What the editor shows of a rig's limits while a curve is being drawn. Simulated."""
 
 from __future__ import annotations
 
@@ -67,12 +67,12 @@ def test_an_unknown_rig_is_refused_with_those_there_are(project: Path, rig_id: s
 
 
 @pytest.mark.parametrize("speed_mm_s", [0.5, 50.0, 200.0])
-def test_the_curves_told_are_those_of_the_feasibility_report(light: AvailableRig, speed_mm_s: float) -> None:
+def test_the_curves_are_those_of_the_feasibility_report(light: AvailableRig, speed_mm_s: float) -> None:
     model = load_builtin("mx-clear")
-    told = achievable(model, light, [speed_mm_s])
+    curves = achievable(model, light, [speed_mm_s])
     full = feasibility(model, light.known, light.settings, [speed_mm_s], info=light.info).curves
-    assert [c.stroke for c in told] == list(Stroke)
-    for curve, of in zip(told, full, strict=True):
+    assert [c.stroke for c in curves] == list(Stroke)
+    for curve, of in zip(curves, full, strict=True):
         reached = curve.reached
         # in fewer steps of time, a tenth of a centinewton is nothing on a screen
         np.testing.assert_allclose(reached.achievable_cN, of.reached.achievable_cN, atol=0.1)
@@ -99,8 +99,8 @@ def test_a_force_beyond_the_limit_is_marked_where_it_is_cut_and_said(light: Avai
     assert limited_ranges(achievable(load_builtin("mx-clear"), light, [50.0])[0].reached) == []
 
 
-def test_a_curve_of_unknown_velocity_is_judged_at_50_mm_s_and_speeds_are_told_once(
+def test_a_curve_of_unknown_velocity_is_judged_at_50_mm_s_and_speeds_are_listed_once(
     light: AvailableRig,
 ) -> None:
-    told = achievable(load_builtin("mx-red"), light, [None, 50.0])
-    assert [(c.stroke, c.velocity_mm_s) for c in told] == [(Stroke.PRESS, 50.0), (Stroke.RELEASE, 50.0)]
+    curves = achievable(load_builtin("mx-red"), light, [None, 50.0])
+    assert [(c.stroke, c.velocity_mm_s) for c in curves] == [(Stroke.PRESS, 50.0), (Stroke.RELEASE, 50.0)]

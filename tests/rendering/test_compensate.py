@@ -70,7 +70,7 @@ def test_another_seed_gives_other_tables() -> None:
     assert np.abs(tables[0].press_cN - tables[1].press_cN).max() > 0.1
 
 
-def test_progress_is_told_after_every_press() -> None:
+def test_progress_is_reported_after_every_press() -> None:
     events: list[PressDone] = []
     compensate(ScriptedDevice(), MODEL, SPEEDS, PLAIN, events.append)
     assert [e.presses_done for e in events] == list(range(1, 17))

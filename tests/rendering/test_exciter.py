@@ -48,7 +48,7 @@ def test_the_default_sensor_tells_it_within_three_standard_errors(seed: int) -> 
     assert found.error["resonance_Hz"] < 0.05
 
 
-def test_a_rig_without_an_exciter_is_told_so() -> None:
+def test_a_rig_without_an_exciter_is_refused() -> None:
     silent = LinkedDevice(HostBoard(), ScriptedPerson())
     with silent as device, pytest.raises(FitError, match="check that the exciter plays and nobody touches"):
         identify_exciter(device, tone_s=0.3)
@@ -64,7 +64,7 @@ def test_tones_are_slots_of_a_program_that_holds_the_cap() -> None:
     assert (head.slots, head.states) == (2, 1)
 
 
-def test_the_board_is_told_to_begin_as_early_as_latency_and_drive_ask_for_once() -> None:
+def test_the_board_is_configured_once_to_begin_as_early_as_latency_and_drive_require() -> None:
     known = KnownExciter(20.0, 600.0, 2.0, latency_s=0.007)
     settings = with_lead(Settings(), known, 0.001)
     assert settings.vibration_latency_us == 8000

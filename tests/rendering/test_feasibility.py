@@ -51,8 +51,8 @@ def report(drawn: tuple[Rig, Finger, RigModel], model: FDVVModel) -> Feasibility
 
 
 def test_every_stroke_and_speed_is_judged_in_order(report: FeasibilityReport) -> None:
-    told = [(c.stroke, c.velocity_mm_s) for c in report.curves]
-    assert told == [(stroke, speed) for stroke in Stroke for speed in SPEEDS]
+    judged = [(c.stroke, c.velocity_mm_s) for c in report.curves]
+    assert judged == [(stroke, speed) for stroke in Stroke for speed in SPEEDS]
     assert report.velocity_mm_s == SPEEDS
     assert len(report.doses) == 2
 
@@ -73,7 +73,7 @@ def test_more_is_asked_of_a_rig_the_faster_the_press(report: FeasibilityReport) 
     assert fast.reached.lag_mm == pytest.approx(4 * slow.reached.lag_mm)
 
 
-def test_the_step_between_strokes_is_told_with_the_release_alone(report: FeasibilityReport) -> None:
+def test_the_step_between_strokes_is_reported_with_the_release_alone(report: FeasibilityReport) -> None:
     steps = [curve.stable.step_cN for curve in report.curves]
     assert steps[:2] == [0.0, 0.0]
     assert min(steps[2:]) > 10.0
@@ -87,7 +87,7 @@ def test_the_report_is_a_document_without_nan(report: FeasibilityReport) -> None
     assert read["curves"][0]["stability"]["margin"] > 1
 
 
-def test_a_weak_coil_is_told_by_its_limit_and_a_strong_one_is_not(
+def test_a_weak_coil_is_named_by_its_limit_and_a_strong_one_is_not(
     drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
 ) -> None:
     rig, _, known = drawn
@@ -161,11 +161,11 @@ def test_what_presses_measured_stands_beside_what_was_computed(
     device = TwinDevice(rig, finger, 3)
     found = probe(device, model, uncompensated(device, model, [50.0]), [50.0], 2)
     report = feasibility(model, known, device.settings(), [50.0, 100.0], found, device.info())
-    told = [curve.measured for curve in report.curves]
-    assert told[0] is found.curves[0]
-    assert told[2] is found.curves[1]
-    assert told[1] is None
-    assert told[3] is None
+    measured = [curve.measured for curve in report.curves]
+    assert measured[0] is found.curves[0]
+    assert measured[2] is found.curves[1]
+    assert measured[1] is None
+    assert measured[3] is None
     drawn_curves = feasible_curves(report)
     assert [c.simulated for c in drawn_curves] == [True, False, True, False]
     assert drawn_curves[0].band is not None

@@ -110,10 +110,10 @@ def test_the_memory_of_a_file_gives_the_same_tables(learned: Learned, tmp_path: 
 
 
 def notices_of(device: Device, memory: LearnedRig, session: Session | None = None) -> list[str]:
-    told = list[str]()
+    notices = list[str]()
     method = RigAware(rounds=1, learned_rig=memory)
-    compensate(device, MODEL, SPEEDS, method, session=session, guide=Guide(notice=told.append))
-    return told
+    compensate(device, MODEL, SPEEDS, method, session=session, guide=Guide(notice=notices.append))
+    return notices
 
 
 def test_a_rig_that_is_as_it_was_known_gives_no_notice(learned: Learned) -> None:
@@ -121,14 +121,16 @@ def test_a_rig_that_is_as_it_was_known_gives_no_notice(learned: Learned) -> None
         assert notices_of(TwinDevice(learned.rig, learned.finger, seed), learned.memory) == []
 
 
-def test_a_rig_that_has_changed_is_told_once_after_its_first_press(learned: Learned, tmp_path: Path) -> None:
+def test_a_rig_that_has_changed_is_reported_once_after_its_first_press(
+    learned: Learned, tmp_path: Path
+) -> None:
     worn = replace(learned.rig, mover=replace(learned.rig.mover, mass_kg=0.030))
     session = Session(tmp_path / "s")
-    told = notices_of(TwinDevice(worn, learned.finger, 31), learned.memory, session)
-    assert len(told) == 1
-    assert told[0].startswith("warning: the rig has changed since its identification: ")
-    assert "mass rose" in told[0] or "weight rose" in told[0]
-    assert "\n" not in told[0]
+    notices = notices_of(TwinDevice(worn, learned.finger, 31), learned.memory, session)
+    assert len(notices) == 1
+    assert notices[0].startswith("warning: the rig has changed since its identification: ")
+    assert "mass rose" in notices[0] or "weight rose" in notices[0]
+    assert "\n" not in notices[0]
     # a session that is only read again has nothing new to tell of the rig
     again = notices_of(TwinDevice(worn, learned.finger, 31), learned.memory, session)
     assert [text.startswith("the session in") for text in again] == [True]
@@ -210,8 +212,8 @@ def test_a_session_that_goes_on_does_not_tell_again_what_changed(learned: Learne
     session = Session(tmp_path / "s")
     with pytest.raises(KeyboardInterrupt):
         notices_of(PressByPress(worn, learned.finger, stop_at=3), learned.memory, session)
-    told = notices_of(PressByPress(worn, learned.finger, done=2), learned.memory, session)
-    assert [text.endswith("goes on") for text in told] == [True]
+    notices = notices_of(PressByPress(worn, learned.finger, done=2), learned.memory, session)
+    assert [text.endswith("goes on") for text in notices] == [True]
 
 
 def test_a_session_with_another_memory_is_another_session(learned: Learned, tmp_path: Path) -> None:

@@ -90,12 +90,12 @@ def test_a_finished_session_gives_its_result_again_without_a_press(tmp_path: Pat
 
 
 @pytest.mark.parametrize("name", RUNS)
-def test_a_press_that_cannot_be_used_is_kept_told_and_asked_again(tmp_path: Path, name: str) -> None:
-    told, asked = list[PressDone](), list[PressRequest]()
+def test_an_unusable_press_is_logged_reported_and_requested_again(tmp_path: Path, name: str) -> None:
+    progress, asked = list[PressDone](), list[PressRequest]()
     device = Hand({2: short, 3: hasty})
-    result = RUNS[name](device, tmp_path / "s", progress=told.append, guide=Guide(ask=asked.append))
+    result = RUNS[name](device, tmp_path / "s", progress=progress.append, guide=Guide(ask=asked.append))
     assert device.presses == 10
-    reasons = [event.skipped for event in told if event.skipped]
+    reasons = [event.skipped for event in progress if event.skipped]
     assert "the press stopped at 2.0" in reasons[0]
     assert "press slower" in reasons[1]
     assert [a.number for a in asked] == [1, 2, 2, 2, 3, 4, 5, 6, 7, 8]
@@ -200,7 +200,7 @@ def changed(folder: Path, **change: Any) -> Callable[[], Any]:
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         ({"model": load_builtin("mx-red")}, 'model.name is "mx-clear" there and "mx-red" now'),
         ({"model": replace(MODEL, travel_mm=3.5)}, "model.sha256 is"),
@@ -212,13 +212,13 @@ def changed(folder: Path, **change: Any) -> Callable[[], Any]:
     ids=lambda v: "" if isinstance(v, str) else next(iter(v)),
 )
 def test_a_session_about_something_else_is_refused_and_says_what_differs(
-    tmp_path: Path, change: dict[str, Any], told: str
+    tmp_path: Path, change: dict[str, Any], message: str
 ) -> None:
     learn(Hand(), tmp_path / "s")
     before = (tmp_path / "s" / PRESSES).read_bytes()
     with pytest.raises(InputError) as caught:
         changed(tmp_path / "s", **change)()
-    assert told in str(caught.value)
+    assert message in str(caught.value)
     assert "\n" not in str(caught.value)
     assert (tmp_path / "s" / PRESSES).read_bytes() == before
 
@@ -414,7 +414,7 @@ def test_a_real_board_without_a_force_sensor_is_neither_learned_from_nor_judged(
                     probe(board, MODEL, SURFACE, [50.0], 1)
 
 
-def test_a_board_is_told_from_another_by_its_number_and_settings(tmp_path: Path) -> None:
+def test_a_board_is_distinguished_from_another_by_its_number_and_settings(tmp_path: Path) -> None:
     with LinkedDevice(LibraryBoard(), SimulatedPerson()) as board:
         receipt = probe(board, MODEL, SURFACE, [50.0], 1, session=Session(tmp_path / "s")).receipt
         assert receipt.device["settings"].items() <= vars(board.settings()).items()
@@ -449,7 +449,7 @@ def test_a_recording_gives_what_the_device_gave_but_does_not_go_on(tmp_path: Pat
         session.open_device(f"replay:{path}")
 
 
-def test_settings_that_hold_arrays_are_told_apart_by_their_numbers() -> None:
+def test_settings_that_hold_arrays_are_distinguished_by_their_numbers() -> None:
     table = np.zeros(2000)
     other = table.copy()
     other[1000] = 1.0

@@ -119,13 +119,13 @@ def test_wherever_the_file_is_cut_the_whole_records_before_are_there(tmp_path: P
     assert len(PressLog.read(path)[1]) == max(0, whole - 1) + 1
 
 
-def test_a_record_cut_short_is_told_of_once(tmp_path: Path) -> None:
+def test_a_record_cut_short_is_reported_once(tmp_path: Path) -> None:
     filled(tmp_path).close()
     path = tmp_path / PRESSES
     path.write_bytes(path.read_bytes()[:-5])
     log = PressLog(tmp_path)
-    told = "the last record is not whole and is left out; presses kept: 2"
-    assert log.warnings == [f"{path}: {told}"]
+    warning = "the last record is not whole and is left out; presses kept: 2"
+    assert log.warnings == [f"{path}: {warning}"]
     log.close()
     log = PressLog(tmp_path)
     assert log.warnings == []

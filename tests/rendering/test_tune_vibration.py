@@ -95,25 +95,25 @@ def test_the_best_of_each_velocity_is_in_the_model_which_tells_how_it_came_about
     assert [v for v in result.model.vibrations if v.stroke is Stroke.RELEASE] == [
         v for v in MODEL.vibrations if v.stroke is Stroke.RELEASE
     ]
-    told = result.model.provenance.method
-    assert "tuned by a person with comparing in pairs in" in told
-    assert "At 50 mm/s template 2 of 3 was best" in told
+    method = result.model.provenance.method
+    assert "tuned by a person with comparing in pairs in" in method
+    assert "At 50 mm/s template 2 of 3 was best" in method
     save_model(result.model, tmp_path / "tuned.fdvv.json")
     assert load_model(tmp_path / "tuned.fdvv.json") == result.model
 
 
-def test_every_answer_is_told_with_what_all_so_far_say_once_it_is_on_file(tmp_path: Path) -> None:
-    told: list[tuple[int, int, int]] = []
+def test_every_answer_is_reported_with_the_estimate_so_far_once_it_is_on_file(tmp_path: Path) -> None:
+    counts: list[tuple[int, int, int]] = []
 
     def look(now: AnswerEvent) -> None:
         on_file = len((tmp_path / ANSWERS).read_text().splitlines()) - 1
-        told.append((now.given.number, on_file, sum(t.standing.answers for t in now.tuned)))
+        counts.append((now.given.number, on_file, sum(t.standing.answers for t in now.tuned)))
 
     result = tune(Hand(), prefers(2, 1, 0), tmp_path, answered=look)
-    assert told == [(n, n, n) for n in range(1, result.answers + 1)]
+    assert counts == [(n, n, n) for n in range(1, result.answers + 1)]
 
 
-def test_where_nothing_can_be_told_apart_the_measured_vibration_is_kept_and_that_is_said() -> None:
+def test_where_nothing_can_be_distinguished_the_measured_vibration_is_kept_and_that_is_said() -> None:
     result = tune(Hand(), lambda _: Preferred.NEITHER)
     assert [t.standing.best for t in result.tuned] == [0, 0]
     assert (
@@ -128,9 +128,9 @@ def test_every_press_follows_an_upload_so_that_no_pause_gives_a_template_away() 
 
 
 def test_a_person_may_press_again_before_answering() -> None:
-    told = iter([None, Preferred.FIRST, *[Preferred.NEITHER] * 20])
+    answers = iter([None, Preferred.FIRST, *[Preferred.NEITHER] * 20])
     device = Hand()
-    result = tune(device, lambda _: next(told))
+    result = tune(device, lambda _: next(answers))
     assert device.presses == 2 * (result.answers + 1)
 
 

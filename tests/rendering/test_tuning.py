@@ -35,31 +35,31 @@ OTHER = ForceSurface.of_model(MODEL, [60.0, 100.0])
 TUNING = Tuning(100.0, 3e-3, 2e-3, 3.0, 5.0, 20.0, paced=True)
 
 
-class Told(ScriptedDevice):
-    """Keeps what it was told, in order."""
+class RecordingDevice(ScriptedDevice):
+    """Records settings and uploads, in order."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
-        self.told: list[Any] = []
+        self.received: list[Any] = []
 
     def configure(self, settings: Settings) -> None:
         super().configure(settings)
-        self.told.append(settings.predictor_q16)
+        self.received.append(settings.predictor_q16)
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         super().upload(surface, travel_mm, paced)
-        self.told.append((surface, paced))
+        self.received.append((surface, paced))
 
 
 def test_a_tuning_becomes_whole_numbers_at_the_tick_of_the_settings() -> None:
-    told = settings_with(Settings(tick_us=500), TUNING)
-    assert told.predictor_q16 / 2**16 == pytest.approx(1 - np.exp(-2 * np.pi * 100 * 500e-6), abs=1e-5)
-    assert (told.lead_us, told.brake_lead_us) == (3000, 2000)
-    assert (told.friction_cN64, told.friction_mm_s16) == (320, 320)
+    settings = settings_with(Settings(tick_us=500), TUNING)
+    assert settings.predictor_q16 / 2**16 == pytest.approx(1 - np.exp(-2 * np.pi * 100 * 500e-6), abs=1e-5)
+    assert (settings.lead_us, settings.brake_lead_us) == (3000, 2000)
+    assert (settings.friction_cN64, settings.friction_mm_s16) == (320, 320)
     # 3 N s/m are 0.3 cN per mm/s
-    assert told.drag_q13 / 2**13 * 16 / 64 == pytest.approx(0.3, rel=1e-3)
+    assert settings.drag_q13 / 2**13 * 16 / 64 == pytest.approx(0.3, rel=1e-3)
     tuned = {"predictor_q16", "lead_us", "brake_lead_us", "drag_q13", "friction_cN64", "friction_mm_s16"}
-    changed = {name for name, value in vars(told).items() if value != vars(Settings(tick_us=500))[name]}
+    changed = {name for name, value in vars(settings).items() if value != vars(Settings(tick_us=500))[name]}
     assert changed == tuned
 
 
@@ -84,7 +84,7 @@ def test_a_tuning_that_no_device_holds_is_refused_by_name(change: dict[str, Any]
 
 
 def test_only_what_differs_is_put_on_a_device_and_settings_come_before_tables() -> None:
-    device, plain, tuned = Told(), Trial(SURFACE, 50.0), Trial(SURFACE, 50.0, TUNING)
+    device, plain, tuned = RecordingDevice(), Trial(SURFACE, 50.0), Trial(SURFACE, 50.0, TUNING)
     steps = [
         (plain, [(SURFACE, False)]),  # a device that does nothing by itself is not configured to do so
         (Trial(SURFACE, 100.0), []),
@@ -95,14 +95,14 @@ def test_only_what_differs_is_put_on_a_device_and_settings_come_before_tables() 
     ]
     before = None
     for trial, wanted in steps:
-        device.told.clear()
+        device.received.clear()
         prepare(device, trial, 4.0, before)
-        assert device.told == wanted
+        assert device.received == wanted
         before = trial
 
 
 def test_a_device_left_tuned_is_turned_off_for_whoever_does_not_ask_for_it() -> None:
-    device = Told()
+    device = RecordingDevice()
     probe(device, MODEL, SURFACE, [50.0], 1, tuning=TUNING)
     assert device.settings().predictor_q16 > 0
     probe(device, MODEL, SURFACE, [50.0], 1)
@@ -110,15 +110,15 @@ def test_a_device_left_tuned_is_turned_off_for_whoever_does_not_ask_for_it() -> 
 
 
 def test_a_probe_is_made_under_its_tuning_and_the_log_tells_which(tmp_path: Path) -> None:
-    probe(Told(), MODEL, SURFACE, [50.0], 2, session=Session(tmp_path / "t"), tuning=TUNING)
-    probe(Told(), MODEL, SURFACE, [50.0], 2, session=Session(tmp_path / "n"))
+    probe(RecordingDevice(), MODEL, SURFACE, [50.0], 2, session=Session(tmp_path / "t"), tuning=TUNING)
+    probe(RecordingDevice(), MODEL, SURFACE, [50.0], 2, session=Session(tmp_path / "n"))
     for name, wanted in (("t", TUNING), ("n", Tuning())):
         log = PressLog(tmp_path / name)
         assert [kept.tuning for kept in log.kept()] == [wanted, wanted]
         log.close()
     assert "tuning" not in (tmp_path / "n" / PRESSES).read_text()
     with pytest.raises(InputError, match="tuning"):
-        probe(Told(), MODEL, SURFACE, [50.0], 2, session=Session(tmp_path / "t"))
+        probe(RecordingDevice(), MODEL, SURFACE, [50.0], 2, session=Session(tmp_path / "t"))
 
 
 class Leaves(LinkedDevice):
@@ -145,7 +145,7 @@ def test_a_session_goes_on_with_the_board_that_it_configured(tmp_path: Path) -> 
 
 def probed_under(lead_s: float, folder: Path) -> Session:
     """Return a session of two presses whose file holds this lead."""
-    probe(Told(), MODEL, SURFACE, [50.0], 2, session=Session(folder), tuning=TUNING)
+    probe(RecordingDevice(), MODEL, SURFACE, [50.0], 2, session=Session(folder), tuning=TUNING)
     log = PressLog(folder)
     found = [replace(kept, tuning=replace(kept.tuning, lead_s=lead_s)) for kept in log.kept()]
     run = log.runs[0]
@@ -162,12 +162,12 @@ def probed_under(lead_s: float, folder: Path) -> Session:
 def test_presses_made_under_another_tuning_do_not_count(tmp_path: Path) -> None:
     session = probed_under(TUNING.lead_s * 1.001, tmp_path / "s")
     with pytest.raises(InputError, match="another table or tuning"):
-        probe(Told(), MODEL, SURFACE, [50.0], 2, session=session, tuning=TUNING)
+        probe(RecordingDevice(), MODEL, SURFACE, [50.0], 2, session=session, tuning=TUNING)
 
 
 def test_presses_of_a_processor_that_rounds_otherwise_count(tmp_path: Path) -> None:
     session = probed_under(TUNING.lead_s * (1 + 1e-14), tmp_path / "s")
-    assert probe(Told(), MODEL, SURFACE, [50.0], 2, session=session, tuning=TUNING).presses == 2
+    assert probe(RecordingDevice(), MODEL, SURFACE, [50.0], 2, session=session, tuning=TUNING).presses == 2
 
 
 @pytest.fixture(scope="module")

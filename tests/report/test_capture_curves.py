@@ -65,7 +65,7 @@ def test_registration_shows_all_samples_the_mean_its_band_and_the_papers_recipe(
     assert "n = 6 presses" in texts(ax.figure)
 
 
-def test_the_units_of_the_papers_recipe_are_told() -> None:
+def test_the_units_of_the_papers_recipe_are_named() -> None:
     figure = plot_registration(recorded().processed, "press", 150.0, AS_PRINTED)
     assert "σ 1.2 mm and 0.8 mm" in texts(figure).replace("\n", " ")
 

@@ -66,7 +66,7 @@ def test_the_clocks_figure_shows_the_bounds_of_every_edge() -> None:
     assert "contradicts" not in texts(figure)
 
 
-def test_edges_that_the_line_misses_are_told() -> None:
+def test_edges_that_the_line_misses_are_reported() -> None:
     clock = recorded().processed.clock
     wrong = replace(recorded().processed, clock=replace(clock, offset_s=clock.offset_s + 3e-3))
     assert "contradicts the line" in texts(plot_clocks(capture(), wrong))

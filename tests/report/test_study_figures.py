@@ -39,9 +39,9 @@ def test_levels_share_one_scale_that_begins_at_zero() -> None:
 
 def test_marks_and_means_are_written_above_the_bars() -> None:
     (ax,) = plot_score_bars([bars("easy", scores(), ("", "*", "***"))], "asynchrony (ms)")
-    told = [text.get_text() for text in ax.texts]
-    assert [text.partition("\n")[2] for text in told] == ["", "*", "***"]
-    assert told[0] == f"{scores()[:, 0].mean():.1f}"
+    labels = [text.get_text() for text in ax.texts]
+    assert [text.partition("\n")[2] for text in labels] == ["", "*", "***"]
+    assert labels[0] == f"{scores()[:, 0].mean():.1f}"
 
 
 def test_bars_of_other_counts_than_their_names_are_refused() -> None:

@@ -103,7 +103,7 @@ static int mutate(uint8_t *image, int size, uint32_t *state)
     }
     if (draw(state) % 16 == 0)
         size = 4 + (int)(draw(state) % (uint32_t)size) / 4 * 4;
-    if (draw(state) % 4 && size >= 32) { /* else the length is told as it was, and refused as such */
+    if (draw(state) % 4 && size >= 32) { /* else the length in the header stays as it was, and refused as such */
         image[12] = (uint8_t)size;
         image[13] = (uint8_t)(size >> 8);
     }

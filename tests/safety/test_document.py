@@ -20,7 +20,7 @@ def rows_below(heading: str) -> list[list[str]]:
     return [[cell.strip() for cell in line.split("|")] for line in lines[2:]]
 
 
-def test_the_modes_told_are_those_of_the_table() -> None:
+def test_the_documented_modes_are_those_of_the_table() -> None:
     table = re.findall(r"/\* (\w+) \*/ +\{(.*)\},", SOURCE)
     assert rows_below("Modes") == [[mode, *cells.lower().split(", ")] for mode, cells in _plain(table)]
     assert [mode for mode, _ in table] == [mode.name.lower() for mode in Mode]
@@ -35,7 +35,7 @@ def _documented(cell: str) -> str:
     return {"EXTERNAL": "elsewhere", "INACTIVE": "gone", "ANYTIME": "any"}.get(cell, cell.lower())
 
 
-def test_the_faults_told_are_those_of_the_table() -> None:
+def test_the_documented_faults_are_those_of_the_table() -> None:
     table = re.findall(r"X\((\w+), (\w+), (\w+), (\w+), (\w+),", SOURCE)
     numbers = {fault.name: str(fault.value) for fault in Fault}
     expected = [
@@ -46,6 +46,6 @@ def test_the_faults_told_are_those_of_the_table() -> None:
     assert [name for name, *_ in table] == [fault.name for fault in Fault if fault]
 
 
-def test_the_counts_told_are_those_of_the_tests() -> None:
+def test_the_documented_counts_are_those_of_the_tests() -> None:
     assert f"{len(mutants(SOURCE)) - len(EQUIVALENT)} mutants" in TEXT
     assert f"{len(EQUIVALENT)} equivalent" in TEXT

@@ -259,7 +259,7 @@ def test_a_size_that_no_program_has_is_refused_before_a_byte_is_read(size_bytes:
     assert checked == (LAYOUT, 12, 1)
 
 
-def test_a_step_looks_at_no_more_than_it_was_told_and_less_than_64_bytes_beyond() -> None:
+def test_a_step_checks_no_more_than_its_budget_and_less_than_64_bytes_beyond() -> None:
     image = random_parts(random.Random(7), dict.fromkeys(TABLES, 16)).image()
     looked = 2 * len(image)  # all but the wave's samples are read twice: summed, then checked
     for step_bytes in (1, 64, 256):

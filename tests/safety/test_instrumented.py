@@ -23,7 +23,7 @@ def asan_runtime() -> str:
 
 
 def build(folder: Path, *flags: str) -> Path:
-    """Compile each source by itself, so that counters are told by file, and link."""
+    """Compile each source by itself, so that counters are reported by file, and link."""
     objects = tuple(
         compile_c(folder / f"{name}.o", *flags, "-fPIC", "-c", sources=(CORE / f"{name}.c",))
         for name in (*MEASURED, "image")

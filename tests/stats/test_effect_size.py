@@ -53,7 +53,7 @@ def test_a_reduction_is_a_ratio_of_means() -> None:
     assert found.low < found.value < found.high
 
 
-def test_of_too_few_or_equal_people_no_interval_is_told() -> None:
+def test_of_too_few_or_equal_people_no_interval_is_reported() -> None:
     assert cohen_dz([1.0, 2.0, 3.0]).low is None
     assert cohen_dz([2.0] * 8).value == math.inf
     assert cohen_dz([0.0] * 8).value == 0.0

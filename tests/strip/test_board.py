@@ -51,8 +51,8 @@ class Lossy(LibraryStrip):
             super().write(data)
 
     def read(self, until_s: float) -> bytes:
-        told = super().read(until_s)
-        return b"" if told and self.count % 4 == 1 else told
+        data = super().read(until_s)
+        return b"" if data and self.count % 4 == 1 else data
 
 
 class Newer(Silent):
@@ -98,7 +98,7 @@ def test_a_silent_line_is_one_clear_line_and_closed() -> None:
     assert line.t_s == pytest.approx(3.0, abs=0.01)
 
 
-def test_something_else_at_the_port_is_told_from_silence() -> None:
+def test_something_else_at_the_port_is_distinguished_from_silence() -> None:
     with pytest.raises(DeviceError, match="what answers there is no LED strip's board"):
         LedPointingTask(Silent(b"FD 1000 5 6\r\n"))
 

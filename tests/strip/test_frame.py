@@ -180,10 +180,10 @@ def test_a_round_is_taken_exactly_if_every_number_is_in_range_and_the_zone_on_th
     board = Board()
     board.ask(encode(HELLO))
     (frame,) = FrameDecoder().feed(board.ask(encode(Frame(StripMessage.BEGIN, 2, payload))))
-    (told,) = FrameDecoder().feed(board.ask(encode(READ)))
+    (reply,) = FrameDecoder().feed(board.ask(encode(READ)))
     board.close()
     assert (frame.message == StripMessage.BEGIN + REPLY) == (in_range and on_strip)
-    mode = StripReadRoundReply.unpack(told.payload).mode
+    mode = StripReadRoundReply.unpack(reply.payload).mode
     assert mode == (StripMode.WAITING if in_range and on_strip else StripMode.IDLE)
 
 

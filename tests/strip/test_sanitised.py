@@ -45,12 +45,12 @@ int main(void) {
             if (noise() & 1) fdvv_strip_edge(&strip, now - noise());
             fdvv_strip_tick(&strip, now);
             if (fdvv_strip_frame(&strip, now)) {
-                const fdvv_strip_picture *told = &strip.picture;
-                if (told->pixels > FDVV_STRIP_MOST_PIXELS || told->last < told->first) abort();
-                if (told->bullet != FDVV_STRIP_NOWHERE && told->bullet >= told->pixels) abort();
-                if (told->last - told->first >= FDVV_STRIP_LIT_PIXELS) abort();
-                if (told->first != FDVV_STRIP_NOWHERE && told->last >= FDVV_STRIP_MOST_PIXELS) abort();
-                shown += told->bullet != FDVV_STRIP_NOWHERE;
+                const fdvv_strip_picture *picture = &strip.picture;
+                if (picture->pixels > FDVV_STRIP_MOST_PIXELS || picture->last < picture->first) abort();
+                if (picture->bullet != FDVV_STRIP_NOWHERE && picture->bullet >= picture->pixels) abort();
+                if (picture->last - picture->first >= FDVV_STRIP_LIT_PIXELS) abort();
+                if (picture->first != FDVV_STRIP_NOWHERE && picture->last >= FDVV_STRIP_MOST_PIXELS) abort();
+                shown += picture->bullet != FDVV_STRIP_NOWHERE;
                 fdvv_strip_sent(&strip);
             }
         }

@@ -45,7 +45,7 @@ class RunningStudio:
         self.token = self.address.partition("token=")[2]
 
     def stop(self, how: int = signal.SIGINT) -> str:
-        """End it, as Ctrl-C does unless told otherwise; give what it said on standard error."""
+        """End it, by default as Ctrl-C does; return its standard error."""
         if self.process.poll() is None:
             self.process.send_signal(how)
             self.process.wait(15)

@@ -49,8 +49,8 @@ class Taker:
 
     Parameters
     ----------
-    address : that the studio told, token included.
-    tell : is told in words what the studio acknowledged, and before what is asked for.
+    address : that the studio printed, token included.
+    tell : is called with words for what the studio acknowledged, and before what is asked for.
     text : of the plan of every study.
     """
 
@@ -166,7 +166,7 @@ def hatch(kind: str) -> None:
             running.discard(int(words[1]))
             _say(str(_ended(int(words[1]))))
             continue
-        # a person is killed at a moment that is told first; a studio by who asked for it
+        # a person is killed at a moment that is reported first; a studio by who asked for it
         moment, words = ([], words) if kind == "studio" else (words[:2], words[2:])
         output, into = os.pipe()
         child = os.fork()
@@ -216,7 +216,7 @@ LIVES: dict[str, Callable[..., None]] = {"studio": serve_life, "person": take_li
 
 
 def _witnessed(child: int, stream: TextIOBase, after: int, after_s: float) -> str:
-    """Kill a process so long after it told so many things; give all of them."""
+    """Kill a process ``after_s`` after its line number ``after``; return all of its lines."""
     said = "".join(stream.readline() for _ in range(after))
     time.sleep(after_s)
     os.kill(child, signal.SIGKILL)
@@ -225,7 +225,7 @@ def _witnessed(child: int, stream: TextIOBase, after: int, after_s: float) -> st
 
 
 class Killer:
-    """Kills a process so long after so many things were told."""
+    """Kills a process ``after_s`` after ``after`` things were reported."""
 
     def __init__(self, process: int, after: int, after_s: float) -> None:
         self._process, self._left, self._after_s = process, after, after_s
@@ -235,8 +235,8 @@ class Killer:
         if after == 0:
             self._now.set()
 
-    def told(self) -> None:
-        """Count a thing that was told."""
+    def count(self) -> None:
+        """Count a thing that was reported."""
         self._left -= 1
         if self._left == 0:
             self._now.set()

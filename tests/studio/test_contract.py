@@ -1,4 +1,4 @@
-"""How errors are told on the page."""
+"""How errors are shown on the page."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from fdvv.errors import DeviceError, InputError
 from fdvv.studio.contract import Watchers, error_line
 
 
-def test_no_path_of_the_machine_is_told(tmp_path: Path) -> None:
+def test_no_path_of_the_machine_is_shown(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError) as missing:
         (tmp_path / "none" / "kept.json").read_text()
     assert error_line(missing.value) == "kept.json: No such file or directory"
@@ -20,13 +20,13 @@ def test_no_path_of_the_machine_is_told(tmp_path: Path) -> None:
     )
 
 
-def test_what_has_no_file_or_no_number_is_told_as_it_is() -> None:
+def test_an_error_without_file_or_number_is_shown_unchanged() -> None:
     assert error_line(OSError(28, "No space left on device")) == "No space left on device"
     assert error_line(OSError("broken")) == "broken"
     assert error_line(DeviceError("gone")) == "gone"
 
 
-def test_all_that_watch_are_told_in_order_and_once() -> None:
+def test_all_subscribers_are_called_in_order_and_once() -> None:
     watchers, heard = Watchers[int](), list[tuple[str, int]]()
 
     def first(news: int) -> None:
@@ -44,7 +44,7 @@ def test_all_that_watch_are_told_in_order_and_once() -> None:
     assert heard == [("first", 1), ("second", 1), ("second", 2)]
 
 
-def test_one_that_is_told_may_stop_listening_at_once() -> None:
+def test_a_subscriber_may_unsubscribe_when_called() -> None:
     watchers, heard = Watchers[int](), list[int]()
 
     def once(news: int) -> None:

@@ -22,21 +22,21 @@ CLEAR = DeviceUpload("builtin:mx-clear")
 
 
 class Page:
-    """A page that looks on, and waits for what it is told."""
+    """A page that subscribes to telemetry, and waits for messages."""
 
     def __init__(self, studio: Studio) -> None:
-        self.told: list[Any] = []
+        self.received: list[Any] = []
         self._news = threading.Condition()
         self.channel = part.ScopeChannel(studio, self._tell)
         self.channel.receive(WatchScope(0.01))
 
     def _tell(self, message: Any) -> None:
         with self._news:
-            self.told.append(message)
+            self.received.append(message)
             self._news.notify_all()
 
     def of(self, kind: type[Any]) -> list[Any]:
-        return [message for message in self.told if isinstance(message, kind)]
+        return [message for message in self.received if isinstance(message, kind)]
 
     def wait(self, kind: type[Any], wanted: Any = lambda _message: True) -> Any:
         with self._news:
@@ -64,11 +64,11 @@ def test_the_scope_shows_a_press_on_the_firmware(studio: Studio, page: Page) -> 
     page.wait(ScopeFrame)
     assert part.upload.function(studio, CLEAR).programmed == "mx-clear"
     part.press.function(studio, DevicePress(100.0))
-    deep = page.wait(ScopeFrame, lambda told: max(told.displacement_high_mm) > 3.5)
+    deep = page.wait(ScopeFrame, lambda frame: max(frame.displacement_high_mm) > 3.5)
     assert deep.bin_s == 0.01
-    assert max(max(told.commanded_high_cN) for told in page.of(ScopeFrame)) > 20
+    assert max(max(frame.commanded_high_cN) for frame in page.of(ScopeFrame)) > 20
     # the default rig has no force sensor
-    assert {force for told in page.of(ScopeFrame) for force in told.force_high_cN} == {None}
+    assert {force for frame in page.of(ScopeFrame) for force in frame.force_high_cN} == {None}
     seen = page.wait(PressSeen)
     assert seen.simulated
     assert max(force for force in seen.felt_press_cN if force is not None) > 20
@@ -79,13 +79,13 @@ def test_a_device_falls_to_zero_force_when_nobody_looks_on(studio: Studio, page:
     part.connect.function(studio, DeviceConnect("host"))
     part.upload.function(studio, CLEAR)
     assert part.arm.function(studio, Empty()).fault == ""
-    page.wait(DeviceStatus, lambda told: told.mode == "armed")
+    page.wait(DeviceStatus, lambda status: status.mode == "armed")
     other = Page(studio)
     other.channel.close()
     assert part.status.function(studio, Empty()).mode == "armed"
     page.channel.close()
     again = Page(studio)
-    again.wait(DeviceStatus, lambda told: told.mode == "idle")
+    again.wait(DeviceStatus, lambda status: status.mode == "idle")
     again.channel.close()
 
 
@@ -93,9 +93,9 @@ def test_the_twin_shows_presses_without_firmware(studio: Studio, page: Page) -> 
     assert not part.connect.function(studio, DeviceConnect("twin")).streams
     part.upload.function(studio, CLEAR)
     part.press.function(studio, DevicePress(100.0))
-    told = page.wait(ScopeFrame)
-    assert max(told.displacement_high_mm) > 3.5
-    assert None not in told.force_high_cN
+    frame = page.wait(ScopeFrame)
+    assert max(frame.displacement_high_mm) > 3.5
+    assert None not in frame.force_high_cN
     assert part.selftest.function(studio, Empty()).note
     with pytest.raises(DeviceError, match="no firmware"):
         part.arm.function(studio, Empty())
@@ -120,11 +120,11 @@ def test_a_device_in_view_is_not_used_by_a_job_nor_the_other_way_round(studio: S
 
 
 @pytest.mark.parametrize(
-    ("ask", "told"),
+    ("ask", "message"),
     [(DeviceConnect("serial:/dev/none"), "there is no"), (DeviceConnect("twin", "../paper"), "rig")],
 )
-def test_only_what_is_listed_is_connected(studio: Studio, ask: DeviceConnect, told: str) -> None:
-    with pytest.raises(InputError, match=told):
+def test_only_what_is_listed_is_connected(studio: Studio, ask: DeviceConnect, message: str) -> None:
+    with pytest.raises(InputError, match=message):
         part.connect.function(studio, ask)
 
 

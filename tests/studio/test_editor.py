@@ -62,12 +62,12 @@ def test_speeds_that_no_finger_has_are_refused(client: TestClient) -> None:
 
 
 def test_a_button_of_the_shelf_is_given_as_in_its_file(client: TestClient) -> None:
-    told = asked(client, "button", {"button_id": "builtin:mx-clear"})["model"]
-    assert model_from_json(json.dumps(told), "told") == load_builtin("mx-clear")
+    document = asked(client, "button", {"button_id": "builtin:mx-clear"})["model"]
+    assert model_from_json(json.dumps(document), "model") == load_builtin("mx-clear")
     assert "no button is called" in asked(client, "button", {"button_id": "own:none"}, 422)["error"]
 
 
-def test_what_was_measured_is_told_once_there_is_a_file(client: TestClient, own_studio: Studio) -> None:
+def test_measured_presses_are_listed_once_there_is_a_file(client: TestClient, own_studio: Studio) -> None:
     assert asked(client, "measured", {"name": "mine"}) == {"found": None}
     device, model = TwinDevice(seed=3), load_builtin("mx-clear")
     probed = probe(device, model, uncompensated(device, model, [50.0]), [50.0], presses=2)

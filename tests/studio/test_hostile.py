@@ -95,8 +95,8 @@ def test_the_live_connection_cuts_off_who_sends_nonsense(
             try:
                 line.send(draw.choice((_nonsense(draw), draw.randbytes(draw.randrange(2000)))))
                 while True:
-                    told = json.loads(line.recv(5))
-                    assert "error" in told
+                    reply = json.loads(line.recv(5))
+                    assert "error" in reply
             except ConnectionClosed:
                 cut += 1
     assert cut == 100

@@ -50,9 +50,11 @@ WRONG: list[tuple[Order, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("order", "told"), WRONG, ids=lambda value: str(value)[:60])
-def test_an_order_that_cannot_be_done_is_refused_in_one_line(order: Order, told: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=told) as refused:
+@pytest.mark.parametrize(("order", "message"), WRONG, ids=lambda value: str(value)[:60])
+def test_an_order_that_cannot_be_done_is_refused_in_one_line(
+    order: Order, message: str, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=message) as refused:
         checked(order, tmp_path)
     assert "\n" not in str(refused.value)
     assert list(tmp_path.iterdir()) == []

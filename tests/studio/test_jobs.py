@@ -1,4 +1,4 @@
-"""Long work as a process of its own: told, stopped, gone on with, answered, one device at a time."""
+"""Long work as a process of its own: events, stop, resume, answers, one device at a time."""
 
 from __future__ import annotations
 
@@ -46,30 +46,30 @@ def begin(jobs: Jobs, order: CompensateOrder) -> Follower:
 
 
 def test_work_tells_every_press_and_leaves_its_results_in_the_project(studio: Studio, jobs: Jobs) -> None:
-    told = begin(jobs, learning())
-    row = told.over()
+    follower = begin(jobs, learning())
+    row = follower.over()
     assert (row.state, row.line, row.simulated) == ("done", "", True)
-    presses = [event for event in told.events if isinstance(event, PressEvent)]
+    presses = [event for event in follower.events if isinstance(event, PressEvent)]
     assert [p.stage for p in presses] == ["compensate"] * (len(presses) - 1) + ["probe"]
     assert [(p.done, p.total) for p in presses[:-1]] == [
         (i + 1, len(presses) - 1) for i in range(len(presses) - 1)
     ]
-    assert told.numbers == list(range(row.events))
+    assert follower.numbers == list(range(row.events))
     assert set(row.results) == {
         JobResult("actuation", "clear"),
         JobResult("measured", "clear"),
         JobResult("rig", "twin-default"),
     }
     learned = load_actuation(studio.project / "actuations" / "clear.actuation.json")
-    outcome = next(e for e in told.events if isinstance(e, JobOutcome) and e.stage == "compensate")
+    outcome = next(e for e in follower.events if isinstance(e, JobOutcome) and e.stage == "compensate")
     kept = [round(error, 3) for error in learned.outcome.curves[0].error_cN]
     assert kept == list(outcome.curves[0].error_cN)
     # a page that comes back, to this studio or to the next one, gets the events from its number on
-    assert Follower(jobs, "0001", 3).events == told.events[3:]
+    assert Follower(jobs, "0001", 3).events == follower.events[3:]
     studio.close()
     again = Studio(studio.project)
     late = Follower(again.part(Jobs), "0001", 3)
-    assert (late.numbers[0], late.events) == (3, told.events[3:])
+    assert (late.numbers[0], late.events) == (3, follower.events[3:])
     again.close()
 
 
@@ -83,24 +83,24 @@ def _in_the_background() -> Iterator[None]:
 
 @pytest.mark.usefixtures("_in_the_background")
 def test_work_that_is_stopped_goes_on_where_it_stopped(jobs: Jobs) -> None:
-    told = begin(jobs, long_learning())
-    told.wait(pressed)
+    follower = begin(jobs, long_learning())
+    follower.wait(pressed)
     with pytest.raises(InputError, match="twin is used by job 1, Compensate mx-clear on twin"):
         jobs.start(tuning(), DEVICES)
     assert [row.job for row in jobs.rows()] == ["0001"]
     asked_s = time.monotonic()
     jobs.cancel("0001")
-    row = told.over()
+    row = follower.over()
     # by itself, not by force
     assert time.monotonic() - asked_s < LETTING_GO_s
     assert (row.state, row.resumable) == ("cancelled", True)
     made = row.done
     assert 0 < made < PRESSES
     jobs.resume("0001")
-    row = told.over()
+    row = follower.over()
     assert (row.state, row.done) == ("done", PRESSES)
-    used = [event.done for event in told.events if isinstance(event, PressEvent) and not event.skipped]
-    # no press is made twice; one that was on file when it stopped may not have been told
+    used = [event.done for event in follower.events if isinstance(event, PressEvent) and not event.skipped]
+    # no press is made twice; one that was on file when it stopped may not have been reported
     assert used == sorted(set(used))
     assert set(range(1, PRESSES + 1)) - set(used) <= {made + 1}
 
@@ -109,13 +109,13 @@ def test_work_that_is_stopped_goes_on_where_it_stopped(jobs: Jobs) -> None:
 def test_work_stops_by_itself_where_no_process_can_be_sent_ctrl_c(
     jobs: Jobs, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    told = begin(jobs, long_learning())
-    told.wait(pressed)
+    follower = begin(jobs, long_learning())
+    follower.wait(pressed)
     asked_s = time.monotonic()
     with monkeypatch.context() as windows:
         windows.setattr("sys.platform", "win32")
         jobs.cancel("0001")
-    row = told.over()
+    row = follower.over()
     assert time.monotonic() - asked_s < LETTING_GO_s
     assert (row.state, row.resumable) == ("cancelled", True)
     assert 0 < row.done < PRESSES
@@ -134,9 +134,9 @@ def test_work_that_fails_says_why_and_a_damaged_job_hinders_no_other(tmp_path: P
 
 
 def test_questions_are_answered_once_each_and_the_best_becomes_a_button(studio: Studio, jobs: Jobs) -> None:
-    told = Follower(jobs, jobs.start(tuning(), DEVICES).job)
+    follower = Follower(jobs, jobs.start(tuning(), DEVICES).job)
     for number in (1, 2):
-        question = told.wait(lambda e, n=number: isinstance(e, QuestionAsked) and e.number == n)  # type: ignore[misc]
+        question = follower.wait(lambda e, n=number: isinstance(e, QuestionAsked) and e.number == n)  # type: ignore[misc]
         assert jobs.job("0001").row.state == "needs you"
         with pytest.raises(InputError, match="does not wait"):
             jobs.answer("0001", number + 1, "first")
@@ -145,25 +145,25 @@ def test_questions_are_answered_once_each_and_the_best_becomes_a_button(studio: 
         jobs.answer("0001", number, "first")
         assert isinstance(question, QuestionAsked)
         assert len(question.waves) == 2
-    row = told.over()
+    row = follower.over()
     assert (row.state, row.results) == ("done", (JobResult("button", "clear tuned"),))
-    assert [e.answer for e in told.events if isinstance(e, QuestionAnswered)] == ["first", "first"]
+    assert [e.answer for e in follower.events if isinstance(e, QuestionAnswered)] == ["first", "first"]
     assert studio.catalog.model("own:clear tuned").vibrations
 
 
 @pytest.mark.slow
-def test_a_process_that_is_killed_costs_nothing_that_was_told(jobs: Jobs) -> None:
-    told = begin(jobs, long_learning())
-    told.wait(pressed)
+def test_a_process_that_is_killed_loses_nothing_that_was_reported(jobs: Jobs) -> None:
+    follower = begin(jobs, long_learning())
+    follower.wait(pressed)
     start = jobs.job("0001").start
     assert start
     os.kill(start.pid, signal.SIGKILL)
-    row = told.over()
+    row = follower.over()
     assert (row.state, row.resumable) == ("failed", True)
     assert "status -9" in row.line
     made = row.done
     jobs.resume("0001")
-    row = told.over()
+    row = follower.over()
     assert (row.state, row.done) == ("done", PRESSES)
     assert made > 0
 
@@ -175,8 +175,8 @@ from fdvv.studio.studio import Studio
 from fdvv.studio.jobs.jobs import Jobs
 from tests.studio.jobs import DEVICES, PATIENCE_s, PRESSES, Follower, learning, long_learning, tuning
 jobs = Studio(Path(sys.argv[1])).part(Jobs)
-told = Follower(jobs, jobs.start(long_learning(), DEVICES).job)
-told.wait(lambda event: type(event).__name__ == "PressEvent")
+follower = Follower(jobs, jobs.start(long_learning(), DEVICES).job)
+follower.wait(lambda event: type(event).__name__ == "PressEvent")
 print(jobs.job("0001").start.pid, flush=True)
 time.sleep(60)
 """
@@ -201,8 +201,8 @@ def test_work_of_a_studio_that_was_killed_is_found_and_gone_on_with(tmp_path: Pa
     jobs = studio.part(Jobs)
     row = jobs.job("0001").row
     assert (row.state, row.line, row.resumable) == ("cancelled", BROKEN_OFF, True)
-    told = Follower(jobs, jobs.resume("0001").job)
-    assert (told.over().state, told.over().done) == ("done", PRESSES)
+    follower = Follower(jobs, jobs.resume("0001").job)
+    assert (follower.over().state, follower.over().done) == ("done", PRESSES)
     studio.close()
 
 

@@ -119,7 +119,7 @@ def test_curves_come_with_all_that_is_known_and_a_stale_id_keeps_no_other_back(c
     assert "reset: " not in " ".join(found["buttons"][1]["why"])
 
 
-def test_refusals_are_told_without_a_path_of_the_machine(client: TestClient, bench: Path) -> None:
+def test_refusals_are_shown_without_a_path_of_the_machine(client: TestClient, bench: Path) -> None:
     (file,) = ask(client, "refused")["files"]
     assert file["place"].endswith("bad.csv")
     assert str(bench.parent) not in file["place"] + file["reason"]
@@ -146,16 +146,16 @@ def test_wrong_questions_are_refused_in_one_line(
     assert "\n" not in answer.json()["error"]
 
 
-def test_a_rescan_finds_what_came_and_went_and_the_page_is_told(client: TestClient, bench: Path) -> None:
+def test_a_rescan_finds_what_came_and_went_and_notifies_the_page(client: TestClient, bench: Path) -> None:
     with client.websocket_connect(LIVE, headers={"origin": ORIGIN}) as live:
         live.send_json({"channel": "library", "body": {"type": "watch"}})
         before = live.receive_json()["body"]
 
         def rescanned(rows: int) -> Any:
             ask(client, "rescan")
-            while (told := live.receive_json()["body"])["rows"] != rows or not told["ended"]:
+            while (state := live.receive_json()["body"])["rows"] != rows or not state["ended"]:
                 pass
-            return told
+            return state
 
         write_cycle(bench / "Later.csv")
         assert rescanned(before["rows"] + 1)["epoch"] > before["epoch"]

@@ -104,7 +104,7 @@ def test_a_persons_mistake_is_one_line_and_the_channel_goes_on(client: TestClien
         "[" * 10_000,
     ],
 )
-def test_a_message_that_is_none_is_told_and_ends_the_connection(client: TestClient, text: str) -> None:
+def test_an_invalid_message_is_reported_and_ends_the_connection(client: TestClient, text: str) -> None:
     with client.websocket_connect(LIVE) as live:
         live.send_text(text)
         assert "error" in live.receive_json()

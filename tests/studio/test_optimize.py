@@ -67,7 +67,7 @@ class Player:
         return 1e3 * time.monotonic() + AHEAD_ms
 
     def round(self, number: int, press: bool = True) -> dict[str, Any]:
-        """Press once, 100 ms before the target is drawn; give what is told of it."""
+        """Press once, 100 ms before the target is drawn; return the messages about it."""
         start_ms = at_ms = self.now_ms() - self.late_ms
         if press:
             self.say("down", at_ms=at_ms)
@@ -78,7 +78,7 @@ class Player:
         return self.hear("kept")
 
     def beside(self, number: int, rig: KeyedRig) -> tuple[dict[str, Any], float]:
-        """Wait for a press on the table; give what is told of it, and how late it was by the rig."""
+        """Wait for a press on the table; return the message about it, and how late it was by the rig."""
         start_ms, before = self.now_ms(), len(rig.pressed_s)
         while len(rig.pressed_s) == before:
             time.sleep(0.01)
@@ -236,7 +236,7 @@ def table(monkeypatch: pytest.MonkeyPatch) -> Iterator[KeyedRig]:
     rig.end()
 
 
-def test_a_press_on_a_device_is_told_by_its_own_clock(
+def test_a_press_on_a_device_is_timed_by_its_own_clock(
     ask: Callable[..., Any], client: TestClient, own_studio: Studio, table: KeyedRig
 ) -> None:
     device = ask("devices")["devices"][0]["name"]
@@ -365,10 +365,10 @@ def test_a_run_begins_from_what_others_of_the_project_did(
     assert ask("offers")["others"] == []
     grid(own_studio.project / "others" / "quick", "easy")
     (own_studio.project / "others" / "unfinished").mkdir()
-    told = "5 designs scored by 2 simulated people, easy"
-    assert ask("offers")["others"] == [{"name": "quick", "told": told}]
+    summary = "5 designs scored by 2 simulated people, easy"
+    assert ask("offers")["others"] == [{"name": "quick", "told": summary}]
     run = ask("create", **{**CREATE, "engine": "gp", "start": None, "others": "quick"})["run"]
-    assert ask("detail", run=run)["others"] == told
+    assert ask("detail", run=run)["others"] == summary
     ask("next", run=run)
     (first,) = ask("detail", run=run)["trials"]
     prior = read_grid(own_studio.project / "others" / "quick").prior()
@@ -394,14 +394,14 @@ def test_a_run_begins_from_what_others_of_the_project_did(
         ("create", {**CREATE, "others": "easy", "space": "FDV"}, "scored designs of the space paper"),
     ],
 )
-def test_what_cannot_be_is_told_in_one_line(
+def test_impossible_requests_are_refused_in_one_line(
     client: TestClient, own_studio: Studio, name: str, question: dict[str, Any], said: str
 ) -> None:
     assert said in refusal(client, name, **question)
     assert not (own_studio.project / "optimize").exists()
 
 
-def test_a_damaged_run_is_told_in_the_list_and_hurts_no_other(
+def test_a_damaged_run_is_marked_in_the_list_and_hurts_no_other(
     ask: Callable[..., Any], own_studio: Studio
 ) -> None:
     first, second = ask("create", **CREATE)["run"], ask("create", **CREATE)["run"]

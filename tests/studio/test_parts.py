@@ -68,7 +68,7 @@ def test_a_call_is_there_as_soon_as_its_own_part_is() -> None:
 @pytest.mark.parametrize(
     ("names", "fault"), [(("first", "third"), ValueError), (("first", "not_there"), ModuleNotFoundError)]
 )
-def test_a_part_that_cannot_be_loaded_is_told_to_all_that_wait(
+def test_a_part_that_cannot_be_loaded_fails_for_all_that_wait(
     names: tuple[str, ...], fault: type[Exception]
 ) -> None:
     loader = PartLoader(names)

@@ -67,7 +67,7 @@ def test_what_can_be_pressed_is_listed_with_the_persons_own(client: TestClient, 
     assert len(found["traces"]) > 3
 
 
-def test_a_press_is_led_seen_and_told(start: Callable[..., None]) -> None:
+def test_a_press_is_led_seen_and_reported(start: Callable[..., None]) -> None:
     def work(page: Page, ready: dict[str, Any]) -> None:
         assert ready["name"] == "mx-clear"
         assert ready["states"] == ["up", "down"]
@@ -112,7 +112,7 @@ def _is(found: object, wanted: object) -> None:
         ({"model": {"format": "nonsense"}}, ""),
     ],
 )
-def test_what_cannot_be_pressed_is_told_in_one_line(
+def test_what_cannot_be_pressed_is_refused_in_one_line(
     start: Callable[..., None], what: dict[str, Any], said: str
 ) -> None:
     def work(_page: Page, answer: dict[str, Any]) -> None:
@@ -122,7 +122,7 @@ def test_what_cannot_be_pressed_is_told_in_one_line(
     start(work, **what)
 
 
-def test_a_fault_is_told_with_its_reason_and_cleared_from_the_page(start: Callable[..., None]) -> None:
+def test_a_fault_is_reported_with_its_reason_and_cleared_from_the_page(start: Callable[..., None]) -> None:
     def work(page: Page, _ready: dict[str, Any]) -> None:
         page.say("push", force_cN=80.0, sequence=1)
         page.say("fail")
@@ -148,7 +148,7 @@ def test_a_trace_of_the_page_is_replayed(client: TestClient, start: Callable[...
     start(work, program="shipped:button")
 
 
-def test_a_file_that_is_no_trace_is_told_in_one_line(client: TestClient) -> None:
+def test_a_file_that_is_no_trace_is_refused_in_one_line(client: TestClient) -> None:
     answer = client.post("/api/press.trace", json={"name": "no.csv", "text": "a,b\n1,2\n"})
     assert answer.status_code == 422
     assert "displacement_mm" in answer.json()["error"]

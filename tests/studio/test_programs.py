@@ -1,4 +1,4 @@
-"""What the page asks about programs, and what it is told when it asks for nonsense."""
+"""What the page asks about programs, and the errors it gets for invalid requests."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ def test_a_program_is_copied_changed_saved_and_found_again(client: TestClient, o
     kept = own_studio.project / "programs" / "mine.fdvv-program.json"
     assert kept.read_text() == saved["text"]
     assert program_from_json(saved["text"]).travel_mm == 2.5
-    told = ask(client, "save", 422, program="own:mine", text=copied["text"], revision=copied["revision"])
-    assert "changed elsewhere" in told["error"]
+    refusal = ask(client, "save", 422, program="own:mine", text=copied["text"], revision=copied["revision"])
+    assert "changed elsewhere" in refusal["error"]
 
 
 def test_a_deleted_program_comes_back(client: TestClient) -> None:
@@ -76,7 +76,7 @@ def test_a_buttons_forces_can_be_put_into_a_program(client: TestClient) -> None:
     assert program_from_json(json.dumps(document)).surfaces[0].force_cN[0][3] == surface["force_cN"][0][3]
 
 
-def test_a_planted_fault_is_told_with_its_place_and_remedy(client: TestClient) -> None:
+def test_a_planted_fault_is_reported_with_its_place_and_remedy(client: TestClient) -> None:
     document = json.loads(BUTTON)
     document["states"][1]["transitions"] = []
     check = ask(client, "check", text=json.dumps(document))

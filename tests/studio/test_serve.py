@@ -44,7 +44,7 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, timeout=30)
 
 
-def test_a_port_that_is_taken_is_told_in_one_line(tmp_path: Path) -> None:
+def test_a_port_that_is_taken_is_refused_in_one_line(tmp_path: Path) -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -65,7 +65,7 @@ def test_a_port_that_is_taken_is_told_in_one_line(tmp_path: Path) -> None:
         (["--port", "70000"], "65535"),
     ],
 )
-def test_what_it_cannot_do_is_told_in_one_line(arguments: list[str], word: str) -> None:
+def test_what_it_cannot_do_is_refused_in_one_line(arguments: list[str], word: str) -> None:
     ended = run(*arguments)
     assert ended.returncode == 2
     assert ended.stderr.count("\n") == 1

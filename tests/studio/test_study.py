@@ -1,4 +1,4 @@
-"""A participant's screen and the operator's, asked as their pages ask: who sits where, and what is told."""
+"""A participant's screen and the operator's, asked as their pages ask: who sits where, and what is sent."""
 
 from __future__ import annotations
 
@@ -57,12 +57,12 @@ class Screen:
         return self.step
 
     def feel(self, label: str) -> dict[str, Any]:
-        """Have a label under the hand; give what is told of it."""
+        """Have a label under the hand; return what is sent about it."""
         self.say("go", label=label)
         return self.hear("felt")
 
     def show(self) -> dict[str, Any]:
-        """Show the trial that the step tells; give what is told of it."""
+        """Show the trial that the step names; return what is sent about it."""
         self.say("shown", number=self.step["task"]["number"])
         return self.hear("ready")
 
@@ -118,7 +118,7 @@ def test_a_seat_is_taken_once_and_its_code_is_forgotten_when_the_person_goes_on(
     assert ask("detail")["waiting"] == 0
     with client.websocket_connect(LIVE) as socket:
         again, somebody = Screen(socket), secrets.token_hex(8)
-        # who else has the link can neither sit down nor be told who does
+        # who else has the link can neither join nor learn who does
         again.say("look", study=NAME, seat=seat, holder=somebody)
         assert not again.hear("about")["seat"]
         again.say("sit", study=NAME, seat=seat, holder=somebody, language="en")
@@ -153,7 +153,7 @@ def test_answers_lead_on_to_the_end_and_the_operator_sees_how_far(
     assert (where(ask)["state"], where(ask)["answered"], where(ask)["here"]) == ("done", 4, False)
 
 
-def test_what_is_not_asked_is_refused_and_a_page_left_behind_is_told_where_it_is(
+def test_an_answer_out_of_turn_is_refused_and_a_stale_page_gets_the_current_step(
     study: Study, ask: Callable[..., Any], client: TestClient
 ) -> None:
     with client.websocket_connect(LIVE) as socket:
@@ -209,11 +209,11 @@ def test_what_a_page_sent_before_it_went_away_takes_nobody_up_after_it_has_gone(
     study: Study, own_studio: Studio
 ) -> None:
     person, code = study.enrol()
-    told: list[Any] = []
-    screen = StudyScreen(own_studio, told.append)
+    sent: list[Any] = []
+    screen = StudyScreen(own_studio, sent.append)
     screen.close()
     screen.receive(StudyResume(NAME, person, code))
-    assert told == []
+    assert sent == []
     assert own_studio.part(Studies).screen(NAME, person) is None
 
 
@@ -269,8 +269,8 @@ def test_a_button_that_breaks_is_set_up_anew_and_the_trial_goes_on(
         with monkeypatch.context() as broken:
             broken.setattr(TwinRenderer, "show", fails)
             screen.say("go", label="A")
-            told = screen.hear("broke")
-        assert told == {"type": "broke"}
+            message = screen.hear("broke")
+        assert message == {"type": "broke"}
         screen.say("again")
         screen.step = screen.hear("step")
         assert screen.step["task"]["number"] == 0
@@ -323,26 +323,28 @@ def test_a_person_is_withdrawn_and_deleted_while_they_sit_there(
 def test_no_message_names_what_a_label_hides_and_the_operators_none_holds_a_code(
     study: Study, ask: Callable[..., Any], client: TestClient
 ) -> None:
-    """And of each button all that is told before it is pressed is the same, whichever label hides what."""
+    """And for each button all that is sent before it is pressed is the same, whichever label hides what."""
     with client.websocket_connect(LIVE) as socket:
         screen = Screen(socket)
         card = screen.sit(ask("seat")["seat"])
-        told: dict[str, set[str]] = {}
+        descriptions: dict[str, set[str]] = {}
         for _ in range(4):
             item = screen.step["task"]["item"]
             ready = {**screen.show(), "number": 0}
-            told.setdefault(item, set()).add(json.dumps([ready, *(screen.feel(label) for label in "XAB")]))
+            descriptions.setdefault(item, set()).add(
+                json.dumps([ready, *(screen.feel(label) for label in "XAB")])
+            )
             screen.answer()
     heard = json.dumps(screen.heard)
     assert {one["type"] for one in screen.heard} <= set(SAME)
     assert names_in(heard) == []
-    assert {len(kinds) for kinds in told.values()} == {1}
+    assert {len(kinds) for kinds in descriptions.values()} == {1}
     seen = json.dumps([ask("detail"), ask("verify"), client.post("/api/studies.list", json={}).json()])
     assert names_in(seen) == []
     assert card["code"] not in seen
 
 
-def test_nothing_is_told_of_the_results_before_the_seal_is_opened_on_record(
+def test_no_results_are_shown_before_the_seal_is_opened_on_record(
     study: Study, ask: Callable[..., Any], client: TestClient
 ) -> None:
     with client.websocket_connect(LIVE) as socket:
@@ -402,7 +404,7 @@ def test_a_study_is_declared_from_every_template_changed_and_checked(
         ("pause", {"study": "none", "person": None, "on": True}, "holds no study"),
     ],
 )
-def test_what_cannot_be_is_told_in_one_line_without_a_path(
+def test_impossible_requests_are_refused_in_one_line_without_a_path(
     client: TestClient, own_studio: Studio, name: str, question: dict[str, Any], said: str
 ) -> None:
     Study.declare_text(own_studio.project / "studies" / "draft", plan_text(), own_studio.project)
@@ -411,7 +413,7 @@ def test_what_cannot_be_is_told_in_one_line_without_a_path(
     assert str(own_studio.project) not in error
 
 
-def test_a_changed_study_is_told_in_the_list_and_hurts_no_other(
+def test_a_changed_study_is_marked_in_the_list_and_hurts_no_other(
     study: Study, client: TestClient, own_studio: Studio
 ) -> None:
     Study.declare_text(own_studio.project / "studies" / "other", plan_text(), own_studio.project)

@@ -17,7 +17,7 @@ from tests.support.study_witness import Witness, check_labels
 
 TEXT = plan_text(2, 2, reference=True, pages=True, switch_s=0.0, break_every_min=0.01, break_min=0.002)
 MOST_SAID = 40
-"""A studio or page is killed after so many things at most were asked or told: a trial takes a dozen."""
+"""A studio or page is killed after at most so many things were asked or reported: a trial takes a dozen."""
 
 
 @pytest.fixture
@@ -71,7 +71,7 @@ class Project:
         self.witness, self.fingerprint, self._lives = Witness(self.study), "", 0
 
     def hear(self, words: Words) -> None:
-        """Note what is told."""
+        """Note what is reported."""
         if words[0] == "does":
             self.doing = words[1]
         elif words[0] == "frozen":
@@ -85,7 +85,7 @@ class Project:
         self._lives += 1
 
     def check(self) -> None:
-        """Hold what was told against what is kept."""
+        """Compare what was reported with what is on disk."""
         if self.fingerprint:
             assert self.study.fingerprint == self.fingerprint
         if self.witness.person:
@@ -110,13 +110,13 @@ def moments(seed: int, kills: int) -> Iterator[tuple[int, float]]:
 
 
 def kill_studio(project: Project, studios: Hatchery, port: int, after: int, after_s: float) -> None:
-    """Run studies at a studio until it is killed, so long after so many things were told."""
+    """Run studies at a studio until it is killed, ``after_s`` after ``after`` things were reported."""
     pid, address = studios.ask(project.folder, port)
     killer = Killer(int(pid), after, after_s)
 
     def hear(words: Words) -> None:
         project.hear(words)
-        killer.told()
+        killer.count()
 
     taker = Taker(address, hear, TEXT)
     project.doing = "nothing"

@@ -1,4 +1,4 @@
-"""The work of jobs, done in this process: what is told and what is left, held against the workflow's own."""
+"""The work of jobs, done in this process: events and results, compared with the workflow's own."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ def work_of(order: Order, path: Path, tell: Any) -> Work:
     return Work(folder, 1, tell, lambda _number: "first")
 
 
-def test_what_was_measured_is_told_and_kept_as_the_editor_reads_it(tmp_path: Path) -> None:
-    told: list[JobEvent] = []
+def test_measured_presses_are_reported_and_stored_as_the_editor_reads_them(tmp_path: Path) -> None:
+    events: list[JobEvent] = []
     order = learning(probe_presses=2)
-    work = work_of(order, tmp_path / "job", told.append)
+    work = work_of(order, tmp_path / "job", events.append)
     assert ended(work).state == "done"
     publish(tmp_path, work.folder, order)
     found = measured_button(tmp_path, order.name)
@@ -37,13 +37,13 @@ def test_what_was_measured_is_told_and_kept_as_the_editor_reads_it(tmp_path: Pat
     assert (found.presses, found.simulated) == (2, True)
     measured = json.loads(work.folder.result("measured").read_text())
     assert (measured["button"], measured["simulated"], measured["presses"]) == ("builtin:mx-clear", True, 2)
-    outcome = next(e for e in told if isinstance(e, JobOutcome) and e.stage == "probe")
+    outcome = next(e for e in events if isinstance(e, JobOutcome) and e.stage == "probe")
     for band, standing in zip(found.curves, outcome.curves, strict=True):
         assert standing.mean_error_cN == pytest.approx(band.mean_error_cN, abs=1e-3)
         rows = zip(band.low_cN, band.median_cN, band.high_cN, strict=True)
         assert all(a <= b <= c for a, b, c in rows)
-    intended = next(e for e in told if isinstance(e, CurveIntended))
-    for press in (e for e in told if isinstance(e, PressEvent)):
+    intended = next(e for e in events if isinstance(e, CurveIntended))
+    for press in (e for e in events if isinstance(e, PressEvent)):
         assert press.felt
         assert len(press.felt.press_cN) == len(press.felt.release_cN) == len(intended.displacement_mm)
 
@@ -55,9 +55,9 @@ def test_work_that_is_interrupted_ends_as_cancelled_and_goes_on(tmp_path: Path) 
 
     end = ended(work_of(learning(probe_presses=0), tmp_path, stop))
     assert (end.state, "kept" in end.line) == ("cancelled", True)
-    told: list[JobEvent] = []
-    assert ended(work_of(learning(probe_presses=0), tmp_path, told.append)).state == "done"
-    assert next(e.done for e in told if isinstance(e, PressEvent)) == 2
+    events: list[JobEvent] = []
+    assert ended(work_of(learning(probe_presses=0), tmp_path, events.append)).state == "done"
+    assert next(e.done for e in events if isinstance(e, PressEvent)) == 2
 
 
 def test_one_mistake_is_one_line_without_a_path(tmp_path: Path) -> None:

@@ -103,7 +103,7 @@ def test_shares_count_people_as_people_and_say_what_they_would_be_otherwise() ->
     assert found.d[-1].people is None
 
 
-def test_abx_is_told_by_both_rules_and_2afc_by_the_normal_quantile() -> None:
+def test_abx_is_analysed_by_both_rules_and_2afc_by_the_normal_quantile() -> None:
     abx = analyse(right_or_wrong("abx")).preference
     assert abx is not None
     assert (abx.more, abx.less) == ("right", "wrong")
@@ -166,7 +166,7 @@ def test_ordered_categories_agree_with_the_lean_that_ratings_have() -> None:
         *(pytest.param(one, id=name) for name, one in BROKEN.items()),
     ],
 )
-def test_every_kind_and_whatever_is_broken_is_told_as_json(answers: Answers) -> None:
+def test_every_kind_and_every_problem_is_written_as_json(answers: Answers) -> None:
     document = analysis_dict(analyse(answers))
     parsed = json.loads(json.dumps(finite(document), allow_nan=False))
     assert {"tests", "preference", "multiverse", "screening", "claim"} <= set(parsed)
@@ -176,7 +176,7 @@ def test_every_kind_and_whatever_is_broken_is_told_as_json(answers: Answers) -> 
         assert {"button", "statistic", "z", "p_asymptotic", "p_exact", "effect"} <= set(test)
 
 
-def test_few_people_are_told_that_nothing_can_be_significant() -> None:
+def test_for_few_people_a_warning_says_that_nothing_can_be_significant() -> None:
     assert "One person is left" in analyse(realism(1, 2)).notes[0]
     assert "With 5 people no exact" in analyse(realism(5, 2, ("Clear",))).notes[0]
     assert analyse(realism(6, 2, ("Clear",))).notes == ()

@@ -110,7 +110,7 @@ def test_what_is_missing_is_nan_and_not_a_tie() -> None:
 
 
 @pytest.mark.parametrize("measure", ["choice", "realism"])
-def test_peoples_means_are_those_that_the_power_of_a_plan_is_told_of(measure: str) -> None:
+def test_peoples_means_are_those_that_the_power_of_a_plan_refers_to(measure: str) -> None:
     answers = realism()
     answers = replace(answers, excluded=np.where(answers.round == 1, "fault", ""))
     claim = Claim(more="FDVV", less="FD", measure=measure)

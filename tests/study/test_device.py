@@ -78,7 +78,7 @@ def test_what_is_pressed_on_the_firmware_s_own_core_is_the_label_that_was_shown(
     stage.close()
 
 
-def test_labels_exchanged_under_the_hand_are_told_from_the_telemetry() -> None:
+def test_labels_exchanged_under_the_hand_are_found_in_the_telemetry() -> None:
     """A device that renders another label than the one asked for is not judged as if it did."""
     stage = scripted()
     stage.prepare({"A": FD, "B": FDVV})
@@ -312,7 +312,7 @@ def test_a_person_s_presses_on_a_line_count_for_the_label_the_device_renders(lin
     stage.close()
 
 
-def test_a_line_that_breaks_is_told_once_and_ends_the_stage(line: StudyRig) -> None:
+def test_a_line_that_breaks_is_reported_once_and_ends_the_stage(line: StudyRig) -> None:
     lines: list[str] = []
     stage = on_line(line, failed=lines.append)
     stage.prepare({"A": FD})
@@ -327,7 +327,7 @@ def test_a_line_that_breaks_is_told_once_and_ends_the_stage(line: StudyRig) -> N
     stage.close()
 
 
-def test_a_fault_on_a_line_is_told_at_once_and_kept_for_the_label_it_fell_on(line: StudyRig) -> None:
+def test_a_fault_on_a_line_is_reported_at_once_and_recorded_for_its_label(line: StudyRig) -> None:
     lines: list[str] = []
     line.person.meddle = broken
     stage = on_line(line, failed=lines.append)

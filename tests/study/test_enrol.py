@@ -124,7 +124,7 @@ def test_somebody_unknown_cannot_withdraw(study: Study) -> None:
 
 
 @pytest.mark.parametrize("step", range(1, 12, 4))
-def test_a_deletion_that_is_killed_is_told_of_and_ended_the_next_time(
+def test_a_deletion_that_is_killed_is_reported_and_completed_the_next_time(
     study: Study, step: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with contextlib.suppress(Killed), kill_at(step, monkeypatch):

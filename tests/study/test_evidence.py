@@ -96,7 +96,7 @@ def test_half_a_press_counts_and_is_not_judged() -> None:
     assert found.velocity_mm_s[0] is not None
 
 
-def test_without_a_known_force_no_error_is_told() -> None:
+def test_without_a_known_force_no_error_is_reported() -> None:
     rows = pressed(LINE, 100.0)
     rows[2] = np.nan
     assert record_of(LINE, rows).error_cN == (None,)
@@ -138,7 +138,7 @@ def test_a_button_held_for_minutes_costs_little_and_its_press_is_judged() -> Non
     assert evidence.rendered().error_cN[0] == pytest.approx(0.0, abs=0.4)
 
 
-def test_of_a_board_that_does_not_answer_no_vibration_is_told() -> None:
+def test_of_a_board_that_does_not_answer_no_vibration_is_reported() -> None:
     evidence = RenderingEvidence("A", "S", LINE)
     evidence.played(3)
     evidence.failed(Fault.VIBRATION_BOARD)

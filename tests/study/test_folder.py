@@ -123,7 +123,7 @@ def test_a_frozen_file_in_the_place_of_another_is_noticed(study: Study, tmp_path
     assert "frozen.json: is not the one that study.jsonl began with" in study.verify()
 
 
-def test_a_record_that_no_study_writes_is_told_of(study: Study) -> None:
+def test_a_record_that_no_study_writes_is_reported(study: Study) -> None:
     """The study's log has no marks: a line can be added to it with this program's own log."""
     from fdvv.study.files.chained_log import ChainedLog
 

@@ -37,7 +37,7 @@ def shares(
     return np.array([np.mean(found.chosen == one) for one in (0, EQUAL_INDEX, 1)])
 
 
-def test_one_just_noticeable_difference_is_told_in_three_choices_of_four() -> None:
+def test_one_just_noticeable_difference_is_noticed_in_three_choices_of_four() -> None:
     assert shares("2afc", 1.0)[0] == pytest.approx(0.75, abs=0.006)
     assert shares("2afc", 0.0)[0] == pytest.approx(0.5, abs=0.006)
 

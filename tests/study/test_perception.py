@@ -61,7 +61,7 @@ def test_one_step_lies_where_forces_of_keys_and_of_newtons_were_found_to(
     assert low <= SENSES.weber_ratio * (force_cN + SENSES.floor_cN) <= high
 
 
-def test_a_difference_that_comes_with_speed_alone_is_told_apart_from_one_at_all_speeds() -> None:
+def test_a_difference_that_comes_with_speed_alone_is_distinguished_from_one_at_all_speeds() -> None:
     paces = SENSES.paces_mm_s
     rising = button(flat(50, velocity_mm_s=float(paces[0])), flat(60, velocity_mm_s=float(paces[-1])))
     features = haptic_features(rising)

@@ -102,7 +102,7 @@ def test_the_plan_that_is_changed_below_has_no_problem() -> None:
         ({"staircase": Staircase()}, "realism has none"),
     ],
 )  # fmt: skip
-def test_a_plan_that_cannot_be_run_or_analysed_is_told_with_its_place(
+def test_a_plan_that_cannot_be_run_or_analysed_is_refused_with_the_place(
     change: dict[str, Any], reason: str
 ) -> None:
     problems = plan_problems(replace(PLAN, **change))

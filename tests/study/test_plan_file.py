@@ -91,7 +91,7 @@ def test_a_mark_of_byte_order_is_no_mistake() -> None:
     assert read_plan_text("\ufeff" + SMALL, "small.toml") == read_plan_text(SMALL, "small.toml")
 
 
-def test_all_problems_are_told_in_the_line_of_a_refusal() -> None:
+def test_all_problems_are_listed_in_the_line_of_a_refusal() -> None:
     wrong = SMALL.replace('button = "mx-red"', 'button = "mx-pink"').replace("title.en", "title.de")
     with pytest.raises(InputError) as refused:
         check_plan(read_plan_text(wrong, "small.toml"), "small.toml")

@@ -142,7 +142,9 @@ def test_a_table_that_fdvv_wrote_is_known_by_its_headings_without_its_code_book(
         ),
     ],
 )
-def test_what_cannot_be_read_is_told_in_one_line_with_its_place(tmp_path: Path, text: str, said: str) -> None:
+def test_what_cannot_be_read_is_refused_in_one_line_with_its_place(
+    tmp_path: Path, text: str, said: str
+) -> None:
     with pytest.raises(InputError) as refused:
         read_answers(foreign(tmp_path, text), MAPPED)
     assert said in str(refused.value)

@@ -57,7 +57,7 @@ def test_a_page_is_whole_and_its_figures_are_in_it() -> None:
 
 
 @pytest.mark.slow
-def test_simulated_participants_are_told_in_title_text_tables_and_every_figure() -> None:
+def test_simulated_participants_are_marked_in_title_text_tables_and_every_figure() -> None:
     found = analyse(replace(EVERY_KIND["realism"], simulated=True), title="Try")
     html = study_html(found)
     assert f"<title>Try ({PROXY})</title>" in html
@@ -83,7 +83,7 @@ def test_the_claim_of_a_plan_is_called_registered_in_the_figure_too() -> None:
     assert "not registered beforehand" in study_summary(analyse(EVERY_KIND["realism"]))
 
 
-def test_ratings_that_do_not_differ_are_told_as_such() -> None:
+def test_ratings_that_do_not_differ_are_reported_as_such() -> None:
     (first, *_) = analyse(all_ties()).tests
     assert plain(button_sentence(first)) == (
         "For Clear, all 8 people rated FDVV (mdn 4.00, mean 4.00, SD 0.00) and FD alike."
@@ -92,7 +92,7 @@ def test_ratings_that_do_not_differ_are_told_as_such() -> None:
     assert "the one person rated FDVV" in button_sentence(one)
 
 
-def test_a_claim_that_is_opposed_is_told_to_be() -> None:
+def test_a_claim_that_is_opposed_is_reported_as_opposed() -> None:
     found = analyse(realism(7, 2, ("Clear",), lean=-2.0))
     assert found.claim is not None
     assert "The answers say the opposite" in claim_sentence(found.claim)
@@ -118,7 +118,7 @@ def test_all_ties_have_no_way_that_points_anywhere() -> None:
 
 
 @pytest.mark.slow
-def test_ordered_categories_and_timing_are_told_in_words() -> None:
+def test_ordered_categories_and_timing_are_described_in_words() -> None:
     (scale,) = analyse(EVERY_KIND["realism"]).scales
     assert "Taken as ordered categories over all buttons" in scale_sentence(scale)
     found = analyse(timing()).timing

@@ -69,7 +69,7 @@ def test_renderings_that_hardly_differ_are_remarked_on(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("place", ["own.fdvv.json", "buttons/own.fdvv.json"])
-def test_a_model_beside_the_study_is_opened_and_one_that_cannot_be_is_told(
+def test_a_model_beside_the_study_is_opened_and_one_that_cannot_be_is_reported(
     place: str, tmp_path: Path
 ) -> None:
     path = written(tmp_path, "mx-red", place)
@@ -83,7 +83,7 @@ def test_a_model_beside_the_study_is_opened_and_one_that_cannot_be_is_told(
     assert "items ('Red')" in broken
 
 
-def test_an_actuation_that_is_missing_is_told(tmp_path: Path) -> None:
+def test_an_actuation_that_is_missing_is_reported(tmp_path: Path) -> None:
     path = written(tmp_path, "mx-red", "mx-brown", ', actuation = "learned.actuation.json"')
     (problem,) = review_study(path).problems
     assert "learned.actuation.json" in problem

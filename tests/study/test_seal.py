@@ -49,7 +49,7 @@ def test_the_same_is_never_sealed_to_the_same() -> None:
 
 
 @pytest.mark.parametrize("wrong", ["four words of no sensE", "", "four words of no sense "])
-def test_a_wrong_passphrase_is_told_in_one_line(wrong: str) -> None:
+def test_a_wrong_passphrase_is_refused_in_one_line(wrong: str) -> None:
     with pytest.raises(InputError, match="passphrase: does not open it") as caught:
         KeyHolder.open(KEEPER, wrong)
     assert "\n" not in str(caught.value)
@@ -60,7 +60,7 @@ def test_a_passphrase_is_the_same_however_its_accents_are_typed() -> None:
     assert KeyHolder.open(text, "vier Wo\u0308rter ohne Sinn").unlock(seal.lock(b"x")) == b"x"
 
 
-def test_a_wrong_code_is_told_in_one_line() -> None:
+def test_a_wrong_code_is_refused_in_one_line() -> None:
     locked = lock_with_code(b"secret", "0123-4567-89AB", cost=CHEAP)
     with pytest.raises(InputError, match="is not the code of this person") as caught:
         unlock_with_code(locked, "0123-4567-89AC")
@@ -107,7 +107,7 @@ def test_a_short_passphrase_is_refused() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", "not JSON", '{"format": "fdvv-keeper", "version": 2}'])
-def test_a_file_that_is_no_keepers_is_told_in_one_line(text: str) -> None:
+def test_a_file_of_no_key_holder_is_refused_in_one_line(text: str) -> None:
     with pytest.raises(InputError) as caught:
         KeyHolder.open(text, PASSPHRASE)
     assert "\n" not in str(caught.value)

@@ -73,7 +73,7 @@ def test_a_rating_is_planned_on_its_own_scale(tmp_path: Path) -> None:
     )
 
 
-def test_abx_claims_that_both_can_be_told_apart(tmp_path: Path) -> None:
+def test_abx_claims_that_both_can_be_distinguished(tmp_path: Path) -> None:
     design = power_design(*kind(tmp_path, "abx"))
     assert design.alpha == 0.05
     assert all(effect.between.total_JND > 0 for effect in design.effects)
@@ -96,7 +96,7 @@ def test_what_2afc_asks_for_must_be_what_is_claimed(tmp_path: Path) -> None:
         power_design(*open_plan(path))
 
 
-def test_a_file_that_is_no_study_is_told_in_one_line(tmp_path: Path) -> None:
+def test_a_file_that_is_no_study_is_refused_in_one_line(tmp_path: Path) -> None:
     for content in (b"\xff\xfe", b"name = ", b'name = "x"'):
         (tmp_path / "study.toml").write_bytes(content)
         with pytest.raises(InputError) as error:

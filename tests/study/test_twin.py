@@ -92,9 +92,7 @@ def test_the_hand_presses_the_label_that_is_shown_and_each_press_is_judged(
     assert {frame.label for frame in screen.frames} == {"A", "B"}
 
 
-def test_a_screen_is_told_of_travel_key_and_sound_and_of_nothing_else(
-    stage: TwinRenderer, screen: Screen
-) -> None:
+def test_a_screen_receives_travel_key_and_sound_and_nothing_else(stage: TwinRenderer, screen: Screen) -> None:
     stage.show("A")
     press(stage, screen)
     names = {"label", "t_s", "displacement_mm", "key", "clicks", "pressed", "sequence", "dropped_s"}

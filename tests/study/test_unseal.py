@@ -76,7 +76,7 @@ def test_it_is_on_record_who_did_it_why_and_when(unsealed: tuple[Study, Answers]
     assert record["when"].startswith("20")
 
 
-def test_of_trials_that_are_still_to_come_nothing_is_told(unsealed: tuple[Study, Answers]) -> None:
+def test_trials_that_are_still_to_come_are_not_shown(unsealed: tuple[Study, Answers]) -> None:
     study, _ = unsealed
     rows = [row for row in table(study, "rendered.csv") if row["person"] == "P02"]
     assert {row["trial"] for row in rows} == {"0", "1", "2"}
@@ -266,7 +266,7 @@ def test_the_claim_says_which_of_two_a_preference_counts_for(tmp_path: Path) -> 
     assert stimuli_in_order(turned) == ("FDVV", "FD")
 
 
-def test_simulated_participants_are_told_to_be_so(tmp_path: Path) -> None:
+def test_simulated_participants_are_marked(tmp_path: Path) -> None:
     study = small_study(tmp_path)
     person, code = study.enrol(simulated=True, cost=CHEAP)
     answered(study, person, code, chosen("FDVV"))

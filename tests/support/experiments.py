@@ -19,7 +19,7 @@ def invented(optimal_ms: float, noise_ms: float = 2.0) -> ExperimentResult:
             for place, button in enumerate(block.buttons):
                 score = base + noise_ms * random.normal() + (optimal_ms if button == "optimal" else 0.0)
                 score += 11 if block.level == "hard" else 0
-                told = person, block.level, block.round, place, button, score, 1.0, 0.0
-                observed.append(Observation(*told))
+                fields = person, block.level, block.round, place, button, score, 1.0, 0.0
+                observed.append(Observation(*fields))
     trainings = [Training(p, level, (), {}) for p in range(8) for level in ("easy", "hard")]
     return ExperimentResult(setup, tuple(trainings), tuple(observed))

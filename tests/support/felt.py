@@ -122,19 +122,19 @@ def _likeness(t_s: FloatArray, a: FloatArray) -> float:
 
 
 def ways() -> list[tuple[str, Rig, Settings, float]]:
-    """Name the ways of starting a vibration: rig, what its firmware is told, displacement asked for."""
+    """Name the ways of starting a vibration: rig, settings of its firmware, requested displacement."""
     card = Rig(exciter=Exciter(jitter_s=0.0))
     uno = replace(card, exciter=Exciter(latency_s=2e-4, jitter_s=0.0))
     fast = replace(uno, controller=replace(uno.controller, tick_s=2.5e-4, compute_s=1e-4))
-    told = settings_of(card)
+    settings = settings_of(card)
     return [
         (
             "7 ms, lead 0.3 mm (the paper's)",
             card,
-            replace(told, vibration_latency_us=0),
+            replace(settings, vibration_latency_us=0),
             SNAP_AT_mm - LEAD_mm,
         ),
-        ("7 ms, lead by velocity", card, told, SNAP_AT_mm),
+        ("7 ms, lead by velocity", card, settings, SNAP_AT_mm),
         ("0.2 ms (Uno), lead by velocity", uno, settings_of(uno), SNAP_AT_mm),
         ("the same at 4 kHz", fast, settings_of(fast), SNAP_AT_mm),
     ]

@@ -90,13 +90,13 @@ class KeyedRig(Rig):
         self._decoder, read = FrameDecoder(), self.board.read
 
         def noted() -> bytes:
-            told, now_s = read(), time.monotonic()
-            for frame in self._decoder.feed(told):
+            data, now_s = read(), time.monotonic()
+            for frame in self._decoder.feed(data):
                 if frame.message == Message.KEY and frame.payload[0] > 0:
                     self.pressed_s.append(now_s)
                 elif frame.message == Message.RECORDS and self.lose:
                     self.lose -= 1
                     return b""
-            return told
+            return data
 
         self.board.read = noted  # type: ignore[method-assign]

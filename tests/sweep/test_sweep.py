@@ -116,7 +116,7 @@ def test_a_cell_learns_and_is_judged_as_by_hand(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_lighter_rig_is_told_to_come_closer_and_an_impossible_one_why_not(tmp_path: Path) -> None:
+def test_the_lighter_rig_is_reported_as_closer_and_an_impossible_one_with_the_reason(tmp_path: Path) -> None:
     factors: dict[str, Any] = {"rig": ["default", "light"], "rig.coil.force_constant_N_A": [3.9, 0.3]}
     plan = plan_with(measure="feasible", factors=factors, settings={"velocities_mm_s": [50]})
     rows = run_sweep(plan, tmp_path / "run", Here()).table().to_pylist()
@@ -140,17 +140,17 @@ def test_a_sweep_that_is_stopped_goes_on_and_ends_the_same(
     pressed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("fdvv.sweep.sweep.CHUNK_s", 0.1)  # two cells a chunk
-    told: list[int] = []
+    done_counts: list[int] = []
 
     def stop(done: int, _whole: int) -> None:
-        told.append(done)
-        if done == 4 and len(told) < 4:
+        done_counts.append(done)
+        if done == 4 and len(done_counts) < 4:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         run_sweep(PRESS, tmp_path / "run", Here(), stop)
     result = run_sweep(PRESS, tmp_path / "run", Here(), stop)
-    assert told == [0, 2, 4, 4, 6, 8]
+    assert done_counts == [0, 2, 4, 4, 6, 8]
     assert (result.cells, result.worked) == (8, 4)
     assert (tmp_path / "run" / RESULTS).read_bytes() == (pressed / RESULTS).read_bytes()
 
@@ -206,9 +206,9 @@ def test_a_summary_tells_medians_by_every_factor_that_varies(pressed: Path) -> N
     assert set(summary) == {"button", "speed_mm_s", "finger"}
     rows = pq.read_table(pressed / RESULTS).to_pylist()
     times = [row["closing_ms"] for row in rows if row["speed_mm_s"] == 50.0]
-    told = summary["speed_mm_s"]["rows"][0]
-    assert told["median"] == pytest.approx(np.median([t for t in times if t is not None]))
-    assert told["cells"] == len(times)
+    summary_row = summary["speed_mm_s"]["rows"][0]
+    assert summary_row["median"] == pytest.approx(np.median([t for t in times if t is not None]))
+    assert summary_row["cells"] == len(times)
 
 
 def test_a_preview_counts_and_times_without_writing(tmp_path: Path) -> None:
@@ -221,8 +221,8 @@ def test_a_preview_counts_and_times_without_writing(tmp_path: Path) -> None:
 
 @given(st.floats(-1e3, 1e3), st.floats(-1e3, 1e3), st.integers(2, 50), st.sampled_from(["even", "ratio"]))
 def test_a_range_begins_and_ends_where_it_says(start: float, end: float, count: int, spacing: str) -> None:
-    told: dict[str, Any] = {"start": start, "end": end, "count": count, "spacing": spacing}
-    plan = plan_with(factors={"speed_mm_s": told})
+    factor: dict[str, Any] = {"start": start, "end": end, "count": count, "spacing": spacing}
+    plan = plan_with(factors={"speed_mm_s": factor})
     if spacing == "ratio" and min(start, end) <= 0:
         with pytest.raises(ValueError, match="above 0"):
             plan.levels()
@@ -350,7 +350,7 @@ def test_a_sweep_killed_at_random_moments_loses_nothing(tmp_path: Path, write: C
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True) as process:
             assert process.stdout is not None
             first = int(process.stdout.readline() or done)
-            assert first >= done  # what was told as done is still there
+            assert first >= done  # what was reported as done is still there
             until = time.monotonic() + random.uniform(0.0, 0.5)
             for line in process.stdout:
                 done = int(line)

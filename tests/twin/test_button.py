@@ -184,7 +184,7 @@ def test_a_pace_is_found_where_the_shortest_stroke_would_diverge() -> None:
 
 
 def test_a_detour_of_the_referent_is_where_the_finger_goes() -> None:
-    """A press of the gesture, and the same press told as a detour of a finger that stays."""
+    """A press of the gesture, and the same press written as a detour of a finger that stays."""
     button, finger = load_button("mx-brown"), Finger()
     gesture = plan(finger, button.curve.travel_m, 0.1)
     noise = no_button_noise(gesture)

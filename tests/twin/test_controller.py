@@ -150,7 +150,7 @@ def test_a_bridge_that_cannot_pull_gives_no_negative_force() -> None:
     assert trace.saturated.all()
 
 
-def test_a_plant_too_stiff_for_the_step_is_told_instead_of_giving_nonsense() -> None:
+def test_a_plant_too_stiff_for_the_step_is_refused_instead_of_giving_nonsense() -> None:
     finger = Finger(impedance=Impedance(mass_kg=5e-4, damping_N_s_m=100.0))
     rig, gesture = Rig(), plan(finger, 0.004, 0.1)
     with pytest.raises(ModelError, match="too stiff or too light for steps of 1e-05 s"):

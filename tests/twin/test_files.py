@@ -84,7 +84,7 @@ def test_every_number_of_the_papers_rig_and_finger_lies_in_its_plausible_range()
                     assert low <= getattr(part, field.name) <= high, f"{section.name}.{field.name}"
 
 
-def test_every_parameter_is_told_with_its_range_and_source() -> None:
+def test_every_parameter_is_listed_with_its_range_and_source() -> None:
     for text in (rig_to_toml(Rig()), finger_to_toml(Finger())):
         lines = [line for line in text.splitlines() if "=" in line.split("#")[0]]
         assert len(lines) > 20
@@ -269,7 +269,7 @@ def test_an_unknown_name_is_refused_with_the_names_there_are() -> None:
         load_button("mx-purple")
 
 
-def test_a_model_without_an_activation_point_needs_to_be_told_where_it_closes() -> None:
+def test_a_model_without_an_activation_point_needs_one_as_an_argument() -> None:
     unknown = dataclasses.replace(load_builtin("mx-red"), actuation_mm=None)
     with pytest.raises(ModelError, match="say where the circuit closes"):
         button_of_model(unknown)

@@ -32,7 +32,7 @@ def level(force_cN: float) -> ForceSurface:
 
 
 def ideal() -> Rig:
-    """Make a rig that pushes with what it is told, lying, with friction of 1 cN."""
+    """Make a horizontal rig that pushes with the commanded force, with friction of 1 cN."""
     coil = Coil(droop_ratio=0.0, reluctance_H_m=0.0, source_ohm=0.0, command_bits=0)
     return replace(Rig(), coil=coil, mover=Mover(gravity_m_s2=0.0, coulomb_N=0.01, viscous_N_s_m=0.0))
 

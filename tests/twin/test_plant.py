@@ -95,8 +95,10 @@ def test_a_sensor_in_the_cap_reads_the_force_of_the_finger() -> None:
     plant.press(replace(plan(Finger(), 0.004, 0.1), dwell_s=1.0))
     for _ in range(500):
         inputs = plant.step(1500, True, 1600)
-    told, force_cN = settings_of(rig), plant.record().force_cN[-1]
-    read_cN = (int(inputs["force_counts"]) - told.force_offset_counts) * told.force_gain_q14 / 2**14 / 64
+    settings, force_cN = settings_of(rig), plant.record().force_cN[-1]
+    read_cN = (
+        (int(inputs["force_counts"]) - settings.force_offset_counts) * settings.force_gain_q14 / 2**14 / 64
+    )
     assert force_cN > 100
     assert read_cN == pytest.approx(force_cN, abs=0.6)
 

@@ -69,8 +69,8 @@ def test_a_synthesised_vibration_is_felt_within_a_millisecond_of_its_displacemen
 def test_a_late_sample_makes_a_vibration_late() -> None:
     rig = Rig(exciter=Exciter(latency_s=2e-4, jitter_s=0.0))
     late = Rig(exciter=Exciter(latency_s=6e-3, jitter_s=0.0))
-    told = settings_of(rig)
-    onset = [felt(r, told, SNAP_AT_mm, 100.0).late_ms for r in (rig, late)]
+    settings = settings_of(rig)
+    onset = [felt(r, settings, SNAP_AT_mm, 100.0).late_ms for r in (rig, late)]
     assert onset[1] - onset[0] == pytest.approx(5.8, abs=0.3)
 
 

@@ -48,7 +48,7 @@ def test_the_unit_of_the_signal_scales_amplitudes_and_nothing_else(scale: float,
     assert other.amplitude == pytest.approx(scale * one.amplitude, rel=1e-3)
 
 
-def test_two_rings_over_a_straight_line_are_told_apart_and_counted() -> None:
+def test_two_rings_over_a_straight_line_are_distinguished_and_counted() -> None:
     signal = ring(T_s, 239, 150, 2.0, 0.3) + ring(T_s, 900, 340, 1.0) + 0.5 - 20 * T_s
     fit = fit_modes(signal + 0.02 * np.random.default_rng(0).standard_normal(T_s.size), RATE_Hz, degree=1)
     assert [mode.frequency_Hz for mode in fit.modes] == pytest.approx([239, 900], rel=0.01)
@@ -61,18 +61,18 @@ def test_noise_alone_holds_no_mode() -> None:
     assert counts.count(0) >= 19
 
 
-def test_errors_reach_the_bound_of_cramer_and_rao_and_are_told_truly() -> None:
+def test_errors_reach_the_bound_of_cramer_and_rao_and_are_reported_truly() -> None:
     random, noise = np.random.default_rng(2), 0.2
     fits = [
         fit_modes(ring(T_s, 239, 150, 2.0, 0.3) + noise * random.standard_normal(T_s.size), RATE_Hz, count=1)
         for _ in range(200)
     ]
     found = np.array([(fit.modes[0].frequency_Hz, fit.modes[0].decay_1_s) for fit in fits])
-    told = np.array([(fit.modes[0].frequency_sd_Hz, fit.modes[0].decay_sd_1_s) for fit in fits])
+    reported_sd = np.array([(fit.modes[0].frequency_sd_Hz, fit.modes[0].decay_sd_1_s) for fit in fits])
     bound = cramer_rao([T_s], (239, 150, 2.0, 0.3), noise)
     # 200 draws know a spread to 5 %
     assert found.std(axis=0) == pytest.approx(bound, rel=0.15)
-    assert np.median(told, axis=0) == pytest.approx(bound, rel=0.1)
+    assert np.median(reported_sd, axis=0) == pytest.approx(bound, rel=0.1)
 
 
 def test_the_bound_falls_as_noise_does_and_with_the_root_of_the_presses() -> None:

@@ -109,7 +109,7 @@ def test_a_file_gives_the_exciter_back(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         ({"format": "fdvv-model"}, "not a known exciter"),
         ({"quality": "high"}, "quality"),
@@ -118,12 +118,12 @@ def test_a_file_gives_the_exciter_back(tmp_path: Path) -> None:
     ],
 )
 def test_a_file_that_is_none_is_refused_in_one_line(
-    tmp_path: Path, change: dict[str, object], told: str
+    tmp_path: Path, change: dict[str, object], message: str
 ) -> None:
     path = tmp_path / "rig.exciter.json"
     save_exciter(TRUE, path)
     path.write_text(json.dumps(json.loads(path.read_text()) | change))
-    with pytest.raises(InputError, match=told) as caught:
+    with pytest.raises(InputError, match=message) as caught:
         load_exciter(path)
     assert "\n" not in str(caught.value)
     assert "identify the exciter again" in str(caught.value)

@@ -63,7 +63,7 @@ def test_it_beats_playing_the_waveform_as_it_is() -> None:
     st.floats(300.0, 900.0), st.floats(0.5, 6.0),
 )  # fmt: skip
 @settings(max_examples=15, deadline=None)
-def test_no_drive_exceeds_the_limit_and_what_is_too_strong_is_told(
+def test_no_drive_exceeds_the_limit_and_what_is_too_strong_is_reported(
     frequency: float, amplitude: float, decay: float, lasts_s: float, resonance: float, quality: float
 ) -> None:
     vibration = Vibration(Stroke.PRESS, None, 1.0, lasts_s, (Mode(frequency, amplitude, decay),))

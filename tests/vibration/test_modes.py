@@ -1,4 +1,4 @@
-"""How many modes are told: those that are, none that noise, a fading drive or half of a pair would be."""
+"""How many modes are found: those that exist, none that noise, a fading drive or half of a pair would be."""
 
 from __future__ import annotations
 

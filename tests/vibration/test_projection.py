@@ -43,10 +43,10 @@ def test_what_remains_is_that_of_each_record_solved_by_itself(even: bool) -> Non
 def test_slopes_are_those_of_the_power_that_remains(even: bool) -> None:
     times, signals = drawn(1, even)
     records = Records(times, signals, 2, one_phase=False)
-    told = -2 * records.size**2 * records.at(THETA).slopes.sum(axis=0)
+    gradient = -2 * records.size**2 * records.at(THETA).slopes.sum(axis=0)
     for k, unit in enumerate(np.eye(THETA.size)):
         ends = [power_left(times, signals, THETA + sign * 1e-2 * unit) for sign in (1, -1)]
-        assert told[k] == pytest.approx((ends[0] - ends[1]) / 2e-2, rel=1e-4, abs=1e-7)
+        assert gradient[k] == pytest.approx((ends[0] - ends[1]) / 2e-2, rel=1e-4, abs=1e-7)
 
 
 def test_a_later_start_turns_weights_and_changes_nothing_else() -> None:

@@ -1,4 +1,4 @@
-"""Modes that paces share, and rings told again with them."""
+"""Modes shared by several speeds, and ring-downs fitted again with them."""
 
 from __future__ import annotations
 
@@ -63,17 +63,17 @@ def test_searches_build_on_the_surest_first_mode_and_the_second_that_most_tell()
     assert shared_rings([]) == ()
 
 
-def test_a_ring_told_again_keeps_the_shared_mode_and_its_own_spread() -> None:
+def test_a_ring_fitted_again_keeps_the_shared_mode_and_its_own_spread() -> None:
     presses = [made_press(seed)[0] for seed in range(6)]
     found = measure_vibration(presses, 100.0, ENERGY, acceleration=True)
     assert isinstance(found, MeasuredVibration)
     assert isinstance(found.ring, Ring)
     again = with_shared(found, SharedMode(FREQUENCY_Hz, DECAY_1_s, 0.5, 4.0, 3))
     assert isinstance(again.ring, Ring)
-    told, own = again.ring.mode, found.ring.mode
-    assert (told.frequency_Hz, told.decay_1_s, told.decay_sd_1_s) == (FREQUENCY_Hz, DECAY_1_s, 4.0)
-    assert told.decay_spread_1_s == own.decay_spread_1_s
-    assert told.decay_spread_1_s is not None
+    shared, own = again.ring.mode, found.ring.mode
+    assert (shared.frequency_Hz, shared.decay_1_s, shared.decay_sd_1_s) == (FREQUENCY_Hz, DECAY_1_s, 4.0)
+    assert shared.decay_spread_1_s == own.decay_spread_1_s
+    assert shared.decay_spread_1_s is not None
     assert np.median(again.ring.amplitudes[:, 0]) == pytest.approx(1.0, rel=0.1)
 
 

@@ -76,7 +76,7 @@ def test_a_microphone_of_unknown_scale_gives_no_amplitude_and_a_known_one_the_de
 
 
 @pytest.mark.parametrize("noise", [1e-6, 0.01, 100.0])
-def test_noise_is_told_from_the_record_itself(noise: float) -> None:
+def test_noise_is_estimated_from_the_record_itself(noise: float) -> None:
     t = np.arange(2000) / 10_000
     drawn = noise * np.random.default_rng(0).standard_normal(t.size)
     assert noise_rms(drawn + 3 * noise * np.sin(2 * np.pi * 20 * t)) == pytest.approx(noise, rel=0.1)

@@ -60,7 +60,7 @@ def test_what_is_no_rating_is_refused(answer: int | Preferred) -> None:
         Rating().tell(Rating().init(JOB), answer)
 
 
-def test_a_template_that_is_always_best_is_kept_and_told_apart() -> None:
+def test_a_template_that_is_always_best_is_kept_and_distinguished() -> None:
     method = Rating(3)
     state = method.init(Job((4,)))
     while (asked := method.ask(state)) is not None:

@@ -27,7 +27,7 @@ def test_the_boards_samples_come_back_bit_for_bit(slot: Slot) -> None:
     assert np.array_equal(sound.samples // 16 + 2048, counts)
 
 
-def test_a_vibration_is_as_loud_as_16_bits_allow_and_its_scale_is_told() -> None:
+def test_a_vibration_is_as_loud_as_16_bits_allow_and_its_scale_is_returned() -> None:
     samples = vibration_samples(SNAP)
     made = to_wav(samples)
     sound = read_wav(made.data)
@@ -74,11 +74,11 @@ def stereo() -> bytes:
 
 
 @pytest.mark.parametrize(
-    ("data", "told"),
+    ("data", "message"),
     [(b"not a sound at all", "not a WAV file"), (b"", "not a WAV file"), (stereo(), "2 channels of 16 bits")],
 )
-def test_other_files_are_refused_in_one_line(tmp_path: Path, data: bytes, told: str) -> None:
+def test_other_files_are_refused_in_one_line(tmp_path: Path, data: bytes, message: str) -> None:
     (tmp_path / "x.wav").write_bytes(data)
-    with pytest.raises(InputError, match=told) as caught:
+    with pytest.raises(InputError, match=message) as caught:
         read_wav(tmp_path / "x.wav")
     assert "\n" not in str(caught.value)

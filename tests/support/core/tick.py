@@ -1,6 +1,6 @@
 """The tick in plain Python: slow, obvious, whole numbers only; the oracle of firmware/core.
 
-Written from protocol/fdvv.toml and docs/explanation/controller.md. What the supervisor decides is told to it:
+Written from protocol/fdvv.toml and docs/explanation/controller.md. What the supervisor decides is passed in:
 the mode of each tick, of which only the armed one renders, at the full force limit.
 """
 
@@ -134,7 +134,7 @@ class Machine:
 
 
 def offer(condition: int, value: int) -> tuple[int, int]:
-    """Name what a transition waits for; only host events are told apart by their value."""
+    """Name what a transition waits for; only host events are distinguished by their value."""
     return condition, value if condition == Condition.HOST_EVENT else 0
 
 

@@ -58,17 +58,17 @@ def press(program: Program, x_mm: Array, events: Mapping[int, int] | None = None
 
     events : tick to host event. Signals tied to displacements are the core's own tests' and left out there.
     """
-    settings, told = Settings(), events or {}
+    settings, host_events = Settings(), events or {}
     core = Core(settings, compile_program(program, Limits(weight_cN=0.0)).image)
     core.arm()
     # a reading that never changes is a dead sensor to the rig
     alive_mm = 0.0003 * (np.arange(len(x_mm)) % 2)
     inputs = inputs_at(settings, x_mm + alive_mm)
-    outputs = np.concatenate([_run(core, inputs[i : i + 1], told.get(i)) for i in range(len(x_mm))])
+    outputs = np.concatenate([_run(core, inputs[i : i + 1], host_events.get(i)) for i in range(len(x_mm))])
     assert set(outputs["mode"]) == {Mode.ARMED}
     sensed = outputs["displacement_um16"].astype(np.int64)
     speeds = np.abs(outputs["velocity_mm_s16"].astype(float)) / 16
-    ticks = interpret(program, sensed, speeds, told, settings)
+    ticks = interpret(program, sensed, speeds, host_events, settings)
     states = [program.states[i].name for i in outputs["state"]]
     assert states == [tick.state for tick in ticks]
     assert outputs["key"].tolist() == [tick.key for tick in ticks]
