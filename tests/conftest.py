@@ -21,13 +21,13 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 
 def shared_folder() -> Path:
-    """Give the folder of real measurements: FDVV_SHARED, else beside the checkout."""
+    """Return the folder of real measurements: FDVV_SHARED, else beside the checkout."""
     return Path(os.environ.get("FDVV_SHARED", REPOSITORY.parent / "shared"))
 
 
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
-    """Give ../shared/data, or skip by name where it is absent."""
+    """Return ../shared/data, or skip by name where it is absent."""
     folder = shared_folder() / "data"
     if not folder.is_dir():
         pytest.skip("the real measurements (../shared/data or FDVV_SHARED) are not on this machine")

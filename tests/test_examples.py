@@ -21,7 +21,7 @@ def cells(notebook: Path) -> list[dict[str, Any]]:
 
 
 def run_cell(source: str, names: dict[str, Any]) -> object:
-    """Run a cell as a notebook does and give the value of its last line, if it is one."""
+    """Run a cell as a notebook does and return the value of its last line, if it is one."""
     tree = ast.parse(source)
     last = tree.body[-1] if tree.body else None
     if not isinstance(last, ast.Expr):

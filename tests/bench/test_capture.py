@@ -29,7 +29,7 @@ SMALL = CapturePlan(paces_mm_s=(50.0, 100.0), presses=3)
 
 
 def same(a: Recording, b: Recording) -> bool:
-    """Tell whether two recordings hold the same to the bit."""
+    """Return whether two recordings are equal to the bit."""
     for x, y in zip(a.takes, b.takes, strict=True):
         assert (x.number, x.stage, x.velocity_mm_s, x.marks) == (y.number, y.stage, y.velocity_mm_s, y.marks)
         for s, t in zip(x.streams, y.streams, strict=True):
@@ -98,7 +98,7 @@ def test_a_take_counts_for_the_first_open_step_of_its_kind_and_enough_tries_sett
 
 
 def looked_at(kinds: tuple[str, ...], count: int = 20, velocity_mm_s: float = 100.0) -> list[TakeCheck]:
-    """Give verdicts on presses that all go wrong in one of some kinds, or none."""
+    """Return checks of presses that all fail in one of these kinds, or in none."""
     person = Participant(0.0, 1.0, kinds) if kinds else Participant(0.0, 0.0)
     bench = CaptureBench(
         load_button("mx-clear"), CaptureRig(), Finger(), ForceSensor(), person, np.random.default_rng(3)

@@ -17,7 +17,7 @@ AXE = Path(__file__).resolve().parents[2] / "web" / "node_modules" / "axe-core" 
 
 
 def audit(page: Page) -> list[str]:
-    """Give what axe finds that is serious or critical, one line each."""
+    """Return axe's serious and critical findings, one line each."""
     if not AXE.is_file():
         missing = pytest.fail if os.environ.get("CI") else pytest.skip
         missing("axe-core is not installed: run make web-tools")

@@ -46,7 +46,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def start_studio(tmp_path: Path) -> Iterator[Callable[..., RunningStudio]]:
-    """Give what starts a studio: sources as arguments, project by name, below a fresh folder."""
+    """Yield a function that starts a studio: sources as arguments, project by name, below a fresh folder."""
     running: list[RunningStudio] = []
 
     def start(*sources: Path, project: Path | None = None) -> RunningStudio:
@@ -77,7 +77,7 @@ def context(browser: Browser) -> Iterator[BrowserContext]:
 
 
 def _fault(message: ConsoleMessage) -> bool:
-    """Tell a fault from what Chromium notes of every answer to a person's mistake."""
+    """Return whether a message is a fault, not what Chromium logs for every answer to a person's mistake."""
     return message.type == "error" and "status of 422" not in message.text
 
 

@@ -14,7 +14,7 @@ from fdvv.study.files.seal import Cost
 if TYPE_CHECKING:
     from playwright.sync_api import CDPSession, Page
 
-Way = Literal["keys", "mouse", "touch"]
+InputMethod = Literal["keys", "mouse", "touch"]
 NAME, PASSPHRASE = "mine", "correct horse battery staple"
 CHEAP = Cost(1, 8192)
 BUTTONS = ("mx-clear", "rubber-dome")
@@ -119,7 +119,7 @@ def wait_for_part(page: Page) -> None:
 
 
 @dataclass
-class Given:
+class TrialAnswer:
     """What a sitter answered in a trial. places : labels there were."""
 
     choice: str
@@ -132,9 +132,9 @@ class Sitter:
     """Somebody before a participant's screen. given : answers, in the order of trials."""
 
     page: Page
-    way: Way = "keys"
+    input_method: InputMethod = "keys"
     seed: int = 1
-    given: list[Given] = field(default_factory=list)
+    given: list[TrialAnswer] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self._random = random.Random(self.seed)
@@ -162,16 +162,16 @@ class Sitter:
 
     def hit(self, selector: str) -> None:
         """Click or tap."""
-        (self.page.tap if self.way == "touch" else self.page.click)(selector)
+        (self.page.tap if self.input_method == "touch" else self.page.click)(selector)
 
-    def trial(self, at: int, of: int | None = None) -> Given:
+    def trial(self, at: int, of: int | None = None) -> TrialAnswer:
         """Do a trial from its first sight to the answer; of : which is waited for."""
         self.wait_for(at, of)
         places = tuple(
             self.page.locator(".study-place").evaluate_all("all => all.map((e) => e.dataset.label)")
         )
         ratings = {label: self._random.randint(1, 7) for label in places if label != "X"}
-        given = Given(self._random.choice(["A", "equal", "B"]), ratings, places)
+        given = TrialAnswer(self._random.choice(["A", "equal", "B"]), ratings, places)
         for label in places:
             self.feel(label)
             if label in ratings:
@@ -189,7 +189,7 @@ class Sitter:
 
     def feel(self, label: str) -> None:
         """Have a label under the finger, and press it once, down and up."""
-        if self.way == "keys":
+        if self.input_method == "keys":
             self.page.keyboard.press(label.lower())
         else:
             self.hit(f".study-place[data-label={label}]")
@@ -201,31 +201,31 @@ class Sitter:
 
     def rate(self, label: str, points: int) -> None:
         """Rate what is under the finger."""
-        if self.way == "keys":
+        if self.input_method == "keys":
             self.page.keyboard.press(str(points))
         else:
             self.hit(f".study-rating[aria-label$=' {label}'] input[value='{points}']")
 
     def choose(self, choice: str) -> None:
         """Choose an answer."""
-        if self.way == "keys":
+        if self.input_method == "keys":
             self.page.keyboard.press("e" if choice == "equal" else f"Shift+{choice}")
         else:
             self.hit(f".study-choices input[value='{choice}']")
 
     def next(self) -> None:
         """Send the answer."""
-        if self.way == "keys":
+        if self.input_method == "keys":
             self.page.keyboard.press("Enter")
         else:
             self.hit(".study-foot .button.main")
 
     def _down(self) -> None:
-        if self.way == "keys":
+        if self.input_method == "keys":
             self.page.keyboard.down(" ")
             return
         at = self._place()
-        if self.way == "mouse":
+        if self.input_method == "mouse":
             self.page.mouse.move(at["x"], at["y"])
             self.page.mouse.down()
         else:
@@ -233,23 +233,23 @@ class Sitter:
             self._touch.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [at]})
 
     def _up(self) -> None:
-        if self.way == "keys":
+        if self.input_method == "keys":
             self.page.keyboard.up(" ")
-        elif self.way == "mouse":
+        elif self.input_method == "mouse":
             self.page.mouse.up()
         else:
             assert self._touch is not None
             self._touch.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
     def _place(self) -> dict[str, Any]:
-        """Give a place on the cap: who holds it pushes harder and harder."""
+        """Return a place on the cap: who holds it pushes harder and harder."""
         box = self.page.locator(".study-feel").bounding_box()
         assert box is not None
         return {"x": box["x"] + box["width"] / 2, "y": box["y"] + 0.6 * box["height"]}
 
 
 def kept(study: Study, person: str = "P01") -> list[dict[str, Any]]:
-    """Give the answers that are on the disk, in order, as their records hold them."""
+    """Return the answers on the disk, in order, as their records hold them."""
     from fdvv.study.files.chained_log import read_chained
 
     records = read_chained(study.person_folder(person) / "session.jsonl").records

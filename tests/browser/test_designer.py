@@ -40,7 +40,7 @@ def found_by_typing(page: Page, words: str) -> None:
 
 
 def edited_and_undone(page: Page) -> tuple[list[float], list[float]]:
-    """Drag a point, nudge it fifty times, take the nudges back; give forces before and after."""
+    """Drag a point, nudge it fifty times, take the nudges back; return forces before and after."""
     before, to_screen = forces(page), scales(page)
     x_mm = number(page.locator(".edit-points tbody tr").nth(POINT).locator("td").nth(1).inner_text())
     start, end = to_screen(x_mm, before[POINT]), to_screen(x_mm, before[POINT] + 9)

@@ -74,7 +74,7 @@ class Wire:
             into.append(message.get("body", {}))
 
     def of(self, kind: str) -> list[dict[str, Any]]:
-        """Give what was said or heard of a kind, in order."""
+        """Return the messages of a kind, sent or received, in order."""
         return [body for body in (*self.said, *self.heard) if body.get("type") == kind]
 
 

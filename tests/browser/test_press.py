@@ -52,7 +52,7 @@ def value(page: Page, name: str) -> str:
 
 
 def place(page: Page, part: float) -> tuple[float, float]:
-    """Give a point on the stage: part of its height from the top, at the finger's middle."""
+    """Return a point on the stage: at a part of its height from the top, at the finger's middle."""
     box = page.locator(".press-view").bounding_box()
     assert box is not None
     return box["x"] + 0.42 * box["width"], box["y"] + part * box["height"]

@@ -15,8 +15,8 @@ from tests.browser.accessibility import audit
 from tests.browser.study_screens import (
     NAME,
     PASSPHRASE,
+    InputMethod,
     Sitter,
-    Way,
     frozen_study,
     kept,
     names_in,
@@ -28,7 +28,7 @@ from tests.studio.running import RunningStudio
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
 
-SIZES: dict[Way, dict[str, Any]] = {
+SIZES: dict[InputMethod, dict[str, Any]] = {
     "mouse": {"viewport": {"width": 1280, "height": 720}},
     "touch": {"viewport": {"width": 820, "height": 1180}, "has_touch": True},
 }
@@ -55,12 +55,11 @@ def sitter(study: Study, page: Page, context: BrowserContext) -> Sitter:
 
 
 def answers(study: Study) -> list[tuple[str, dict[str, int]]]:
-    """Give choice and realism of every kept answer."""
+    """Return choice and realism of every recorded answer."""
     return [(one["choice"], one["ratings"]["realism"]) for one in kept(study)]
 
 
 def screen_answers(sitter: Sitter) -> list[tuple[str, dict[str, int]]]:
-    """Give what was answered on the screen."""
     return [(one.choice, one.ratings) for one in sitter.given]
 
 
@@ -79,17 +78,17 @@ class Wire:
         socket.on("framereceived", lambda text: self._said.append(str(text)))
 
     def texts(self) -> list[str]:
-        """Give all of it; to be asked for while the page is open."""
+        """Return all of it; to be called while the page is open."""
         return [*self._said, *(answer.text() for answer in self._answers)]
 
 
 @pytest.mark.parametrize("study", [{"items": 6, "rounds": 6, "reference": True}], indirect=True)
-@pytest.mark.parametrize("way", ["mouse", "touch"])
+@pytest.mark.parametrize("input_method", ["mouse", "touch"])
 @pytest.mark.timeout(400)
 def test_36_trials_are_answered_and_kept_and_no_message_names_what_a_label_hides(
-    study: Study, page: Page, browser: Browser, studio: RunningStudio, way: Way
+    study: Study, page: Page, browser: Browser, studio: RunningStudio, input_method: InputMethod
 ) -> None:
-    context = browser.new_context(**SIZES[way])
+    context = browser.new_context(**SIZES[input_method])
     context.set_default_timeout(15_000)
     # brings the cookie; the library that it shows names buttons, which tells nothing of labels
     first, operator, screen = (context.new_page() for _ in range(3))
@@ -98,7 +97,7 @@ def test_36_trials_are_answered_and_kept_and_no_message_names_what_a_label_hides
     wires = Wire(operator), Wire(screen)
     operator.goto(f"{studio.base}/#/studies/{NAME}")
     operator.wait_for_selector("[aria-label=People]")
-    sitter = Sitter(screen, way)
+    sitter = Sitter(screen, input_method)
     sitter.sit(operator)
     for at in range(1, 37):
         sitter.trial(at, 36)

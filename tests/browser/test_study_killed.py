@@ -17,8 +17,8 @@ from fdvv.study.admin.study import Study
 from tests.browser.study_screens import (
     NAME,
     PASSPHRASE,
-    Given,
     Sitter,
+    TrialAnswer,
     frozen_study,
     kept,
     plan_text,
@@ -33,7 +33,7 @@ TRIALS, KILLS, LONGEST_s = 12, 20, 4.0
 
 
 def renderers(browser: Browser) -> set[int]:
-    """Give the processes in which pages run."""
+    """Return the processes in which pages run."""
     session = browser.new_browser_cdp_session()
     found = session.send("SystemInfo.getProcessInfo")["processInfo"]
     session.detach()
@@ -56,7 +56,7 @@ class Seated:
     def __init__(self, study: Study, studio: RunningStudio, browser: Browser) -> None:
         self.study, self._studio, self._browser = study, studio, browser
         self.person = self.code = ""
-        self.known: list[Given] = []
+        self.known: list[TrialAnswer] = []
         self.done, self.crashes = False, 0
 
     def live(self, operator: Page, seed: int, after_s: float) -> None:
@@ -109,7 +109,7 @@ class Seated:
         known = [(one.choice, one.ratings) for one in self.known]
         assert found[: len(known)] == known
         assert len(found) <= len(known) + 1
-        self.known += [Given(choice, ratings) for choice, ratings in found[len(known) :]]
+        self.known += [TrialAnswer(choice, ratings) for choice, ratings in found[len(known) :]]
         self.done = self.done or len(self.known) == TRIALS
         assert self.study.verify() == ()
 

@@ -36,13 +36,12 @@ def tactile_csv(path: Path, shift_cN: float = 0.0, seed: int = 0) -> Path:
 
 @pytest.fixture
 def switch(tmp_path: Path) -> Path:
-    """Give one measured switch."""
     return tactile_csv(tmp_path / "switch.csv")
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Give a folder of two switches and a file that is none."""
+    """Return a folder with two switches and a file that is none."""
     below = tmp_path / "switches"
     below.mkdir()
     tactile_csv(below / "b.csv", seed=1)
@@ -61,7 +60,7 @@ class Ran:
 
     @property
     def json(self) -> dict[str, Any]:
-        """Give standard output as the one JSON document it must be."""
+        """Return standard output, which must be one JSON document."""
         document = json.loads(self.out)
         assert isinstance(document, dict)
         return document
@@ -74,7 +73,7 @@ Run = Callable[..., Ran]
 def fdvv(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> Iterator[Run]:
-    """Give a function that runs the command in the test's folder, within this process."""
+    """Yield a function that runs the command in the test's folder, within this process."""
     monkeypatch.chdir(tmp_path)
 
     def run(*arguments: str | Path) -> Ran:

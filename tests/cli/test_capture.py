@@ -41,7 +41,7 @@ FDVV = (sys.executable, "-m", "fdvv")
 
 
 def same(a: Recording, b: Recording, takes: int | None = None) -> bool:
-    """Tell whether the first takes of two recordings are the same to the bit."""
+    """Return whether the first takes of two recordings are equal to the bit."""
     pairs = list(zip(a.takes[:takes], b.takes[:takes], strict=True))
     return all(
         x.marks == y.marks

@@ -194,7 +194,7 @@ def test_a_mutilated_file_gets_a_verdict_or_one_line(
 
 
 def verdict(path: Path) -> list[str]:
-    """Give what the check says: its kind and problems, or the refusal."""
+    """Return the result of the check: its kind and problems, or the refusal."""
     try:
         found = check_file(path)
     except InputError as error:

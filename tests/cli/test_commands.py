@@ -23,7 +23,7 @@ FDVV = (sys.executable, "-m", "fdvv")
 
 @pytest.fixture
 def many(tmp_path: Path) -> Path:
-    """Give a folder that takes a while to fit."""
+    """Return a folder that takes a while to fit."""
     below = tmp_path / "many"
     below.mkdir()
     text = tactile_csv(below / "00.csv").read_text()

@@ -20,7 +20,7 @@ AT_ONCE = ("compensate", "mx-red", *SHORT, "--rig-known", "bench.rig.json", "--r
 
 @pytest.fixture(scope="module")
 def taught(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """Give the file of a rig that was met once."""
+    """Return the file of a rig that was identified once."""
     from fdvv.device.twin import TwinDevice
     from fdvv.model.file import load_builtin
     from fdvv.rendering.compensate import compensate

@@ -14,7 +14,7 @@ from tests.support.rig_truth import draw_fast_rig, rig_truth
 
 @pytest.fixture
 def known(tmp_path: Path) -> tuple[str | Path, ...]:
-    """Give the options that name one simulated rig, its finger and what is known of it."""
+    """Return the options that name one simulated rig, its finger and its identified model."""
     rig, finger = draw_fast_rig(407, "voltage")
     save_rig(rig_truth(rig), tmp_path / "mine.rig.json")
     (tmp_path / "rig.toml").write_text(rig_to_toml(rig))

@@ -16,7 +16,7 @@ from tests.support.captures import SHORT_STROKE, capture, recorded
 
 
 def warned(ran: Ran) -> tuple[str, ...]:
-    """Give the warnings on standard error, which holds nothing else."""
+    """Return the warnings on standard error, which holds nothing else."""
     return tuple(line.removeprefix("warning: ") for line in ran.err.splitlines())
 
 

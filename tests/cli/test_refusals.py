@@ -17,7 +17,6 @@ MERGE, ASSIGN = ("--name", "x", *OUT), ("--stroke", "press", *OUT)
 
 
 def blue() -> dict[str, object]:
-    """Give the record of a shipped model."""
     text = (resources.files("fdvv.model") / "builtin" / "mx-blue.fdvv.json").read_text()
     record = json.loads(text)
     assert isinstance(record, dict)

@@ -74,7 +74,6 @@ def test_show_reports_landmarks_and_curves(fdvv: Run) -> None:
 
 @pytest.fixture
 def captured(tmp_path: Path) -> Path:
-    """Give the model of a recording."""
     save_model(recorded().model, tmp_path / "captured.fdvv.json")
     return tmp_path / "captured.fdvv.json"
 

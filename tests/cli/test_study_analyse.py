@@ -18,7 +18,7 @@ from tests.support.study_answers import BUTTONS, paper_like, right_or_wrong
 
 @pytest.fixture
 def paper(tmp_path: Path) -> Path:
-    """Give the folder of answers like the paper's."""
+    """Return the folder of answers like the paper's."""
     write_answers(tmp_path / "paper", paper_like())
     return tmp_path / "paper"
 

@@ -17,7 +17,7 @@ WORDS = ("--passphrase-file", "words.txt")
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give the folder of a frozen study with one person who is done; to be copied."""
+    """Return the folder of a frozen study that one person has completed; to be copied."""
     folder = tmp_path_factory.mktemp("begun")
     with in_haste():
         study = Study.declare(folder / "s", plan_file(folder / "desk"))
@@ -29,7 +29,7 @@ def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def study(begun: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Study:
-    """Give that study in s, and the passphrase in words.txt."""
+    """Return that study in s, with the passphrase in words.txt."""
     monkeypatch.setattr("os.fsync", lambda _file: None)
     study = Study.open(shutil.copytree(begun, tmp_path / "s"))
     (tmp_path / "words.txt").write_text(PASSPHRASE + "\n")

@@ -33,7 +33,7 @@ class Rig(ScriptedDevice):
 
 @pytest.fixture
 def person(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Give the list that the next answers are taken from."""
+    """Return the list from which the next answers are taken."""
     answers: list[str] = []
 
     def prompt(text: str, type: click.Choice[str], **_: Any) -> str:

@@ -36,7 +36,7 @@ class Plant:
     tick_s: float = 2.5e-4
 
     def motion(self, velocity_mm_s: float, tremor_mm: float = 0.1) -> tuple[FloatArray, ...]:
-        """Give time, place, speed and acceleration (mm, s), finely: down and back along cosines."""
+        """Return time, place, speed and acceleration (mm, s), finely: down and back along cosines."""
         step = self.tick_s / FINE
         stroke, rest = TRAVEL_mm / velocity_mm_s, 0.02
         t = np.arange(0.0, 4 * rest + 2 * stroke, step)
@@ -56,7 +56,7 @@ class Plant:
     def pressed(
         self, velocity_mm_s: float, motion: tuple[FloatArray, ...], command: FloatArray, seed: int = 0
     ) -> Press:
-        """Give the record of a motion under a command, both finely over time."""
+        """Return the record of a motion under a command, both finely over time."""
         random = np.random.default_rng((seed, round(velocity_mm_s)))
         t, x, _, a = motion
         step, rows = self.tick_s / FINE, slice(None, None, FINE)
@@ -69,7 +69,7 @@ class Plant:
         return Press(t[rows], nowhere, nowhere, velocity_mm_s, sensed, felt, command[rows])
 
     def forces_cN(self, motion: tuple[FloatArray, ...], command: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Give the coil's force on the finger, its braking included, and what the rig makes by itself."""
+        """Return the coil's force on the finger, its braking included, and the rig's own force."""
         t, x, v, a = motion
         gain = self.gain[0] + x * (self.gain[1] + x * self.gain[2])
         late = np.interp(t - self.command_delay_s, t, command)
@@ -80,7 +80,7 @@ class Plant:
 
 
 def known_of(plant: Plant) -> RigModel:
-    """Tell what identification would, had it no error."""
+    """Return the model that identification would find, had it no error."""
     return RigModel(
         plant.gain,
         plant.command_delay_s + plant.electric_lag_s,

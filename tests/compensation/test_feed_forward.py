@@ -37,7 +37,7 @@ def rows_of(x_mm: FloatArray, v_mm_s: FloatArray, down: bool) -> npt.NDArray[np.
 
 
 def fed_back_cN(plant: Plant, velocity_mm_s: float, down: bool) -> float:
-    """Give the largest error of the force, off the ends, once the wanted table is fed back at one motion."""
+    """Return the largest error of the force, off the ends, with the wanted table fed back at one motion."""
     known = known_of(plant)
     tuning = tuning_of(known, TRAVEL_mm, 100.0, FRICTION_mm_s)
     t, x, v, a = motion = plant.motion(velocity_mm_s, tremor_mm=0.0)

@@ -21,7 +21,7 @@ TREMOR_mm = 0.02
 
 
 def made(plant: Plant, velocity_mm_s: float) -> tuple[Press, dict[str, FloatArray]]:
-    """Give a press under a command that waves with 20 Hz, and the truth at its ticks."""
+    """Return a press under a command that waves with 20 Hz, and the truth at its ticks."""
     t, x, v, a = motion = plant.motion(velocity_mm_s, TREMOR_mm)
     command = 70 + 10 * np.sin(2 * np.pi * 20 * t)
     coil, own = plant.forces_cN(motion, command)

@@ -26,7 +26,7 @@ def stroke(
 
 
 def solved(one: StrokeSample, target_cN: FloatArray, finger: FingerJoint) -> FloatArray:
-    """Solve m q'' + b q' + k q = felt - target(x + q), in SI; give (q, q', q'') in mm, mm/s, m/s2."""
+    """Solve m q'' + b q' + k q = felt - target(x + q), in SI; return (q, q', q'') in mm, mm/s, m/s2."""
     t = one.tick_s * np.arange(1, one.felt_cN.size + 1)
     mass, damping, stiffness = 1e-3 * finger.mass_g, finger.damping_N_s_m, finger.stiffness_N_m
 

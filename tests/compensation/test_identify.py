@@ -41,7 +41,7 @@ def presses_of(plant: Plant) -> list[Press]:
 
 
 def compare(known: RigModel, plant: Plant) -> dict[str, float]:
-    """Give what was missed, by name, with the gain at mid travel."""
+    """Return the errors by name, with the gain at mid travel."""
     true, middle = known_of(plant), np.array(0.5 * TRAVEL_mm)
     names = [name for name in known.error if name != "gain"]
     missed = {name: getattr(known, name) - getattr(true, name) for name in names}

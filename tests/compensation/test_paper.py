@@ -28,7 +28,7 @@ def plain(gain: float, **changes: object) -> PaperLaw:
 
 
 def run(law: PaperLaw, plant: Callable[[FloatArray], FloatArray], presses: int) -> list[CurveState]:
-    """Press a plant and give the state after each press."""
+    """Press a plant and return the state after each press."""
     states = [law.init(TARGET, GRID, LIMIT)]
     for _ in range(presses):
         states.append(law.step(plant(states[-1].command_cN), states[-1])[1])

@@ -43,7 +43,7 @@ def pressed(method: RigAware, state: RigState, seed: int) -> RigState:
 
 @pytest.fixture(scope="module")
 def states() -> list[RigState]:
-    """Give the state after every press of a whole job."""
+    """Return the state after every press of a whole job."""
     found = [METHOD.init(JOB)]
     while METHOD.trial(found[-1]) is not None:
         found.append(pressed(METHOD, found[-1], len(found)))

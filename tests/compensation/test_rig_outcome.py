@@ -31,7 +31,7 @@ def felt(error_cN: float, row_cN: float) -> PressError:
 
 
 def presses(errors_cN: list[float], release_cN: float = 2.0) -> tuple[tuple[PressError, PressError], ...]:
-    """Give the presses of one speed; press k was made on a row of k."""
+    """Return the presses of one speed; press k was made on a row of k."""
     return tuple((felt(error, k), felt(release_cN, k)) for k, error in enumerate(errors_cN))
 
 

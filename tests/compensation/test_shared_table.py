@@ -26,7 +26,7 @@ def even(force_cN: float) -> FloatArray:
 
 
 def shares_by_hand(speed_mm_s: float) -> FloatArray:
-    """Give the shares of rows: straight in the square of speed, the outer ones going on a little."""
+    """Return the shares of rows: straight in the square of speed, the outer ones going on a little."""
     squares = SPEEDS_mm_s**2
     low = max(0, min(2, int(np.sum(squares < speed_mm_s**2)) - 1))
     part = min(max((speed_mm_s**2 - squares[low]) / (squares[low + 1] - squares[low]), -0.3), 1.3)

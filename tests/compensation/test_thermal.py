@@ -18,7 +18,7 @@ LIMITS = RigLimits.of_settings(Settings())
 def settled_K(
     limits: RigLimits, commands_cN: list[tuple[float, float]], lasts_s: float
 ) -> tuple[float, float]:
-    """Step the firmware's equation through (seconds, command) in turn; give the end, and derating's start."""
+    """Step the firmware's equation through (seconds, command); return the end, and the start of derating."""
     heat, time, step, first = 0.0, 0.0, 1e-2, float("inf")
     while time < lasts_s:
         for span_s, command in commands_cN:

@@ -92,7 +92,7 @@ def expected(settings: Settings, image: bytes, inputs: RecordArray) -> bytes:
 
 
 def run(driver: Path, seeds: range, ticks: int) -> int:
-    """Compare the cases of these seeds; give how many ticks were rendered."""
+    """Compare the cases of these seeds; return how many ticks were rendered."""
     script, wanted = b"", b""
     for seed in seeds:
         rng = np.random.default_rng(seed)

@@ -22,7 +22,7 @@ def two(*transitions: Transition, **other: int) -> bytes:
 
 
 def entered(program: bytes, path_mm: object, settings: Settings = FINE) -> int:
-    """Give the tick in which the second state is first reported, or -1."""
+    """Return the tick in which the second state is first reported, or -1."""
     states = armed(program, settings).run(inputs_at(settings, np.asarray(path_mm)))["state"]
     return int(np.argmax(states == 1)) if (states == 1).any() else -1
 

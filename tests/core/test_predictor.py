@@ -45,7 +45,7 @@ def tuned(bandwidth_Hz: float, tick_us: int = 250, **more: int) -> Settings:
 
 
 def float_states(z: FloatArray, bandwidth_Hz: float, tick_s: float) -> tuple[FloatArray, ...]:
-    """Give place, velocity and acceleration of the filter as textbooks have it (g-h-k)."""
+    """Return position, velocity and acceleration of the g-h-k filter of textbooks."""
     p = np.exp(-2 * np.pi * bandwidth_Hz * tick_s)
     alpha, beta, gamma = 1 - p**3, 1.5 * (1 - p) ** 2 * (1 + p), (1 - p) ** 3 / 2
     x, v, a, found = z[0], 0.0, 0.0, [(z[0], 0.0, 0.0)]
@@ -58,7 +58,7 @@ def float_states(z: FloatArray, bandwidth_Hz: float, tick_s: float) -> tuple[Flo
 
 
 def places_mm(settings: Settings, inputs: RecordArray) -> FloatArray:
-    """Give where the surface was read, to 2 um16."""
+    """Return where the surface was read, to 2 um16."""
     return np.asarray(armed(PLACES, settings).run(inputs)["commanded_cN64"] / 8000)
 
 

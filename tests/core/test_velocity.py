@@ -30,7 +30,7 @@ PLAIN = replace(
 
 
 def press_mm(speed_mm_s: float, phase: float, settings: Settings) -> npt.NDArray[np.float64]:
-    """Give displacements of an even press from -0.5 to 2 mm at the ticks, which begin at a part of a tick."""
+    """Return displacements at the ticks of an even press from -0.5 to 2 mm; it begins at a part of a tick."""
     tick_s = settings.tick_us * 1e-6
     return np.arange(-0.5 + phase * speed_mm_s * tick_s, 2.0, speed_mm_s * tick_s)
 

@@ -17,14 +17,14 @@ TICK_MS = 0.25
 
 
 def played(path_mm: npt.ArrayLike, *events: Vibration, settings: Settings = FINE) -> list[tuple[int, int]]:
-    """Give the ticks in which a slot was played, and which."""
+    """Return the ticks in which a slot was played, and the slot."""
     program = image(states=[(replace(REST, velocity_source=2), ())], vibrations=events)
     slots = armed(program, settings).run(inputs_at(settings, path_mm))["slot"]
     return [(int(k), int(slots[k])) for k in np.flatnonzero(slots != NONE)]
 
 
 def onset_errors_ms(speed_mm_s: float, acceleration_mm_s2: float, latency_us: int) -> npt.NDArray[np.float64]:
-    """Give how late the first motion is after the cap crossed 2.2 mm, for presses at all phases of a tick."""
+    """Return the delays of the first motion after the cap crossed 2.2 mm, at all phases of a tick."""
     settings, v, a = replace(FINE, vibration_latency_us=latency_us), speed_mm_s, acceleration_mm_s2
     errors = []
     for phase in np.linspace(0, 0.98, 25):

@@ -63,7 +63,7 @@ class Siege:
         self.counts["boards"] += 1
 
     def run(self, ticks: int) -> list[Frame]:
-        """Run ticks, look at each, and give the frames that came."""
+        """Run ticks, look at each, and return the frames that came."""
         found: list[Frame] = []
         for _ in range(ticks):
             out = self.port.step()
@@ -93,12 +93,12 @@ class Siege:
             self.counts["looks at an accepted hostile program"] += program not in (None, *PROGRAMS)
 
     def request(self, message: Message, payload: bytes) -> bytes:
-        """Give the bytes of a request with the next sequence number."""
+        """Return the bytes of a request with the next sequence number."""
         self.sequence = (self.sequence + 1) % 256
         return encode(Frame(message, self.sequence, payload))
 
     def session(self, image: bytes, cut: bool = False) -> list[bytes]:
-        """Give the frames of a whole session: hello, upload, arm, stop."""
+        """Return the frames of a whole session: hello, upload, arm, stop."""
         data = (data_request(o, image[o : o + DATA_BYTES]) for o in range(0, len(image), DATA_BYTES))
         begin = BeginRequest(size_bytes=len(image), crc32=int.from_bytes(image[4:8], "little"))
         bodies = [

@@ -49,7 +49,7 @@ IMAGE, OTHER = PROGRAMS
 
 
 def refusal(frame: Frame) -> Refusal:
-    """Give why a request was refused."""
+    """Return the reason of a refusal."""
     assert frame.message == Message.REFUSED + 0x80, frame
     return Refusal(RefusedReply.unpack(frame.payload).refusal)
 
@@ -73,7 +73,7 @@ def upload(bench: Bench, image: bytes = IMAGE) -> None:
 
 
 def heads_of(frames: list[Frame]) -> list[RecordsRequest]:
-    """Give the heads of telemetry frames."""
+    """Return the heads of telemetry frames."""
     found = [read_notice(f)[0] for f in frames if f.message == Message.RECORDS]
     return [head for head in found if isinstance(head, RecordsRequest)]
 

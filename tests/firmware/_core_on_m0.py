@@ -25,14 +25,14 @@ FLASH, RAM, RETURN, SIZE = 0x2000, 0x20000000, 0x1000, 0x40000
 
 
 def board_flags() -> str:
-    """Give what the board's Makefile compiles the tick with."""
+    """Return the flags with which the board's Makefile compiles the tick."""
     found = re.search(r"^TICK_FLAGS := (.+)$", (BOARD / "Makefile").read_text(), re.MULTILINE)
     assert found is not None
     return found[1]
 
 
 def compile_core(folder: Path, optimise: str) -> bytes:
-    """Give the bytes of the program from FLASH on."""
+    """Return the program's bytes from FLASH on."""
     require_tools()
     elf, binary = folder / "core.elf", folder / "core.bin"
     # apart, as on the board: link-time optimisation loses functions that the compiler itself calls
@@ -76,7 +76,7 @@ class CoreOnM0:
         return int(self._uc.reg_read(self._arm.UC_ARM_REG_R0))
 
     def event(self, event: int) -> None:
-        """Tell the program of host event 0 to 31."""
+        """Send host event 0 to 31 to the program."""
         self._call(2, event)
 
     def announce(self, velocity_mm_s16: int) -> None:

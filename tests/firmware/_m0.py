@@ -32,7 +32,7 @@ def require_tools() -> None:
 
 
 def build(program: Path) -> Path:
-    """Bring a program up to date, one process at a time, and give it."""
+    """Bring a program up to date, one process at a time, and return it."""
     require_tools()
     BUILD.mkdir(parents=True, exist_ok=True)
     with (BUILD / "lock").open("w") as lock:
@@ -44,7 +44,7 @@ def build(program: Path) -> Path:
 
 
 def sizes_bytes(elf: Path) -> tuple[int, int]:
-    """Give flash and static RAM."""
+    """Return flash and static RAM."""
     done = subprocess.run(["arm-none-eabi-size", str(elf)], capture_output=True, text=True, check=True)
     text, data, bss = (int(word) for word in done.stdout.splitlines()[1].split()[:3])
     return text + data, data + bss

@@ -59,7 +59,7 @@ def require_tools() -> None:
 
 
 def build_board(folder: Path, name: str = "uno_vibration") -> Path:
-    """Build a board's firmware; give the ELF file."""
+    """Build a board's firmware; return the ELF file."""
     board = REPOSITORY / "firmware" / "boards" / name
     subprocess.run(["make", "-C", str(board), f"BUILD={folder}"], check=True, capture_output=True)
     return folder / f"{name}.elf"
@@ -92,7 +92,7 @@ class Samples:
 
     @property
     def counts(self) -> npt.NDArray[np.uint16]:
-        """Give the converter's 12 bits."""
+        """Return the converter's 12 bits."""
         return self.words & np.uint16(0xFFF)
 
     def after(self, cycle: int) -> Samples:
@@ -127,7 +127,7 @@ class Uno:
         self._emulator.uno_poke(self._board, address, value)
 
     def write(self, data: bytes, start_cycle: int = 0, stop: bool = True) -> int:
-        """Send a message; give the cycle of its START."""
+        """Send a message; return the cycle of its START."""
         start = self._emulator.uno_write(self._board, data, len(data), start_cycle, int(stop))
         assert start, "the board holds the clock for good"
         return int(start)
@@ -149,7 +149,7 @@ class Uno:
         return Samples(cycles[:count], words[:count])
 
     def interrupt_cycles(self) -> npt.NDArray[np.uint32]:
-        """Give the length of every timer interrupt."""
+        """Return the length of every timer interrupt."""
         cycles, spent = np.empty(ROOM, np.uint64), np.empty(ROOM, np.uint32)
         count = self._emulator.uno_interrupts(self._board, cycles.ctypes.data, spent.ctypes.data)
         return spent[:count]

@@ -66,7 +66,7 @@ class StripFrame:
         return not self.pixels[:, 1:].any()
 
     def lit(self, blue: int, green: int, red: int) -> list[int]:
-        """Give the pixels of a colour."""
+        """Return the pixels of a colour."""
         return [int(i) for i in np.flatnonzero((self.pixels[:, 1:] == (blue, green, red)).all(axis=1))]
 
 
@@ -130,7 +130,7 @@ class UnoStrip:
         return int(self._emulator.strip_cycle(self._board))
 
     def cycle_of(self, board_us: float) -> int:
-        """Give the cycle of a time on the board's clock."""
+        """Return the cycle of a time on the board's clock."""
         return int(self._emulator.strip_zero(self._board)) + round(board_us * CYCLES_us)
 
     def _run_to(self, cycle: int) -> None:
@@ -155,7 +155,7 @@ class UnoStrip:
         self._emulator.strip_poke(self._board, address, value)
 
     def frames(self) -> list[StripFrame]:
-        """Give the frames sent since the last call, the last one whole."""
+        """Return the frames sent since the last call, the last one whole."""
         while self.cycle < self._emulator.strip_last(self._board) + CALM_CYCLES:
             self._run_to(self.cycle + CALM_CYCLES)
         cycles, data = np.empty(ROOM, np.uint64), np.empty(ROOM, np.uint8)

@@ -22,7 +22,7 @@ def code(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 
 
 def agree(code: bytes, seed: int, ticks: int, pieces: int = 8) -> int:
-    """Run one random program and press on both, with random host events; give the ticks that rendered."""
+    """Run one random program and press on both, with random host events; return the ticks that rendered."""
     rng = np.random.default_rng(seed)
     settings = random_settings(rng)
     image, inputs = random_image(rng, settings), random_inputs(rng, ticks, settings)

@@ -28,7 +28,7 @@ def elf() -> Path:
 
 
 class Scripted:
-    """Gives each tick readings from a list or a function, and records the board's outputs."""
+    """Feeds each tick readings from a list or a function, and records the board's outputs."""
 
     def __init__(self, give: Callable[[int], TickInputs] = lambda tick: TickInputs(2048)) -> None:
         self.give = give

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.firmware
 
 
 def benchmark(name: str) -> ModuleType:
-    """Give a module of the folder benchmarks, which is no part of the package."""
+    """Return a module of the folder benchmarks, which is no part of the package."""
     where = _m0.REPOSITORY / "benchmarks" / f"{name}.py"
     spec = importlib.util.spec_from_file_location(f"benchmark_{name}", where)
     assert spec is not None

@@ -15,7 +15,7 @@ START = 0x2000
 
 
 def spend(code: Sequence[int], blocks: Sequence[tuple[int, int]], *, is_cached: bool = True) -> int:
-    """Give the cycles of blocks (offset, halfwords) run one after the other."""
+    """Return the cycles of blocks (offset, halfwords) run one after the other."""
     bus = Bus(is_cached, 0)
     struct.pack_into(f"<{len(code)}H", bus.flash, START, *code)
     bus.clockwork.next_event = NEVER
@@ -29,7 +29,7 @@ def run_block(bus: Bus, address: int, size: int) -> None:
 
 
 def warm(code: Sequence[int]) -> int:
-    """Give the cycles of one straight block whose lines are in the cache already."""
+    """Return the cycles of one straight block whose lines are in the cache already."""
     whole = [(0, len(code))]
     return spend(code, whole * 2) - spend(code, whole)
 

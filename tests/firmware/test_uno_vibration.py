@@ -225,7 +225,7 @@ def test_the_bus_pins_have_no_pull_ups(uno: Uno) -> None:
 
 
 def sizes(elf: Path) -> tuple[int, int]:
-    """Give bytes of flash and of RAM that the linker placed."""
+    """Return the bytes of flash and of RAM that the linker placed."""
     out = subprocess.run(["avr-size", str(elf)], check=True, capture_output=True, text=True).stdout
     text, data, bss = (int(word) for word in out.splitlines()[1].split()[:3])
     return text + data, data + bss

@@ -223,7 +223,7 @@ def raw_rows(layout: str) -> list[list[object]]:
 
 
 def write(folder: Path, name: str, content: str | bytes) -> Path:
-    """Write one file and give its path."""
+    """Write one file and return its path."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / name
     path.write_bytes(content.encode() if isinstance(content, str) else content)

@@ -25,7 +25,7 @@ WRITERS: dict[str, tuple[Callable[[FDVVModel], Exported], str]] = {
 
 
 def _read_back(model: FDVVModel, form: str, folder: Path) -> list[tuple[ForceCurve, float, int]]:
-    """Give each curve read with its largest error, and its samples."""
+    """Return each curve read with its largest error, and its samples."""
     write, ending = WRITERS[form]
     path = folder / f"{model.name}{ending}"
     write(model).save(path)

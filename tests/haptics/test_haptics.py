@@ -147,7 +147,7 @@ def test_a_frequency_that_sharpness_cannot_hold_is_reported(write: Callable[[Vib
 
 
 def _foreign() -> dict[str, Any]:
-    """Give a pattern as Apple's own samples are: a transient, then a continuous event with curves."""
+    """Return a pattern as Apple's own samples are: a transient, then a continuous event with curves."""
     return {
         "Version": 1.0,
         "Metadata": {"Project": "a", "Created": "5 June 2019"},

@@ -17,7 +17,7 @@ from fdvv_haptics.smartknob import KnobDetents, knob_detents, smartknob
 
 
 def _snapped(detents: KnobDetents, way: list[float]) -> list[float]:
-    """Turn a knob as its firmware does and tell at which places the position changes (independent of ours).
+    """Turn a knob as its firmware does; return where the position changes (independent of ours).
 
     way : places from released (0) to pressed (1) and back; the firmware's angle rises to lower positions.
     """

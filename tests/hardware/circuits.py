@@ -10,19 +10,18 @@ CIRCUIT = load_circuit()
 
 
 def with_nets(circuit: Circuit = CIRCUIT, **nets: tuple[str, ...]) -> Circuit:
-    """Give a circuit with some nets replaced; an empty one is left out."""
+    """Return a circuit with some nets replaced; an empty one is left out."""
     changed = {**circuit.nets, **nets}
     return replace(circuit, nets={name: pins for name, pins in changed.items() if pins})
 
 
 def with_value(ref: str, value: float, circuit: Circuit = CIRCUIT) -> Circuit:
-    """Give a circuit with another value of a part."""
     part = replace(circuit.parts[ref], value=value)
     return replace(circuit, parts={**circuit.parts, ref: part})
 
 
 def with_pin(ref: str, pin: str, circuit: Circuit = CIRCUIT, **changes: object) -> Circuit:
-    """Give a circuit in which one part's pin is another, its kind being its own from now on."""
+    """Return a circuit in which one part's pin is another, its kind being its own from now on."""
     part = circuit.parts[ref]
     changed: Pin = replace(part.kind.pins[pin], **changes)  # type: ignore[arg-type]
     kind = replace(part.kind, pins={**part.kind.pins, pin: changed})
@@ -31,7 +30,7 @@ def with_pin(ref: str, pin: str, circuit: Circuit = CIRCUIT, **changes: object) 
 
 
 def without(ref: str, circuit: Circuit = CIRCUIT) -> Circuit:
-    """Give a circuit without a part; nets of a single pin that remain are left out with their pin marked."""
+    """Return a circuit without a part; remaining nets of a single pin are left out with their pin marked."""
     nets = {
         name: tuple(pin for pin in pins if pin.partition(".")[0] != ref)
         for name, pins in circuit.nets.items()

@@ -28,7 +28,7 @@ FORCES = (bumped(15), bumped(20, 0.03), spring, bumped(30, 0.03), dome, bumped(9
 
 
 def below(force: Callable[[FloatArray], FloatArray]) -> Callable[[FloatArray], FloatArray]:
-    """Give a release 3 cN below a press."""
+    """Return a release curve 3 cN below a press."""
     return lambda x: force(x) - 3
 
 

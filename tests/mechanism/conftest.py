@@ -20,7 +20,7 @@ GUIDE = Guide(2.0, 0.01, 0.03)
 
 
 def target_like(mechanism: Mechanism, travel_mm: float = 4.0, close_mm: float = 2.0) -> Target:
-    """Give the target that a mechanism meets exactly."""
+    """Return the target that a mechanism meets exactly."""
     x: FloatArray = np.asarray(0.01 * np.arange(round(100 * travel_mm) - 6), dtype=np.float64)
     press, release = mechanism.strokes_cN(x)
     return Target("known", x, press, release, travel_mm, close_mm)
@@ -33,7 +33,6 @@ def spring() -> SpringMechanism:
 
 @pytest.fixture(scope="session")
 def clear() -> Target:
-    """Give the published tactile button."""
     return target_of(load_builtin("mx-clear"))
 
 
@@ -49,6 +48,6 @@ def rubber() -> Target:
 
 @pytest.fixture(scope="session")
 def rubber_dome() -> DomeMechanism:
-    """Give a dome like those of keyboards, a pin under it."""
+    """Return a dome like those of keyboards, with a pin under it."""
     dome = Dome(10.0, 4.0, 2.4, 0.6, 0.4, 55.0, 0.1)
     return DomeMechanism(dome, Guide(2.0, 0.03, 0.02), Pin(1.0, 1.0, 55.0), 3.0, Pin(2.0, 1.0, 30.0))

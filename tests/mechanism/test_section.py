@@ -16,7 +16,7 @@ from fdvv_switch.spring import SpringMechanism
 
 
 def area(points: FloatArray) -> float:
-    """Give the area of a polygon, positive where it turns left."""
+    """Return the area of a polygon, positive where it turns left."""
     x, y = points.T
     return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 

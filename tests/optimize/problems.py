@@ -16,7 +16,7 @@ NOISE_ms = 3.0
 
 
 def bowl_ms(design: Design) -> float:
-    """Give a score that is least, 60 ms, where every parameter is 1 mm."""
+    """Return a score whose minimum, 60 ms, is where every parameter is 1 mm."""
     return 60.0 + sum(4.0 * (value - 1.0) ** 2 for value in design.values())
 
 

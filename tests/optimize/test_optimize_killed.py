@@ -32,7 +32,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def score(number: int, design: Design) -> Score:
-    """Give a noisy score that depends on nothing but the trial."""
+    """Return a noisy score that depends on nothing but the trial."""
     noise = np.random.default_rng(number).normal()
     return Score(60.0 + 9.0 * abs(design["actuation_mm"] - 1.0) + 7.0 * noise, 7.0)
 
@@ -57,7 +57,7 @@ def setup_of(engine: str, seed: int) -> OptimizeSetup:
 
 @cache
 def undisturbed(engine: str, seed: int, count: int) -> tuple[Trial, ...]:
-    """Give the trials of a run that nobody killed."""
+    """Return the trials of a run that nobody killed."""
     import tempfile
 
     with (
@@ -124,7 +124,7 @@ class Hatchery:
         return self.process.stdout.readline().rstrip("\n")
 
     def killed(self, folder: Path, after_s: float) -> dict[int, float]:
-        """Kill a run after a while; give the trials that it acknowledged as finished."""
+        """Kill a run after a while; return the trials that it acknowledged as finished."""
         assert self.process.stdin is not None
         self.process.stdin.write(f"{folder}\t{after_s!r}\n")
         self.process.stdin.flush()

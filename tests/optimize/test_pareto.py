@@ -60,7 +60,7 @@ def test_trials_without_every_score_are_no_part_of_a_front() -> None:
 
 
 def front_of(name: str, count: int) -> tuple[int, float]:
-    """Give how many trials a front has after count, and the part of a box that it covers."""
+    """Return the number of trials on a front after count, and the part of a box that it dominates."""
     two = Problem(BOWL, (Objective("near_mm2"), Objective("far_mm2")), 2)
     trials: list[Trial] = []
     for i in range(count):

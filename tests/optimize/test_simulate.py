@@ -33,7 +33,7 @@ STILL = SimulatedUser(
 
 
 def flat(force_cN: float, actuation_mm: float = 2.0) -> FDVVModel:
-    """Give a button of one force all the way."""
+    """Return a button of constant force."""
     knots, points = np.array([0.0, 0.0, 4.0, 4.0]), np.array([force_cN, force_cN])
     curves = tuple(ForceCurve(stroke, None, 1, knots, points) for stroke in Stroke)
     return FDVVModel("flat", 4.0, curves, actuation_mm, actuation_mm - 0.2)

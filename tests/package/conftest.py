@@ -21,7 +21,7 @@ print(getattr(build, f"build_{sys.argv[1]}")(sys.argv[2]))
 
 
 def clean_environment(**more: str) -> dict[str, str]:
-    """Give this environment without what leads to the checkout."""
+    """Return this environment without what leads to the checkout."""
     kept = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "CC")}
     return {**kept, "PYTHONUTF8": "1", **more}
 
@@ -37,7 +37,7 @@ def module_of(path: Path) -> ModuleType:
 
 
 def new_environment(folder: Path, *packages: str) -> Path:
-    """Make a virtual environment with packages; give its Python."""
+    """Make a virtual environment with packages; return its Python."""
     subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
     python = folder / "bin" / "python"
     pip = [str(python), "-m", "pip", "--disable-pip-version-check", "-q", "install"]
@@ -52,7 +52,7 @@ class Builder:
     python: Path
 
     def build(self, kind: str, sources: Path, output: Path, **environment: str) -> Path:
-        """Build a `wheel` or an `sdist`; give the file."""
+        """Build a `wheel` or an `sdist`; return the file."""
         command = [str(self.python), "-c", BUILD, kind, str(output)]
         ran = subprocess.run(
             command,
@@ -76,7 +76,7 @@ class Packages:
 
 @pytest.fixture(scope="session")
 def builder(tmp_path_factory: pytest.TempPathFactory) -> Builder:
-    """Give what builds, in an environment of its own."""
+    """Return a builder of packages, in an environment of its own."""
     return Builder(new_environment(tmp_path_factory.mktemp("builder"), "hatchling"))
 
 
@@ -90,7 +90,7 @@ def packages(builder: Builder, tmp_path_factory: pytest.TempPathFactory) -> Pack
 
 
 def unpacked(sdist: Path, folder: Path) -> Path:
-    """Unpack an sdist; give the folder of its sources."""
+    """Unpack an sdist; return the folder of its sources."""
     shutil.unpack_archive(sdist, folder, filter="data")
     (sources,) = folder.iterdir()
     return sources
@@ -98,7 +98,7 @@ def unpacked(sdist: Path, folder: Path) -> Path:
 
 @pytest.fixture(scope="session")
 def zig() -> list[str]:
-    """Give the compiler that pip installs, or skip by name where `make zig-tools` did not run."""
+    """Return the compiler that pip installs, or skip by name where `make zig-tools` did not run."""
     python = Path(os.environ.get("FDVV_ZIG", REPOSITORY / "build" / "zig" / "bin" / "python"))
     if not python.exists():
         pytest.skip("ziglang is not installed: make zig-tools")

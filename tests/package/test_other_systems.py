@@ -101,7 +101,7 @@ def test_the_demo_runs_without_what_only_posix_has(tmp_path: Path) -> None:
 
 
 def unnamed(tree: ast.AST) -> list[int]:
-    """Give the lines where text is read or written in whatever encoding the system likes."""
+    """Return the lines where text is read or written in the system's default encoding."""
     found = []
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute | ast.Name):

@@ -27,7 +27,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(240)]
 
 
 def commands() -> list[list[str]]:
-    """Give the commands of the how-to that start dask, as they stand there."""
+    """Return the commands of the how-to that start dask, as written there."""
     found = re.findall(r"^(dask (?:scheduler|worker) .*)$", HOW_TO.read_text(), flags=re.MULTILINE)
     return [line.split() for line in found]
 
@@ -40,7 +40,7 @@ def free_port() -> int:
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[tuple[str, list[int]]]:
-    """Start what the how-to says on another port; give its address and what watches over the workers."""
+    """Start what the how-to says on another port; return its address and what watches over the workers."""
     port = str(free_port())
     scheduler, worker = commands()
     python = [sys.executable, "-m", "distributed.cli.dask_scheduler"]

@@ -28,7 +28,7 @@ def session(
 
 
 def lit(at_s: FloatArray, times: FloatArray, exposure_s: float) -> FloatArray:
-    """Tell which part of each exposure was lit."""
+    """Return the lit part of each exposure."""
     part = np.zeros(at_s.size)
     for on, off in zip(times[::2], times[1::2], strict=True):
         if exposure_s:

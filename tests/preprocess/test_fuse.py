@@ -14,7 +14,7 @@ PLACES_mm = np.linspace(0.0, 4.0, 81)
 
 
 def button_cN(x_mm: FloatArray) -> FloatArray:
-    """Give a spring with a bump: 30 cN, 12 cN/mm, 20 cN of bump at 1.5 mm."""
+    """Return the force of a spring with a bump: 30 cN, 12 cN/mm, 20 cN of bump at 1.5 mm."""
     return np.asarray(30 + 12 * x_mm + 20 * np.exp(-(((x_mm - 1.5) / 0.35) ** 2)))
 
 

@@ -28,7 +28,7 @@ def shallower(mm: float, to: str) -> Transition:
 
 
 def two(*, down_at: float = 2.0, up_at: float = 1.8, surface: Surface = PUSH, **down: object) -> Program:
-    """Give a plain button whose state `down` may be changed."""
+    """Return a plain button whose state `down` may be changed."""
     up = State("up", surface.name, surface.name, (deeper(down_at, "down"),))
     lower = State("down", surface.name, surface.name, (shallower(up_at, "up"),), key=1)
     return Program("two", 4.0, "up", (up, replace(lower, **down)), (surface,))  # type: ignore[arg-type]

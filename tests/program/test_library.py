@@ -118,7 +118,7 @@ def test_the_host_may_end_a_cooldown() -> None:
 
 
 def keys_at(program: Program, *places_mm: float) -> list[int]:
-    """Go to one place after the other within 5 ms each, and give the key reported there."""
+    """Go to one place after the other within 5 ms each, and return the key reported there."""
     pressed = press(program, path(*((0.005 * i, x) for i, x in enumerate(places_mm))))
     return [pressed.keys[20 * i] for i in range(len(places_mm))]
 

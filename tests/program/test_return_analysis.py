@@ -29,7 +29,7 @@ READ_mm = 0.0005
 
 @cache
 def all_readings() -> list[RecordArray]:
-    """Give the inputs of a tick for every displacement, in the steps of the rig's converter."""
+    """Return the inputs of a tick for every displacement, in the steps of the rig's converter."""
     places = inputs_at(Settings(), np.arange(0, 6.2, READ_mm))
     return [places[i : i + 1] for i in range(places.size)]
 
@@ -72,7 +72,7 @@ def draw_cap(rng: np.random.Generator, program: Program) -> FreeCap:
 
 
 def pressed_core(program: Program, rng: np.random.Generator) -> tuple[Core, float]:
-    """Press a program about for a while, as a finger would; give the core and where the cap then is."""
+    """Press a program about for a while, as a finger would; return the core and where the cap then is."""
     core = Core(Settings(), compile_program(program).image)
     core.arm()
     stops = [0.0, *rng.uniform(0.5, program.travel_mm, rng.integers(1, 4))]
@@ -82,7 +82,7 @@ def pressed_core(program: Program, rng: np.random.Generator) -> tuple[Core, floa
 
 
 def let_go(program: Program, rng: np.random.Generator, limit_s: float) -> float | None:
-    """Let the cap go somewhere; give when it was at the top in the start state for 50 ms, or None."""
+    """Let the cap go somewhere; return when it was at the top in the start state for 50 ms, or None."""
     core, x_mm = pressed_core(program, rng)
     cap = draw_cap(rng, program)
     cap.x_mm = x_mm
@@ -101,7 +101,7 @@ def let_go(program: Program, rng: np.random.Generator, limit_s: float) -> float 
 
 
 def hold_program(*, back: bool) -> Program:
-    """Give a program that holds the cap down, for ever or for 100 ms."""
+    """Return a program that holds the cap down, for ever or for 100 ms."""
     up = State("up", "push", "push", (Transition("held", Condition(When.DEEPER_THAN, 2.0)),))
     rising = State("rising", "push", "push", (Transition("up", Condition(When.SHALLOWER_THAN, 1.0)),))
     freed = (Transition("rising", Condition(When.AFTER, 100)),)
@@ -112,7 +112,7 @@ def hold_program(*, back: bool) -> Program:
 
 
 def self_tapping() -> Program:
-    """Give a program that pulls the cap down whenever it comes near the top: it taps for ever."""
+    """Return a program that pulls the cap down whenever it comes near the top: it taps for ever."""
     states = (
         State("up", "push", "push", (Transition("down", Condition(When.SHALLOWER_THAN, 0.5)),)),
         State("down", "pull", "pull", (Transition("up", Condition(When.AFTER, 20)),)),

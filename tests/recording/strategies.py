@@ -59,7 +59,7 @@ def recordings(draw: st.DrawFn) -> Recording:
 
 
 def contents(value: Any) -> Any:
-    """Give everything that a record holds as plain values, arrays as kind, shape and bytes."""
+    """Return everything that a record holds as plain values, arrays as kind, shape and bytes."""
     if isinstance(value, np.ndarray):
         return value.dtype.str, value.shape, value.tobytes()
     if isinstance(value, tuple):

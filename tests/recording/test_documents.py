@@ -21,7 +21,7 @@ REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 
 
 def block(page: str, language: str, number: int = 0) -> str:
-    """Give a block of code of a page."""
+    """Return a block of code of a page."""
     text = (REFERENCE / page).read_text()
     blocks: list[tuple[str, str]] = re.findall(r"^```(\w*)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
     return [code for tag, code in blocks if tag == language][number]

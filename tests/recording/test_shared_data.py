@@ -20,7 +20,7 @@ COUNTS = "the samples are counts of a converter, no volts; give full_scale_V whe
 
 
 def gaps_percent(recording: Recording) -> float:
-    """Give the part of the places' cells that are blank."""
+    """Return the percentage of blank position cells."""
     raw = np.hstack([stream.raw for stream in recording.takes[0].streams])
     return 100 * float(np.isnan(raw).mean())
 

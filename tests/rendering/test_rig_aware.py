@@ -44,7 +44,7 @@ def light_rig(seed: int) -> tuple[Rig, Finger]:
 
 
 def judged_cN(rig: Rig, finger: Finger, model: FDVVModel, surface: ForceSurface, tuning: Tuning) -> float:
-    """Give the mean over the curves of the mean error on fresh presses, in true displacement."""
+    """Return the mean over the curves of the mean error on fresh presses, in true displacement."""
     curves = probe(TwinDevice(rig, finger, 9001), model, surface, SPEEDS, 4, tuning=tuning).curves
     return float(np.mean([np.median(c.mean_errors_cN) for c in curves]))
 
@@ -176,7 +176,7 @@ def run(device: PressByPress, folder: Path | None) -> CompensationResult:
 
 @pytest.fixture(scope="module")
 def whole() -> CompensationResult:
-    """Give the result of a session that was never stopped."""
+    """Return the result of a session that was never stopped."""
     return run(PressByPress(*light_rig(203)), None)
 
 

@@ -33,7 +33,7 @@ def bars(people: FloatArray, marks: dict[str, str], simulated: bool = False) -> 
 
 
 def above(drawn: Any) -> str:
-    """Give what is written over a whole figure."""
+    """Return the title of a whole figure."""
     return str(figure_of(drawn).get_suptitle())
 
 

@@ -187,7 +187,7 @@ def test_limits_hold_every_finite_value() -> None:
 
 
 def bands(ax: Any) -> list[Any]:
-    """Give the bands that axes hold, as (vertices, 2) arrays."""
+    """Return the bands of axes, as (vertices, 2) arrays."""
     from matplotlib.collections import PolyCollection
 
     return [c.get_paths()[0].vertices for c in ax.collections if isinstance(c, PolyCollection)]

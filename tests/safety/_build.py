@@ -35,7 +35,7 @@ def compile_c(target: Path, *flags: str, sources: tuple[Path, ...] = (*DRIVERS, 
 
 @cache
 def safety_library() -> ctypes.CDLL:
-    """Give the driver and the sources as one library, compiled once per test process."""
+    """Return the driver and the sources as one library, compiled once per test process."""
     if LIBRARY in os.environ:
         return ctypes.CDLL(os.environ[LIBRARY])
     with tempfile.TemporaryDirectory(prefix="fdvv-safety-") as folder:

@@ -54,7 +54,7 @@ class Parts:
 
 
 def sealed(image: bytes) -> bytes:
-    """Give the image with the checksum that it ought to have."""
+    """Return the image with its correct checksum."""
     return image[:4] + struct.pack("<I", zlib.crc32(image[8:])) + image[8:]
 
 

@@ -65,7 +65,7 @@ class Mutant:
 
 
 def mutants(text: str) -> list[Mutant]:
-    """Give every mutant of this C code, none of them twice."""
+    """Return every mutant of this C code, none of them twice."""
     code = BLANK.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
     spans = [
         *_operators(code),
@@ -88,7 +88,7 @@ def mutants(text: str) -> list[Mutant]:
 
 
 def plain(text: str) -> str:
-    """Give the text with single blanks."""
+    """Return the text with single blanks."""
     return " ".join(text.split())
 
 

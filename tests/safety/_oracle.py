@@ -70,7 +70,7 @@ NOTHING_LATCHED = Evidence(
 
 
 def board_bit(bit: int) -> Callable[[Scene], bool]:
-    """Give the condition that the board reports this."""
+    """Return the condition that the board reports this."""
     return lambda scene: bool(scene.inputs.board & bit)
 
 
@@ -351,7 +351,7 @@ class Supervisor:
             self._latch(fault, value if known else number, bound)
 
     def limit_cN64(self, settings: Settings) -> int:
-        """Give the largest force allowed."""
+        """Return the largest allowed force."""
         if not self.rendering:
             return 0
         heat, start, end = (

@@ -39,7 +39,7 @@ REPORTED = {
 
 
 def disturbances() -> Iterator[tuple[Fault, Inputs]]:
-    """Give a tick that must raise each fault that a single tick can raise, armed with SENSED."""
+    """Yield every fault that a single tick can raise, with a tick that must raise it, armed with SENSED."""
     for fault, (bound, disturb) in BOUNDS.items():
         low = fault in (Fault.POSITION_LOW, Fault.SUPPLY_LOW)
         yield fault, disturb(Inputs(sum=1), bound + (-1 if low else 1))
@@ -131,7 +131,7 @@ def several(script: Script) -> None:
 
 
 def elsewhere(script: Script) -> None:
-    """Tell of every number of a fault in every mode; corrupt the mode; count to the end."""
+    """Report every number of a fault in every mode; corrupt the mode; count to the end."""
     for mode in Mode:
         for number in (*range(len(Fault) + 2), 255):
             into(script, mode)

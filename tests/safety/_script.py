@@ -110,14 +110,14 @@ class Script:
         self._keep("heat", settings, (duty_q15, elapsed_ticks, 0))
 
     def tick(self, settings: Settings, inputs: Inputs, duty_q15: int = 0) -> int:
-        """Run what the core runs of the supervisor in a tick; give the limit."""
+        """Run what the core runs of the supervisor in a tick; return the limit."""
         self.check(settings, inputs)
         limit = self.limit(settings)
         self.heat(settings, duty_q15 if limit else 0, max(1, inputs.elapsed_ticks))
         return limit
 
     def found(self, number: int, value: int, bound: int) -> None:
-        """Tell of a fault found elsewhere."""
+        """Report a fault found elsewhere."""
         self.oracle.found(number, value, bound)
         self._keep("fault", None, (number, value, bound))
 
@@ -175,7 +175,7 @@ class Script:
         )
 
     def packed(self) -> tuple[bytes, bytes]:
-        """Give the settings and the steps as the C side reads them."""
+        """Return the settings and the steps as the C side reads them."""
         settings = b"".join(settings.pack() for settings in self.all_settings)
         return settings, np.array(self.steps, STEP).tobytes()
 

@@ -14,7 +14,7 @@ SOURCE = (CORE / "supervisor.c").read_text()
 
 
 def rows_below(heading: str) -> list[list[str]]:
-    """Give the cells of the first table below a heading, without its head."""
+    """Return the cells of the first table below a heading, without its head."""
     part = TEXT[TEXT.index(f"## {heading}") :]
     lines = re.findall(r"^\|(.*)\|$", part[: part.index("\n## ", 1)], re.MULTILINE)
     return [[cell.strip() for cell in line.split("|")] for line in lines[2:]]

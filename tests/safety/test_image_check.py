@@ -71,7 +71,7 @@ def offset(record: type[Record], name: str) -> int:
 
 
 def place(table: str, number: int, name: str) -> int:
-    """Give the offset in the small image of a field."""
+    """Return the offset of a field in the small image."""
     at = ImageHeader.length_bytes()
     for each, record in TABLES.items():
         if each == table:
@@ -81,7 +81,7 @@ def place(table: str, number: int, name: str) -> int:
 
 
 def patched(image: bytes, at: int, value: bytes) -> bytes:
-    """Give the image with other bytes at an offset, sealed again."""
+    """Return the image with other bytes at an offset, sealed again."""
     return sealed(image[:at] + value + image[at + len(value) :])
 
 

@@ -47,7 +47,7 @@ def run_on(library: Path, *choice: str) -> None:
 
 
 def report(folder: Path, name: str) -> tuple[float, float]:
-    """Give the percentages of lines run and of branches taken."""
+    """Return the percentages of lines run and of branches taken."""
     command = ["gcov", "-n", "-b", "-o", str(folder), f"{name}.o"]
     said = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True).stdout
     own = said[said.index(f"{name}.c'") :]

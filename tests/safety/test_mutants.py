@@ -81,7 +81,7 @@ def survivors(bench: Bench, chosen: list[Mutant]) -> tuple[list[str], Counter[st
 
 
 def candidates() -> list[Mutant]:
-    """Give all mutants but those that behave as the original does."""
+    """Return all mutants but those that behave as the original does."""
     return [mutant for mutant in mutants(SUPERVISOR.read_text()) if mutant.name not in EQUIVALENT]
 
 

@@ -21,7 +21,7 @@ CALL, ARGUMENTS, GIVES, MODE, FAULT = (
 
 @cache
 def directed() -> Script:
-    """Give all scenes in one script."""
+    """Return all scenes in one script."""
     script = Script()
     for scene in _scenes.DIRECTED:
         scene(script)

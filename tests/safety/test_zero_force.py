@@ -41,7 +41,7 @@ def constant_force(force_cN64: int) -> bytes:
 
 
 def rendering(settings: Settings, force_cN64: int = 6400) -> tuple[Core, RecordArray]:
-    """Give a core that renders, and the inputs of its next ticks with a little noise, as sensors have."""
+    """Return a core that renders, and the inputs of its next ticks with a little noise, as sensors have."""
     core = Core(settings, constant_force(force_cN64))
     inputs = inputs_at(settings, np.full(ARMED_TICKS + 2000, 2.0))
     inputs["sum"] += np.arange(inputs.size, dtype=np.uint32) % 2
@@ -53,7 +53,7 @@ def rendering(settings: Settings, force_cN64: int = 6400) -> tuple[Core, RecordA
 
 
 def setter(name: str, value: int) -> Disturb:
-    """Give what sets a field of the first tick."""
+    """Return a function that sets a field of the first tick."""
 
     def disturb(inputs: RecordArray) -> None:
         inputs[name][0] = value

@@ -52,7 +52,7 @@ class Reader:
         library().fdvv_small_reader_reset(self._memory)
 
     def feed(self, data: bytes) -> list[tuple[int, bytes]]:
-        """Give what each byte completed, and the bytes of what was whole."""
+        """Return what each byte completed, and the bytes of what was whole."""
         found = [(self._take(self._memory, ctypes.c_uint8(byte)), self._memory.raw) for byte in data]
         return [(kind, memory[: memory[64]]) for kind, memory in found if kind != NOTHING]
 

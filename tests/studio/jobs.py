@@ -68,7 +68,7 @@ class Follower:
             return next(event for event in self.events if wanted(event))
 
     def over(self) -> JobRow:
-        """Wait until the job is over for now; give how it stands."""
+        """Wait until the job is over for now; return its row."""
         start = self._jobs.job(self._job).start
         if start:
             start.wait(PATIENCE_s)

@@ -60,7 +60,7 @@ class Taker:
         self._random = random.Random(address)
 
     def call(self, name: str, /, **question: object) -> dict[str, Any]:
-        """Ask as who leads the study; give the answer."""
+        """Ask as who leads the study; return the answer."""
         self._tell(["does", name])
         line = http.client.HTTPConnection(self.base.partition("//")[2], timeout=PATIENCE_s)
         line.request(
@@ -265,7 +265,7 @@ class Hatchery:
         )
 
     def ask(self, *words: object) -> list[str]:
-        """Have a process forked, or waited for; give what is said of it."""
+        """Have a process forked, or waited for; return what is said of it."""
         assert self.process.stdin is not None
         assert self.process.stdout is not None
         self.process.stdin.write("\t".join(map(str, words)) + "\n")

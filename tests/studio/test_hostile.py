@@ -49,7 +49,7 @@ def person(target: RunningStudio) -> Iterator[httpx2.Client]:
 
 
 def ask_all(person: httpx2.Client, rounds: int, seed: int) -> Counter[int]:
-    """Send every call so many drawn questions; tell how often each status came."""
+    """Send every call so many drawn questions; return how often each status came."""
     draw, found = random.Random(seed), Counter[int]()
     for call in CALLS:
         if call.name in HEAVY:

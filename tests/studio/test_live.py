@@ -23,7 +23,7 @@ class Add(msgspec.Struct, frozen=True, tag="add", forbid_unknown_fields=True):
 
 
 class Flood(msgspec.Struct, frozen=True, tag="flood", forbid_unknown_fields=True):
-    """Tell so many messages at once, from another thread."""
+    """Send so many messages at once, from another thread."""
 
     count: int
 

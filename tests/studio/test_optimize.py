@@ -55,7 +55,7 @@ class Player:
         self._socket.send_json({"channel": "play", "body": {"type": kind, **more}})
 
     def hear(self, kind: str) -> dict[str, Any]:
-        """Give the next message of a kind, or the first error."""
+        """Return the next message of a kind, or the first error."""
         while True:
             message = self._socket.receive_json()
             body = {"type": "error", **message} if "error" in message else message["body"]
@@ -63,7 +63,7 @@ class Player:
                 return dict(body)
 
     def now_ms(self) -> float:
-        """Give the page's clock."""
+        """Return the page's clock."""
         return 1e3 * time.monotonic() + AHEAD_ms
 
     def round(self, number: int, press: bool = True) -> dict[str, Any]:
@@ -88,7 +88,7 @@ class Player:
         return self.hear("kept"), pressed_ms - start_ms - 100.0 - 30.0
 
     def shown(self, number: int, start_ms: float, target_ms: float = 0.0) -> dict[str, Any]:
-        """Give a round that is over by now."""
+        """Return a round that is over by now."""
         return {
             "number": number,
             "start_ms": start_ms,
@@ -105,7 +105,7 @@ class Player:
 
 @pytest.fixture
 def ask(client: TestClient) -> Callable[..., Any]:
-    """Ask the part, and give its answer."""
+    """Ask the part, and return its answer."""
 
     def answer(name: str, /, **question: Any) -> Any:
         found = client.post(f"/api/optimize.{name}", json=question).json()

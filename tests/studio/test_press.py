@@ -28,7 +28,7 @@ class Page:
         self._socket.send_json({"channel": "press", "body": {"type": kind, **more}})
 
     def until(self, found: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
-        """Give the first message for which found says yes."""
+        """Return the first message for which ``found`` is true."""
         while True:
             message = self._socket.receive_json()
             body = {"error": message["error"]} if "error" in message else message["body"]

@@ -86,7 +86,7 @@ def test_a_planted_fault_is_reported_with_its_place_and_remedy(client: TestClien
 
 
 def hostile_texts() -> dict[str, str]:
-    """Give texts that no page sends, each with what a careless reader would do on it."""
+    """Return texts that no page sends, by what a careless reader would do on them."""
     base = json.loads(BUTTON)
     state, surface = base["states"][0], base["surfaces"][0]
 

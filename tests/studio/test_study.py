@@ -34,7 +34,7 @@ class Screen:
         self._socket.send_json({"channel": "study", "body": {"type": kind, **more}})
 
     def hear(self, kind: str) -> dict[str, Any]:
-        """Give the next message of a kind, or the first error."""
+        """Return the next message of a kind, or the first error."""
         while True:
             envelope = self._socket.receive_json()
             body = {"type": "error", **envelope} if "error" in envelope else envelope["body"]
@@ -44,14 +44,14 @@ class Screen:
                 return dict(body)
 
     def sit(self, seat: str) -> dict[str, Any]:
-        """Sit down; give the card."""
+        """Sit down; return the card."""
         self.say("sit", study=NAME, seat=seat, holder=self.holder, language="en")
         card = self.hear("card")
         self.step = self.hear("step")
         return card
 
     def resume(self, card: dict[str, Any]) -> dict[str, Any]:
-        """Go on with a card; give the step, or the error."""
+        """Go on with a card; return the step, or the error."""
         self.say("resume", study=NAME, person=card["person"], code=card["code"])
         self.step = self.hear("step")
         return self.step
@@ -67,7 +67,7 @@ class Screen:
         return self.hear("ready")
 
     def answer(self, choice: str = "A", **more: Any) -> dict[str, Any]:
-        """Answer the trial that the step tells; give the next step, or the error."""
+        """Answer the trial that the step tells; return the next step, or the error."""
         task = self.step["task"]
         ratings = {"realism": dict.fromkeys(task["rated"], 4)}
         self.say("answer", **{"number": task["number"], "choice": choice, "ratings": ratings, **more})
@@ -91,7 +91,7 @@ def study(own_studio: Studio) -> Study:
 
 @pytest.fixture
 def ask(client: TestClient) -> Callable[..., Any]:
-    """Ask as the operator, and give the answer."""
+    """Ask as the operator, and return the answer."""
 
     def answer(name: str, /, **question: Any) -> Any:
         found = client.post(f"/api/studies.{name}", json={"study": NAME, **question}).json()
@@ -102,7 +102,7 @@ def ask(client: TestClient) -> Callable[..., Any]:
 
 
 def where(ask: Callable[..., Any]) -> dict[str, Any]:
-    """Tell where the first person is."""
+    """Return the place of the first person."""
     return dict(ask("detail")["people"][0])
 
 

@@ -18,7 +18,6 @@ NUMBERS = (0, -1, 1, 2**31, 2**53, -(2**63), 2**64, 1e308, -1e308, 5e-324, 0.1, 
 
 
 def any_value(draw: random.Random, depth: int = 0) -> Any:
-    """Give any JSON value."""
     kind = draw.randrange(8 if depth < 4 else 5)
     if kind == 0:
         return draw.choice((None, True, False))
@@ -32,7 +31,7 @@ def any_value(draw: random.Random, depth: int = 0) -> Any:
 
 
 def typed_value(kind: inspect.Type, draw: random.Random, depth: int = 0) -> Any:
-    """Give a value that a type may take; now and then one that it may not."""
+    """Return a value that a type may take; now and then one that it may not."""
     if draw.random() < 0.03:
         return any_value(draw)
     if isinstance(kind, inspect.Metadata):
@@ -69,5 +68,5 @@ def _plain(kind: inspect.Type, draw: random.Random) -> Any:
 
 
 def question(ask: type[msgspec.Struct], draw: random.Random) -> Any:
-    """Give what a stranger may send where ask is wanted."""
+    """Return what a stranger may send where ``ask`` is wanted."""
     return typed_value(inspect.type_info(ask), draw)

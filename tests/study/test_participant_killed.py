@@ -129,7 +129,7 @@ class Hatchery:
         return self.process.stdout.readline().rstrip("\n")
 
     def killed(self, folder: Path, person: str, code: str, after: int, after_s: float) -> list[list[str]]:
-        """Kill a session so long after so many acknowledgements; give all of them."""
+        """Kill a session so long after so many acknowledgements; return all of them."""
         assert self.process.stdin is not None
         self.process.stdin.write(f"{folder}\t{person}\t{code}\t{after}\t{after_s!r}\n")
         self.process.stdin.flush()
@@ -176,7 +176,7 @@ def test_no_answer_is_lost_at_five_hundred_random_moments(
 
 
 def run_with_a_failing_device(study: Study, seed: int, share: float) -> tuple[Participant, int]:
-    """Run a session whose device goes away now and then; give it, and how often it went."""
+    """Run a session whose device goes away now and then; return it, and how often it went."""
     rng = random.Random(seed)
     lost = 0
 

@@ -68,7 +68,7 @@ def begun(plan: StudyPlan, trials: tuple[TrialFace, ...] | None = None) -> Sessi
 
 
 def run(state: SessionState, now_s: float, work_s: float = 1.0) -> tuple[list[Step], SessionState]:
-    """Do what is asked until it is over, each thing taking a while; give the steps met."""
+    """Do every requested step until the session is over, each taking a while; return the steps."""
     met = []
     while (step := next_step(state, now_s)).kind not in ("done", "declined", "withdrawn"):
         met.append(step)

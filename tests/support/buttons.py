@@ -16,7 +16,7 @@ CLOSES_mm, OPENS_mm = 2.3, 2.1
 
 
 def known_cN(x_mm: FloatArray, stroke: str = "press", added_cN: float = 0.0) -> FloatArray:
-    """Give the force of the synthetic button in bench coordinates: step, spring, bump, stop."""
+    """Return the force of the synthetic button in bench coordinates: step, spring, bump, stop."""
     d = x_mm - CONTACT_mm
     back = stroke == "release"
     bump = 20 * np.exp(-(((d - (1.0 if back else 1.2)) / 0.4) ** 2))
@@ -25,7 +25,7 @@ def known_cN(x_mm: FloatArray, stroke: str = "press", added_cN: float = 0.0) -> 
 
 
 def bench_mm() -> FloatArray:
-    """Give the displacements of the synthetic bench: 5 um steps to 0.08 mm beyond the stop."""
+    """Return the displacements of the synthetic bench: 5 um steps to 0.08 mm beyond the stop."""
     return np.asarray(np.round(np.arange(0.0, STOP_mm + 0.0801, 0.005), 3))
 
 

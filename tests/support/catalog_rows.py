@@ -40,7 +40,7 @@ def spring(x: FloatArray) -> FloatArray:
 
 
 def bumped(drop_cN: float, width_mm: float = 0.4) -> Callable[[FloatArray], FloatArray]:
-    """Give the spring with a fall of drop_cN at 1.5 mm, over width_mm, that comes back until 3.5 mm."""
+    """Return the spring with a fall of drop_cN at 1.5 mm, over width_mm, that comes back until 3.5 mm."""
 
     def force(x: FloatArray) -> FloatArray:
         down = np.clip((x - 1.5) / width_mm, 0, 1)
@@ -57,7 +57,6 @@ def dome(x: FloatArray) -> FloatArray:
 
 
 def row(model: FDVVModel, button_id: str = "own:button", collection: str = "") -> ButtonRow:
-    """Give the row of a model."""
     return row_of_model(model, button_id, Origin(button_id.partition(":")[0]), collection)
 
 

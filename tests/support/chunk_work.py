@@ -12,7 +12,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class SeededSum:
-    """Sums numbers drawn with a seed; processes that meet a fatal seed are killed, as `kill -9` does.
+    """Sums numbers drawn with a seed; processes that get a fatal seed are killed, as `kill -9` does.
 
     Attributes
     ----------
@@ -39,6 +39,6 @@ def refuse_three(seed: int) -> int:
 
 
 def wait_for_ever(folder: Path) -> None:
-    """Tell its process, then wait for ever."""
+    """Write the process's number to a file, then wait for ever."""
     (folder / f"{os.getpid()}.pid").touch()
     signal.pause()

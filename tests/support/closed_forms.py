@@ -49,7 +49,7 @@ def coil_error_ratio() -> float:
 
 
 def mean_response(frequency_Hz: float, ticks: int = 25, tick_us: int = 1000) -> tuple[float, float]:
-    """Give what the firmware's sliding mean leaves of a sine, and what the closed form says."""
+    """Return the attenuation of a sine by the firmware's sliding mean, and that of the closed form."""
     settings = replace(Settings(), tick_us=tick_us, sliding_ticks=ticks)
     t = np.arange(4000 + ticks) * 1e-6 * tick_us  # whole periods of whole hertz, after the start
     core = Core(settings)
@@ -61,7 +61,7 @@ def mean_response(frequency_Hz: float, ticks: int = 25, tick_us: int = 1000) -> 
 
 
 def ripple_N(coil: Coil, switching_Hz: float, ratio: float = 0.5) -> float:
-    """Give the ripple of the force, peak to peak, under a switched supply.
+    """Return the ripple of the force, peak to peak, under a switched supply.
 
     It is what averaging the duty leaves out. A locked coil between 0 and the supply, settled: the current
     rises and falls on exponentials.

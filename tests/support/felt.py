@@ -29,7 +29,7 @@ RATE_Hz, BLOCK = 16000, 32
 
 
 @dataclass(frozen=True)
-class Felt:
+class CapVibration:
     """What the cap did: its acceleration with the vibration, less that of the same press without it.
 
     Attributes
@@ -90,7 +90,7 @@ def press_with(rig: Rig, settings: Settings, at_mm: float, velocity_mm_s: float,
     return plant.record()
 
 
-def felt(rig: Rig, settings: Settings, at_mm: float, velocity_mm_s: float) -> Felt:
+def felt(rig: Rig, settings: Settings, at_mm: float, velocity_mm_s: float) -> CapVibration:
     """Compare a press with its vibration and without."""
     with_it, without = (press_with(rig, settings, at_mm, velocity_mm_s, s) for s in ([snap()], []))
     added = with_it.cap_acceleration_m_s2 - without.cap_acceleration_m_s2
@@ -99,7 +99,7 @@ def felt(rig: Rig, settings: Settings, at_mm: float, velocity_mm_s: float) -> Fe
     crossed = float(t[np.argmax(without.displacement_mm >= SNAP_AT_mm)])
     onset = float(t[strong[0]])
     window = (t >= onset) & (t < onset + SNAP_DURATION_s + 0.01)
-    return Felt(
+    return CapVibration(
         1e3 * (onset - crossed),
         float(np.abs(added).max()),
         _strongest_Hz(t[window], added[window]),

@@ -21,7 +21,7 @@ HOLD_s = 0.7
 def held_swings_mm(
     rig: Rig, finger: Finger, surface: ForceSurface, travel_mm: float, place_mm: float, force_cN: float
 ) -> tuple[float, float]:
-    """Press to a place where the table gives force_cN, stay, and give how far the cap swings, early and late.
+    """Press to where the table gives force_cN, stay, and return how far the cap swings, early and late.
 
     The finger of this person without variation; no noise, so that what swings, the loop swings.
     """
@@ -46,6 +46,6 @@ def swings_held(
     force_cN: float,
     still_mm: float = 0.01,
 ) -> bool:
-    """Tell whether a held cap goes on swinging: by more than still_mm, and without dying away."""
+    """Return whether a held cap goes on swinging: by more than still_mm, and without dying away."""
     before, after = held_swings_mm(rig, finger, surface, travel_mm, place_mm, force_cN)
     return min(before, after) > still_mm and after > 0.7 * before

@@ -35,7 +35,7 @@ class Bench:
         self.sequence = 0
 
     def run(self, ticks: int = 1) -> list[Frame]:
-        """Run ticks and give the frames that came."""
+        """Run ticks and return the frames that came."""
         found: list[Frame] = []
         for _ in range(ticks):
             self.port.step()
@@ -43,12 +43,12 @@ class Bench:
         return found
 
     def send(self, data: bytes, ticks: int = 4) -> list[Frame]:
-        """Put bytes on the line and give the frames that came in some ticks."""
+        """Put bytes on the line and return the frames that came in some ticks."""
         self.port.write(data)
         return self.run(ticks)
 
     def ask(self, message: Message, body: Record | None = None, ticks: int = 8) -> Frame:
-        """Ask once and give the one reply."""
+        """Ask once and return the one reply."""
         self.sequence = (self.sequence + 1) % 256
         found = self.send(encode(request_frame(message, self.sequence, body)), ticks)
         replies = [frame for frame in found if frame.message < 0xC0 or frame.message == 0xFF]
@@ -62,5 +62,5 @@ class Bench:
 
 
 def linked(seed: int = 0) -> LinkedDevice:
-    """Give a device inside this process."""
+    """Return a device inside this process."""
     return LinkedDevice(LibraryBoard(), ScriptedPerson(seed))

@@ -23,13 +23,13 @@ MIDDLE_mm = 1.0
 
 
 def spring(stiffness_N_m: float) -> ForceSurface:
-    """Give a table that pulls the cap to 1 mm from both sides, over 2 mm."""
+    """Return a table that pulls the cap to 1 mm from both sides, over 2 mm."""
     force_cN = 0.1 * stiffness_N_m * np.array([[-MIDDLE_mm, MIDDLE_mm]])
     return ForceSurface(np.array([0.0, 2 * MIDDLE_mm]), np.array([50.0]), force_cN, force_cN)
 
 
 def swings_mm(rig: Rig, stiffness_N_m: float, lasts_s: float = 1.0) -> tuple[float, float]:
-    """Let the cap go from its top stop; give how far it moves in the third and in the last fifth of it."""
+    """Let the cap go from its top stop; return how far it moves in the third and in the last fifth of it."""
     settings = settings_of(rig)
     core = Core(settings, image_of(spring(stiffness_N_m), 2 * MIDDLE_mm).image)
     core.arm()
@@ -43,7 +43,7 @@ def swings_mm(rig: Rig, stiffness_N_m: float, lasts_s: float = 1.0) -> tuple[flo
 
 
 def cycles(rig: Rig, stiffness_N_m: float, still_mm: float = 0.01) -> bool:
-    """Tell whether the cap goes on moving: further than the sensor's grain, and without dying away."""
+    """Return whether the cap goes on moving: further than the sensor's grain, and without dying away."""
     before, after = swings_mm(rig, stiffness_N_m)
     return after > max(still_mm, 0.9 * before)
 
@@ -66,7 +66,7 @@ class LinearLoop:
     rig: Rig
 
     def limit_N_m(self) -> float:
-        """Give the stiffness at which the largest eigenvalue of a tick reaches 1."""
+        """Return the stiffness at which the largest eigenvalue of a tick reaches 1."""
         low, high = 1.0, 1e5
         for _ in range(60):
             middle = math.sqrt(low * high)
@@ -74,7 +74,7 @@ class LinearLoop:
         return low
 
     def radius(self, stiffness_N_m: float) -> float:
-        """Give the size of the largest eigenvalue of one tick."""
+        """Return the size of the largest eigenvalue of one tick."""
         return float(np.abs(np.linalg.eigvals(self.tick(stiffness_N_m))).max())
 
     def tick(self, stiffness_N_m: float) -> FloatArray:
@@ -113,7 +113,7 @@ class LinearLoop:
 
 
 def quantisation_limit_N_m(rig: Rig) -> float:
-    """Give the stiffness up to which Coulomb friction swallows what a coarse position feeds in: 2 f / step.
+    """Return the stiffness up to which Coulomb friction swallows what a coarse position feeds in: 2 f / step.
 
     Source: Abbott and Okamura 2005.
     """
@@ -122,7 +122,7 @@ def quantisation_limit_N_m(rig: Rig) -> float:
 
 
 def bare_loop(tick_s: float = 1e-3) -> Rig:
-    """Give the default rig as LinearLoop has it: linear, without friction, weight or exciter."""
+    """Return the default rig as LinearLoop has it: linear, without friction, weight or exciter."""
     linear = Coil(droop_ratio=0.0, source_ohm=0.0, reluctance_H_m=0.0, copper_1_K=0.0, command_bits=0)
     return Rig(
         coil=linear,
@@ -134,7 +134,7 @@ def bare_loop(tick_s: float = 1e-3) -> Rig:
 
 
 def grainy_loop() -> Rig:
-    """Give a rig where only the grain of the position feeds energy in: fast loop, coarse converter."""
+    """Return a rig where only the grain of the position feeds energy in: fast loop, coarse converter."""
     linear = bare_loop()
     return replace(
         linear,

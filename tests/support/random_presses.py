@@ -23,7 +23,7 @@ def integer(rng: Generator, low: int, high: int) -> int:
 
 
 def sometimes(rng: Generator, chance: float, value: int, otherwise: int) -> int:
-    """Give value with a chance, else the other one."""
+    """Return value with a chance, else the other one."""
     return value if rng.random() < chance else otherwise
 
 

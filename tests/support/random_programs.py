@@ -52,7 +52,7 @@ def random_state(rng: Generator, surfaces: int, slots: int, most_cN64: int, firs
 
 
 def random_value(rng: Generator, condition: int) -> int:
-    """Draw a value that the condition will meet now and then."""
+    """Draw a value at which the condition is sometimes true."""
     if condition == Condition.AFTER_MS:
         return integer(rng, 0, 80)
     if condition == Condition.HOST_EVENT:

@@ -33,7 +33,7 @@ def draw_fast_rig(seed: int, drive: str) -> tuple[Rig, Finger]:
 
 
 def rig_truth(rig: Rig) -> RigModel:
-    """Give the rig's effective numbers, as its finger's sensor would tell them."""
+    """Return the rig's effective parameters, as its finger's sensor would measure them."""
     coil, mover, position = rig.coil, rig.mover, rig.position_sensor
     sensor, loop = 1 + rig.force_sensor.gain_error_ratio, 1 + rig.controller.gain_error_ratio
     bend, best = coil.droop_ratio / (500.0 * coil.stroke_m) ** 2, 1e3 * coil.centre_m
@@ -57,7 +57,7 @@ def rig_truth(rig: Rig) -> RigModel:
 
 
 def missed_cN(known: RigModel, rig: Rig, traces: Sequence[Trace], travel_mm: float) -> float:
-    """Give the rms error of the force that a known rig predicts at the true motion, between the stops."""
+    """Return the rms error of the force that a known rig predicts at the true motion, between the stops."""
     found = []
     for t in traces:
         motion = (t.displacement_mm, t.cap_velocity_mm_s, t.cap_acceleration_m_s2)

@@ -20,7 +20,7 @@ CLOSE_m, FREE_m, TRAVEL_m = 0.0018, 0.0022, 0.004
 
 
 def made(friction: float = 0.2) -> tuple[ButtonPhysics, FloatArray, FloatArray]:
-    """Make curves of a leaf whose energy falls smoothly from 60 uJ to nothing; give them, energy and x."""
+    """Make curves of a leaf whose energy falls smoothly from 60 uJ to nothing; return them, energy and x."""
     x = np.asarray(2e-5 * np.arange(201), dtype=np.float64)
     left = np.clip((FREE_m - x) / FREE_m, 0.0, None)
     energy_J = 6e-5 * left**2

@@ -62,14 +62,14 @@ def stream(take: Take, name: str) -> Stream:
 
 
 def in_press_s(made: SimulatedTake, name: str) -> FloatArray:
-    """Give a camera stream's times on the clock of the trace."""
+    """Return a camera stream's times on the clock of the trace."""
     setup = made.truth.setup
     own_s = stream(made.take, name).t_s
     return np.asarray((own_s - setup.camera_offset_s) / setup.camera_ratio - made.truth.begin_s)
 
 
 def down_mm(made: SimulatedTake, name: str) -> FloatArray:
-    """Give how far a marker went down: the cameras' z points up."""
+    """Return the downward motion of a marker: the cameras' z points up."""
     return (
         np.asarray(made.truth.setup.places_mm[("left", "right").index(name), 2])
         - (stream(made.take, name).values[:, 2])
@@ -296,7 +296,7 @@ def test_the_page_of_the_bench_names_every_error_and_every_way_to_go_wrong() -> 
 
 
 def goes_wrong(kind: str, seed: int = 3, velocity_mm_s: float = 100.0) -> tuple[SimulatedTake, SimulatedTake]:
-    """Give a press that goes wrong in one way, and the same press gone right."""
+    """Return a press that goes wrong in one way, and the same press gone right."""
     person = Participant(0.0, 1.0, (kind,))
     return tuple(a_press(velocity_mm_s=velocity_mm_s, participant=p, seed=seed) for p in (person, STEADY))  # type: ignore[return-value]
 

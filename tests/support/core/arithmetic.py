@@ -48,7 +48,7 @@ def scale(value: int, ratio: Ratio) -> int:
 
 
 def part(way: int, whole: int) -> int:
-    """Give way / whole in Q15."""
+    """Return way / whole in Q15."""
     cut = 10 if whole >= 1 << 21 else 5 if whole >= 1 << 16 else 0
     way, whole = way >> cut, whole >> cut
     fill = 16 - whole.bit_length()
@@ -67,7 +67,7 @@ def clamp(value: int, low: int, high: int) -> int:
 
 
 def slope(samples: list[tuple[int, int]]) -> tuple[int, int]:
-    """Give numerator and denominator of the least-squares slope over (time, place)."""
+    """Return numerator and denominator of the least-squares slope over (time, place)."""
     n = len(samples)
     t, x = sum(t for t, _ in samples), sum(x for _, x in samples)
     tt, tx = sum(t * t for t, _ in samples), sum(t * x for t, x in samples)

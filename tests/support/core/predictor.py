@@ -21,7 +21,7 @@ def times(*factors: int | Ratio) -> Ratio | None:
 
 
 def scaled(value: int, ratio: Ratio | None, right: int) -> int:
-    """Give value * ratio / 2^right to the nearest, halves up, after 16 bits of the product were cut."""
+    """Return value * ratio / 2^right to the nearest, halves up, after 16 bits of the product were cut."""
     if ratio is None or ratio.shift + right > 45:
         return 0
     top, shift = value * ratio.mantissa >> 16, ratio.shift + right - 16

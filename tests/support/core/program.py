@@ -59,7 +59,7 @@ class Program:
 
 
 def place_in_columns(way: int, step: int, columns: int) -> tuple[int, int]:
-    """Give the column and, in Q15, how far towards the next; ends hold."""
+    """Return the column and, in Q15, how far towards the next; ends hold."""
     if way <= 0:
         return 0, 0
     if way >= (columns - 1) * step:

@@ -123,7 +123,7 @@ def image(
 
 
 def armed(program: bytes, settings: Settings | None = None) -> Core:
-    """Give a core that renders the program from its next tick on."""
+    """Return a core that renders the program from its next tick on."""
     core = Core(settings, program)
     core.arm()
     return core

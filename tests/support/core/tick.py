@@ -38,7 +38,7 @@ class Machine:
         self.due_ms = self.now().repeat_ms
 
     def tick(self, position: Position, velocity: Velocity, announced: int, tick: Tick) -> int:
-        """Give the slot to play."""
+        """Return the slot to play."""
         x, slots = position.um16, []
         lead_us = self.settings.vibration_latency_us + self.settings.tick_us // 2
         lead = product(ratio_of(lead_us), inverse(ratio_of(1000)))
@@ -62,7 +62,7 @@ class Machine:
         return next((slot for slot in slots if slot != NONE), NONE)
 
     def chosen(self, velocity: Velocity, announced: int) -> int:
-        """Give the velocity that chooses a row in this state."""
+        """Return the velocity that chooses a row in this state."""
         source = self.now().velocity_source
         if source == VelocitySource.CONTINUOUS:
             return abs(velocity.continuous or 0)
@@ -165,7 +165,7 @@ class Reference:
         self.announced = self.settings.announced_mm_s16
 
     def tick(self, inputs: dict[str, int], mode: int) -> dict[str, int]:
-        """Give what fdvv.firmware.core.OUTPUTS holds."""
+        """Return the values of fdvv.firmware.core.OUTPUTS."""
         s, elapsed = self.settings, max(inputs["elapsed_ticks"], 1)
         self.position.tick(inputs["sum"])
         self.velocity.tick(self.position, elapsed)

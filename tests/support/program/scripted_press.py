@@ -23,7 +23,7 @@ Array = np.ndarray[tuple[int], np.dtype[np.float64]]
 
 
 def path(*points: tuple[float, float]) -> Array:
-    """Give displacements (mm) of every tick on straight lines through (time s, displacement mm) points."""
+    """Return displacements (mm) of every tick on straight lines through (time s, displacement mm) points."""
     times, places = zip(*points, strict=True)
     t = np.arange(round(times[-1] * TICKS_PER_S) + 1) / TICKS_PER_S
     x_mm: Array = np.interp(t, times, places)
@@ -41,7 +41,7 @@ class Pressed:
     forces_cN: Array
 
     def entries(self) -> list[tuple[str, float]]:
-        """Give every state in order of entering, with the sensed displacement at which it was entered."""
+        """Return every state in order of entering, with the sensed displacement at which it was entered."""
         found = [(self.states[0], float(self.x_mm[0]))]
         for state, x in zip(self.states, self.x_mm, strict=True):
             if state != found[-1][0]:
@@ -49,7 +49,7 @@ class Pressed:
         return found
 
     def times_s(self, signal: str) -> list[float]:
-        """Give when a signal was played."""
+        """Return the times at which a signal was played."""
         return [i / TICKS_PER_S for i, played in enumerate(self.signals) if played == signal]
 
 

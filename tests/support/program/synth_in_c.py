@@ -84,7 +84,7 @@ class Board:
         assert self.receiver.errors == 0
 
     def send(self, data: bytes, stop: bool = True) -> list[int]:
-        """Send bytes after a START; give what each brought."""
+        """Send bytes after a START; return what each brought."""
         self._c.fdvv_vibration_begin(ctypes.byref(self.receiver))
         brought = [int(self._c.fdvv_vibration_byte(ctypes.byref(self.receiver), byte)) for byte in data]
         if stop:
@@ -95,7 +95,7 @@ class Board:
         return bytes(self._c.fdvv_vibration_report(ctypes.byref(self.receiver), ctypes.c_uint8(flags)))
 
     def contents(self) -> bytes:
-        """Give all that can be played, to see whether it changed."""
+        """Return all that can be played, to detect a change."""
         return bytes(self.bank)
 
     def play(self, index: int, strength: int = 255) -> None:

@@ -98,7 +98,7 @@ class _Plant:
         self.preload_N = cam.preload_N
 
     def muscle(self, t: float, x: float, v: float) -> float:
-        """Give the pull of the referent, with the noise of its effort."""
+        """Return the pull of the referent, with the noise of its effort."""
         g = self.gesture
         down, rate_down = _smooth_step((t - g.onset_s) / g.press_s)
         up, rate_up = _smooth_step((t - g.onset_s - g.press_s - g.dwell_s) / g.release_s)
@@ -108,21 +108,21 @@ class _Plant:
         return (1 + self.effort(t)) * (g.stiffness_N_m * (to - x) + g.damping_N_s_m * (rate - v))
 
     def pulp(self, depth: float, rate: float, arms: float) -> tuple[float, float]:
-        """Give the force beyond the strap's, and the growth of what feeds the arms."""
+        """Return the force beyond the strap's, and the rates of the arms' stretch."""
         p = self.finger.pulp
         still_N = p.relaxed_ratio * p.scale_N
         grown = p.scale_N * math.exp(p.exponent_1_m * depth) * (1 + p.strap_N / still_N)
         return p.relaxed_ratio * (grown - p.scale_N) + arms - p.strap_N, p.exponent_1_m * grown * rate
 
     def touch(self, y: FloatArray) -> float:
-        """Give the force between cone and cap."""
+        """Return the force between cone and cap."""
         s = self.sensor
         return _hunt_crossley(
             s.contact_stiffness_N_m, s.contact_loss_s_m, float(y[4] - y[6]), float(y[5] - y[7])
         )
 
     def leaf(self, x: float, v: float, y: float, vy: float, q: float, p: float) -> tuple[float, ...]:
-        """Give the cam's force on the leaf, its slope, the fixed contact's force, the leaf's acceleration."""
+        """Return the cam's force on the leaf, its slope, the contact's force, the leaf's acceleration."""
         leaf = self.button.leaf
         height, slope = self.height(x)
         normal = _hunt_crossley(leaf.cam_stiffness_N_m, leaf.cam_loss_s_m, height - y, slope * v - vy)
@@ -132,7 +132,7 @@ class _Plant:
         return normal, slope, fixed, (normal + fixed - pull) / leaf.mass_kg
 
     def law(self, elastic_N: float, v: float) -> float:
-        """Give what a dome's force gains by its speed."""
+        """Return the velocity-dependent part of a dome's force."""
         dome = self.button.dome
         if self.button.curve.kind == "leaf" or elastic_N < 0:
             return 0.0
@@ -141,13 +141,13 @@ class _Plant:
         return elastic_N * dome.log_ratio * math.copysign(math.log(1 + abs(v) / dome.log_speed_m_s), v)
 
     def stops(self, x: float, v: float) -> float:
-        """Give the force of the stops, upward."""
+        """Return the force of the stops, upward."""
         h = self.button.housing
         bottom = _hunt_crossley(h.bottom_stiffness_N_m, h.bottom_loss_s_m, x - self.button.curve.travel_m, v)
         return bottom - _hunt_crossley(h.top_stiffness_N_m, h.top_loss_s_m, -x, -v)
 
     def rates(self, t: float, y: FloatArray) -> FloatArray:
-        """Give the time derivative of the state."""
+        """Return the time derivative of the state."""
         xf, vf, fast, slow, xt, vt, xs, vs, yl, vl, z, q1, p1, q2, p2, felt = y.tolist()
         b, finger = self.button, self.finger
         snap, dome = b.housing.snap_ratio, b.curve.kind == "dome"
@@ -183,11 +183,11 @@ class _Plant:
         )  # fmt: skip
 
     def _unbalanced_N(self, x: float) -> float:
-        """Give what is left over on a finger that rests at x on a cap at 0, its pulp relaxed."""
+        """Return the unbalanced force on a finger that rests at x on a cap at 0, its pad relaxed."""
         return self.gesture.stiffness_N_m * (self.gesture.start_m - x) - self.pulp(x, 0.0, 0.0)[0]
 
     def start(self) -> FloatArray:
-        """Give the state before settling: finger on or above the cap, leaf at rest on the cam."""
+        """Return the state before settling: finger on or above the cap, leaf at rest on the cam."""
         from scipy.optimize import brentq
 
         y = np.zeros(16)

@@ -19,7 +19,7 @@ friction's bristle; magnet x in the cap, v; warmth of the coil."""
 
 
 def _smooth_step(s: float) -> tuple[float, float]:
-    """Give minimum jerk (position, rate) on the unit interval."""
+    """Return minimum jerk (position, rate) on the unit interval."""
     s = min(max(s, 0.0), 1.0)
     return 10 * s**3 - 15 * s**4 + 6 * s**5, 30 * s**2 - 60 * s**3 + 30 * s**4
 
@@ -41,7 +41,7 @@ class ReferencePlant:
     modulation: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 0.0)
 
     def referent(self, t: float) -> tuple[float, float]:
-        """Give where the finger means to be, and how fast."""
+        """Return the intended position and velocity of the finger."""
         g = self.gesture
         down, rate_down = _smooth_step((t - g.onset_s) / g.press_s)
         up, rate_up = _smooth_step((t - g.onset_s - g.press_s - g.dwell_s) / g.release_s)
@@ -49,13 +49,13 @@ class ReferencePlant:
         return g.start_m + reach * (down - up), reach * (rate_down / g.press_s - rate_up / g.release_s)
 
     def touch(self, y: FloatArray) -> float:
-        """Give the force between cone and cap."""
+        """Return the force between cone and cap."""
         sensor = self.rig.force_sensor
         depth, rate = float(y[4] - y[6]), float(y[5] - y[7])
         return _hunt_crossley(sensor.contact_stiffness_N_m, sensor.contact_loss_s_m, depth, rate)
 
     def pulp(self, y: FloatArray) -> tuple[float, float, float]:
-        """Give the force beyond the strap's, and the rates of the two arms."""
+        """Return the force beyond the strap's, and the rates of the two arms."""
         p = self.finger.pulp
         relaxed_N = p.relaxed_ratio * p.scale_N
         rest = math.log((p.strap_N + relaxed_N) / relaxed_N)
@@ -67,7 +67,7 @@ class ReferencePlant:
         return float(force), float(fast), float(slow)
 
     def muscle(self, t: float, y: FloatArray) -> float:
-        """Give the pull of the referent, with the noise of its effort."""
+        """Return the pull of the referent, with the noise of its effort."""
         t0, t1, u0, u1 = self.modulation
         x, v = self.referent(t)
         pull = self.gesture.stiffness_N_m * (x - y[0]) + self.gesture.damping_N_s_m * (v - y[1])
@@ -82,12 +82,12 @@ class ReferencePlant:
         self.ratio = ratio if c.bipolar == "yes" else max(ratio, 0.0)
 
     def supply_V(self, y: FloatArray) -> float:
-        """Give the supply, which sags under the bridge's current."""
+        """Return the supply voltage, which sags under the bridge's current."""
         c = self.rig.coil
         return c.supply_V - (c.source_ohm * self.ratio * float(y[8]) if c.drive == "voltage" else 0.0)
 
     def coil(self, y: FloatArray) -> tuple[float, float, float]:
-        """Give the force up, the rate of the current and the rate of warming."""
+        """Return the upward force, the rate of the current and the rate of warming."""
         c, amps, v = self.rig.coil, float(y[8]), float(y[7])
         off = float(y[6]) - c.centre_m
         constant = c.force_constant_N_A * (1 - c.droop_ratio * (2 * off / c.stroke_m) ** 2)
@@ -109,7 +109,7 @@ class ReferencePlant:
         )
 
     def exciter(self, y: FloatArray, slip_rate: float = 0.0) -> tuple[float, float]:
-        """Give the force on the cap and the magnet's acceleration, undriven.
+        """Return the force on the cap and the magnet's acceleration, undriven.
 
         The lag of the current, microseconds, is that of a line: slip_rate is the rate of its cause.
         """
@@ -123,7 +123,7 @@ class ReferencePlant:
         return force, -force / e.mass_kg
 
     def cap(self, y: FloatArray, touch: float, up: float, shake: float) -> tuple[float, float]:
-        """Give the acceleration of the cap and the rate of the bristle's stretch."""
+        """Return the acceleration of the cap and the rate of the bristle's stretch."""
         mover, stops, v, bristle = self.rig.mover, self.rig.stops, float(y[7]), float(y[11])
         held = min(max(bristle, -mover.presliding_m), mover.presliding_m)
         rub = mover.coulomb_N * held / mover.presliding_m + mover.viscous_N_s_m * v
@@ -136,7 +136,7 @@ class ReferencePlant:
         return force / self.rig.frame_kg, (held - bristle) / RELAX_s if slips else v
 
     def rates(self, t: float, y: FloatArray) -> FloatArray:
-        """Give the time derivative of the state."""
+        """Return the time derivative of the state."""
         rig, touch = self.rig, self.touch(y)
         (pulp, fast, slow), (up, amps, warm) = self.pulp(y), self.coil(y)
         shake, magnet = self.exciter(y)

@@ -79,7 +79,7 @@ class _Run:
         self.felt_N = self.force(float(self.y[10]), float(noise.force_N[k]))
 
     def readings(self, k: int) -> np.void:
-        """Give what the converters tell at tick k."""
+        """Return the converters' readings at tick k."""
         sensor, control = self.plant.rig.position_sensor, self.plant.rig.controller
         u = self.lvdt_m / (sensor.range_m / 2)
         reads = self.lvdt_m + 1.5 * math.sqrt(3) * (u - u**3) * sensor.linearity_ratio * sensor.range_m / 2
