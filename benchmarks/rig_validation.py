@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 from tests.support.closed_forms import coil_error_ratio, mean_response, ripple_N
-from tests.support.felt import felt, ways
+from tests.support.felt import cap_vibration, ways
 from tests.support.loop import LinearLoop, bare_loop, cycles, grainy_loop, onset_N_m, quantisation_limit_N_m
 from tests.support.reference.reference import reference_simulate
 from tests.support.table_press import simulate
@@ -113,7 +113,7 @@ def vibration_checks() -> list[Check]:
     """Time the onset of a vibration on the cap at every pace, and look at its shape."""
     rows = []
     for name, rig, settings, at_mm in ways():
-        seen = [felt(rig, settings, at_mm, v) for v in VELOCITIES_mm_s]
+        seen = [cap_vibration(rig, settings, at_mm, v) for v in VELOCITIES_mm_s]
         worst = max((f.late_ms for f in seen), key=abs)
         text = " ".join(f"{f.late_ms:+.1f}" for f in seen) + " ms"
         rows.append(Check(f"V13 onset, {name}", text, "within 1 ms", abs(worst) <= 1.0))

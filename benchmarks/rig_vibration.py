@@ -5,7 +5,7 @@ Run as ``python -m benchmarks.rig_vibration``.
 
 from __future__ import annotations
 
-from tests.support.felt import SNAP_AT_mm, SNAP_DURATION_s, SNAP_Hz, felt, ways
+from tests.support.felt import SNAP_AT_mm, SNAP_DURATION_s, SNAP_Hz, cap_vibration, ways
 
 VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0, 300.0)
 
@@ -16,7 +16,7 @@ def main() -> None:
     print("onset on the cap after its displacement, ms, at mm/s:")
     print(f"{'':34}" + "".join(f"{v:8g}" for v in VELOCITIES_mm_s))
     for name, rig, settings, at_mm in ways():
-        shown = [felt(rig, settings, at_mm, v) for v in VELOCITIES_mm_s]
+        shown = [cap_vibration(rig, settings, at_mm, v) for v in VELOCITIES_mm_s]
         print(f"{name:34}" + "".join(f"{f.late_ms:+8.1f}" for f in shown))
     print("rendered, of the last row:")
     for v, f in zip(VELOCITIES_mm_s, shown, strict=True):

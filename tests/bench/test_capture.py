@@ -182,8 +182,8 @@ def test_a_take_that_shows_nothing_is_not_good(take: Take, words: str) -> None:
 
 
 def test_where_cameras_record_for_themselves_the_force_alone_tells_a_press() -> None:
-    felt_cN = np.concatenate([np.full(20, 9.0), np.linspace(10, 150, 10), np.full(20, 9.0)])
-    check = quick_look(replace(NOTHING, streams=(stream("f", FORCE, felt_cN),)), CapturePlan())
+    force_cN = np.concatenate([np.full(20, 9.0), np.linspace(10, 150, 10), np.full(20, 9.0)])
+    check = quick_look(replace(NOTHING, streams=(stream("f", FORCE, force_cN),)), CapturePlan())
     assert check.ok
     assert np.isnan(check.achieved_mm_s)
 

@@ -64,9 +64,9 @@ class Plant:
         reading = played(lagged(force, self.filter_s, step), self.half_play_cN)
         sensed = lagged(x, self.position_lag_s, step)[rows]
         sensed = sensed + self.position_noise_mm * random.standard_normal(sensed.size)
-        felt = reading[rows] + self.force_noise_cN * random.standard_normal(sensed.size)
+        measured = reading[rows] + self.force_noise_cN * random.standard_normal(sensed.size)
         nowhere = np.full(sensed.size, np.nan)
-        return Press(t[rows], nowhere, nowhere, velocity_mm_s, sensed, felt, command[rows])
+        return Press(t[rows], nowhere, nowhere, velocity_mm_s, sensed, measured, command[rows])
 
     def forces_cN(self, motion: tuple[FloatArray, ...], command: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the coil's force on the finger, its braking included, and the rig's own force."""

@@ -11,11 +11,11 @@ from fdvv.errors import ModelError
 
 
 def test_the_error_is_the_weighted_mean_and_largest_deviation() -> None:
-    target, felt = np.array([10.0, 20.0, 30.0, 40.0]), np.array([11.0, 18.0, 30.0, 45.0])
+    target, rendered = np.array([10.0, 20.0, 30.0, 40.0]), np.array([11.0, 18.0, 30.0, 45.0])
     # |d| = 1, 2, 0, 5: mean 2, largest 5
-    assert error_cN(target, felt, 0.7) == pytest.approx(0.7 * 2 + 0.3 * 5)
-    assert error_cN(target, felt, 1.0) == pytest.approx(2.0)
-    assert error_cN(target, felt, 0.0) == pytest.approx(5.0)
+    assert error_cN(target, rendered, 0.7) == pytest.approx(0.7 * 2 + 0.3 * 5)
+    assert error_cN(target, rendered, 1.0) == pytest.approx(2.0)
+    assert error_cN(target, rendered, 0.0) == pytest.approx(5.0)
 
 
 def test_bins_that_were_not_visited_do_not_count() -> None:

@@ -61,14 +61,14 @@ def test_the_command_that_a_force_needs_makes_the_rig_feel_that_force() -> None:
     """Against the rig's own equation, at a steady speed, once its lags have passed."""
     motion, even = steady(80.0), replace(RIG, gain=(0.9, 0.0, 0.0))
     command = needed_cN(even, motion, np.full(motion.t_s.size, 60.0))
-    felt = even.felt_cN(
+    rendered = even.rendered_cN(
         motion.t_s,
         motion.displacement_mm,
         motion.velocity_mm_s,
         motion.acceleration_m_s2,
         np.interp(motion.t_s + even.delay_s, motion.t_s, command),
     )
-    assert_allclose(felt[200:-100], 60.0, atol=1e-3)
+    assert_allclose(rendered[200:-100], 60.0, atol=1e-3)
 
 
 def test_an_ideal_rig_reaches_what_is_intended_with_mass_and_weight_in_the_command() -> None:
@@ -103,9 +103,9 @@ def test_a_cap_that_pulls_loses_the_finger() -> None:
 def test_a_sine_in_time_shrinks_as_hold_and_lag_say() -> None:
     motion, omega, lag_s = steady(100.0), 2 * np.pi * 250.0, 5e-4
     sine = np.sin(omega * motion.t_s)
-    felt = rendered_cN(RigModel(electric_lag_s=lag_s), motion, 100.0 + 50.0 * sine, TICK_s)
+    rendered = rendered_cN(RigModel(electric_lag_s=lag_s), motion, 100.0 + 50.0 * sine, TICK_s)
     middle = slice(200, -200)
-    size = 0.5 * np.ptp(felt[middle])
+    size = 0.5 * np.ptp(rendered[middle])
     x = 0.5 * omega * TICK_s
     assert size == pytest.approx(50.0 * np.sin(x) / x / np.hypot(1.0, omega * lag_s), rel=0.01)
 
@@ -113,8 +113,8 @@ def test_a_sine_in_time_shrinks_as_hold_and_lag_say() -> None:
 def test_a_ramp_in_time_is_led_and_not_late() -> None:
     motion = steady(100.0)
     ramp = 20.0 + 1000.0 * motion.t_s
-    felt = rendered_cN(RigModel(electric_lag_s=5e-4), motion, ramp, TICK_s)
-    assert_allclose(felt[200:-200], ramp[200:-200], atol=0.02)
+    rendered = rendered_cN(RigModel(electric_lag_s=5e-4), motion, ramp, TICK_s)
+    assert_allclose(rendered[200:-200], ramp[200:-200], atol=0.02)
 
 
 def test_less_of_a_bump_is_left_the_faster_the_press() -> None:

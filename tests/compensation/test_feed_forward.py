@@ -57,8 +57,8 @@ def fed_back_cN(plant: Plant, velocity_mm_s: float, down: bool) -> float:
         np.interp(t + lead_s - late_s, t, column)
         for lead_s, column in ((tuning.lead_s, x), (tuning.brake_lead_s, v))
     )
-    felt = sum(plant.forces_cN(motion, np.interp(soon, GRID_mm, table) - added_cN(tuning, speed)))
-    off = (felt - np.interp(x, GRID_mm, TARGET_cN))[rows]
+    rendered = sum(plant.forces_cN(motion, np.interp(soon, GRID_mm, table) - added_cN(tuning, speed)))
+    off = (rendered - np.interp(x, GRID_mm, TARGET_cN))[rows]
     return float(np.abs(off[(x[rows] > 0.6) & (x[rows] < 3.4)]).max())
 
 
@@ -89,11 +89,11 @@ def test_without_lag_the_identity_is_exact_also_for_a_changed_motion(velocity_mm
     change = (0.05 * random.normal(size=40), 0.1 * random.normal(size=40), random.normal(size=40))
     stroke = StrokeSample(x, v, a, np.zeros(40), own, 1e-3, abs(velocity_mm_s))
     place, more = required_change(known, tuning, stroke, change, (GRID_mm, TARGET_cN))
-    felt_wanted = np.interp(place, GRID_mm, TARGET_cN)
+    wanted_cN = np.interp(place, GRID_mm, TARGET_cN)
     v2, a2 = v + change[1], a + change[2]
-    command = command_cN(known, place, felt_wanted) + more - added_cN(tuning, v2)
-    felt = known.gain_at(place) * command + known.opposing_cN(v2, a2, place)
-    np.testing.assert_allclose(felt, felt_wanted, atol=1e-9)
+    command = command_cN(known, place, wanted_cN) + more - added_cN(tuning, v2)
+    rendered = known.gain_at(place) * command + known.opposing_cN(v2, a2, place)
+    np.testing.assert_allclose(rendered, wanted_cN, atol=1e-9)
 
 
 def test_at_rest_the_first_table_holds_the_target() -> None:
@@ -101,7 +101,7 @@ def test_at_rest_the_first_table_holds_the_target() -> None:
     command, still = command_cN(known, GRID_mm, TARGET_cN), np.zeros(200)
     for k in range(0, GRID_mm.size, 40):
         held = np.full(200, GRID_mm[k]), still, still, np.full(200, command[k])
-        assert known.felt_cN(1e-3 * np.arange(200, dtype=np.float64), *held)[-1] == pytest.approx(
+        assert known.rendered_cN(1e-3 * np.arange(200, dtype=np.float64), *held)[-1] == pytest.approx(
             TARGET_cN[k]
         )
 

@@ -26,7 +26,7 @@ def made(plant: Plant, velocity_mm_s: float) -> tuple[Press, dict[str, FloatArra
     command = 70 + 10 * np.sin(2 * np.pi * 20 * t)
     coil, own = plant.forces_cN(motion, command)
     truth = {"displacement_mm": x, "velocity_mm_s": v, "acceleration_m_s2": a / 1000}
-    truth |= {"felt_cN": coil + own, "own_cN": own}
+    truth |= {"rendered_cN": coil + own, "own_cN": own}
     return plant.pressed(velocity_mm_s, motion, command), {n: c[::FINE] for n, c in truth.items()}
 
 
@@ -41,7 +41,7 @@ CLOSE = {
     "displacement_mm": (0.006, 0.006),
     "velocity_mm_s": (2.0, 2.5),
     "acceleration_m_s2": (0.1, 4.0),
-    "felt_cN": (0.9, 1.1),
+    "rendered_cN": (0.9, 1.1),
     "own_cN": (0.3, 0.7),
 }
 """Rms, without noise and with 3 um and 0.3 cN of it per tick. The first is what the window evens out, half
@@ -54,10 +54,10 @@ def test_motion_and_forces_are_found_again(plant: Plant, noisy: int, velocity_mm
     press, truth = made(plant, velocity_mm_s)
     for one in stroke_samples(press, TRAVEL_mm, known_of(plant), SENSOR):
         # where a stroke turns, friction does so at once and the window cannot
-        inner = slice(20, one.felt_cN.size - 20)
+        inner = slice(20, one.rendered_cN.size - 20)
         start = begins(one, truth["displacement_mm"])
         for name, column in truth.items():
-            off = getattr(one, name)[inner] - column[start:][: one.felt_cN.size][inner]
+            off = getattr(one, name)[inner] - column[start:][: one.rendered_cN.size][inner]
             assert np.sqrt(np.mean(off**2)) < CLOSE[name][noisy], name
 
 
@@ -83,7 +83,7 @@ def test_half_of_the_play_is_taken_off_where_the_force_rises_or_falls() -> None:
         found = []
         for one in stroke_samples(press, TRAVEL_mm, known, SENSOR):
             start = begins(one, truth["displacement_mm"])
-            found.append(np.abs(one.felt_cN - truth["felt_cN"][start : start + one.felt_cN.size]))
+            found.append(np.abs(one.rendered_cN - truth["rendered_cN"][start : start + one.rendered_cN.size]))
         return float(np.mean(np.concatenate(found)))
 
     assert off_cN(3.0) < 0.5 * off_cN(0.0)

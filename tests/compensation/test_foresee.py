@@ -21,18 +21,18 @@ def stroke(
     """Go down evenly, feeling the target and an excess, (n,)."""
     x = 0.1 + speed_mm_s * tick_s * np.arange(excess_cN.size, dtype=np.float64)
     v, a = np.full(x.size, speed_mm_s), np.zeros(x.size)
-    felt = np.interp(x, GRID_mm, target_cN) + excess_cN
-    return StrokeSample(x, v, a, felt, np.zeros(x.size), tick_s, speed_mm_s)
+    rendered = np.interp(x, GRID_mm, target_cN) + excess_cN
+    return StrokeSample(x, v, a, rendered, np.zeros(x.size), tick_s, speed_mm_s)
 
 
 def solved(one: StrokeSample, target_cN: FloatArray, finger: FingerJoint) -> FloatArray:
-    """Solve m q'' + b q' + k q = felt - target(x + q), in SI; return (q, q', q'') in mm, mm/s, m/s2."""
-    t = one.tick_s * np.arange(1, one.felt_cN.size + 1)
+    """Solve m q'' + b q' + k q = rendered - target(x + q), in SI; return (q, q', q'') in mm, mm/s, m/s2."""
+    t = one.tick_s * np.arange(1, one.rendered_cN.size + 1)
     mass, damping, stiffness = 1e-3 * finger.mass_g, finger.damping_N_s_m, finger.stiffness_N_m
 
     def slope(at_s: float, state: FloatArray) -> list[float]:
-        x_mm, felt = np.interp(at_s, t, one.displacement_mm), np.interp(at_s, t, one.felt_cN)
-        excess_N = 0.01 * (felt - np.interp(x_mm + 1e3 * state[0], GRID_mm, target_cN))
+        x_mm, rendered = np.interp(at_s, t, one.displacement_mm), np.interp(at_s, t, one.rendered_cN)
+        excess_N = 0.01 * (rendered - np.interp(x_mm + 1e3 * state[0], GRID_mm, target_cN))
         return [state[1], (excess_N - damping * state[1] - stiffness * state[0]) / mass]
 
     found = solve_ivp(slope, (0.0, t[-1]), [0.0, 0.0], t_eval=t, rtol=1e-8, atol=1e-10, max_step=one.tick_s)

@@ -22,10 +22,10 @@ def test_without_delays_the_force_is_binned_as_sensed() -> None:
 def test_with_the_true_delays_an_error_is_filed_under_the_command_that_made_it() -> None:
     speed, position_s, command_s = 100.0, 0.001, 0.002
     sensed = speed * (T - position_s)
-    # felt: the target where the cap truly is, and a bump that the table put at 2 mm
+    # rendered: the target where the cap truly is, and a bump that the table put at 2 mm
     commanded_at = speed * (T - position_s - command_s)
-    felt = np.interp(speed * T, GRID, TARGET) - 10 * (np.abs(commanded_at - 2.0) < 0.2)
-    found = observe(T, sensed, felt, SPAN, TARGET, GRID, Delays(position_s, command_s))
+    rendered = np.interp(speed * T, GRID, TARGET) - 10 * (np.abs(commanded_at - 2.0) < 0.2)
+    found = observe(T, sensed, rendered, SPAN, TARGET, GRID, Delays(position_s, command_s))
     shortfall = TARGET - found
     inside, outside = np.abs(GRID - 2.0) < 0.15, np.abs(GRID - 2.0) > 0.25
     np.testing.assert_allclose(shortfall[inside], 10.0, atol=0.05)
@@ -35,8 +35,8 @@ def test_with_the_true_delays_an_error_is_filed_under_the_command_that_made_it()
 def test_without_them_the_error_is_filed_too_deep() -> None:
     speed, lag_s = 100.0, 0.003
     sensed = speed * T
-    felt = np.interp(sensed, GRID, TARGET) - 10 * (np.abs(sensed - speed * lag_s - 2.0) < 0.2)
-    shortfall = TARGET - observe(T, sensed, felt, SPAN, TARGET, GRID, Delays())
+    rendered = np.interp(sensed, GRID, TARGET) - 10 * (np.abs(sensed - speed * lag_s - 2.0) < 0.2)
+    shortfall = TARGET - observe(T, sensed, rendered, SPAN, TARGET, GRID, Delays())
     found = GRID[np.nan_to_num(shortfall) > 5].mean()
     assert found == pytest.approx(2.0 + speed * lag_s, abs=0.05)
 

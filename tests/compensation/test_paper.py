@@ -108,18 +108,18 @@ def test_commands_stay_within_the_limit() -> None:
 def test_bins_that_were_not_visited_learn_nothing_in_the_literal_law() -> None:
     law = plain(0.5)
     state = law.init(TARGET, GRID, LIMIT)
-    felt = np.where((GRID > 1) & (GRID < 3), TARGET - 10, np.nan)
-    command, _ = law.step(felt, state)
+    rendered = np.where((GRID > 1) & (GRID < 3), TARGET - 10, np.nan)
+    command, _ = law.step(rendered, state)
     change = command - state.command_cN
-    np.testing.assert_allclose(change[np.isfinite(felt)], 5.0)
-    np.testing.assert_array_equal(change[np.isnan(felt)], 0.0)
+    np.testing.assert_allclose(change[np.isfinite(rendered)], 5.0)
+    np.testing.assert_array_equal(change[np.isnan(rendered)], 0.0)
 
 
 def test_held_ends_carry_the_correction_of_the_nearest_visited_bin() -> None:
     law = plain(0.5, hold_ends=True)
-    felt = np.where((GRID > 1) & (GRID < 3), TARGET - 10 * GRID, np.nan)
+    rendered = np.where((GRID > 1) & (GRID < 3), TARGET - 10 * GRID, np.nan)
     state = law.init(TARGET, GRID, LIMIT)
-    change = law.step(felt, state)[0] - state.command_cN
+    change = law.step(rendered, state)[0] - state.command_cN
     np.testing.assert_allclose(change[0], 0.5 * 10 * 1.05)
     np.testing.assert_allclose(change[-1], 0.5 * 10 * 2.95)
 

@@ -26,13 +26,13 @@ def table(value_cN: float) -> SharedTable:
     return SharedTable(TARGET.displacement_mm, SPEEDS_mm_s, np.full((2, COUNT), value_cN), np.eye(2))
 
 
-def felt(error_cN: float, row_cN: float) -> PressError:
+def press_error(error_cN: float, row_cN: float) -> PressError:
     return PressError(error_cN, 0.5 * error_cN, 3 * error_cN, np.full(COUNT, row_cN))
 
 
 def presses(errors_cN: list[float], release_cN: float = 2.0) -> tuple[tuple[PressError, PressError], ...]:
     """Return the presses of one speed; press k was made on a row of k."""
-    return tuple((felt(error, k), felt(release_cN, k)) for k, error in enumerate(errors_cN))
+    return tuple((press_error(error, k), press_error(release_cN, k)) for k, error in enumerate(errors_cN))
 
 
 def test_the_row_of_the_best_press_is_kept_where_the_last_got_much_worse() -> None:

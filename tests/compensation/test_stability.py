@@ -32,7 +32,7 @@ FINE = 25
 
 
 def swing_mm(loop: SampledLoop, stiffness_N_m: FloatArray, ticks: int) -> FloatArray:
-    """Release caps 1 mm from rest, one per stiffness, by plain Euler steps; return their places at each tick."""
+    """Release caps 1 mm from rest, one per stiffness, by plain Euler steps; return places at each tick."""
     dt, hand = loop.tick_s / FINE, loop.finger
     x, seen, finger = (np.full(stiffness_N_m.size, 1.0) for _ in range(3))
     v, finger_v, arm = (np.zeros(stiffness_N_m.size) for _ in range(3))

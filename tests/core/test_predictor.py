@@ -114,8 +114,8 @@ def test_a_steady_acceleration_is_foreseen_exactly_once_settled(
 @pytest.mark.parametrize("speed_mm_s", [-200.0, -5.0, 0.0, 3.0, 50.0])
 def test_drag_and_friction_are_taken_off_by_speed_and_direction(speed_mm_s: float) -> None:
     # 2 N s/m is 0.2 cN per mm/s
-    felt = {"drag_q13": round(0.8 * 2**13), "friction_cN64": 5 * 64, "friction_mm_s16": 10 * 16}
-    settings = tuned(250, brake_lead_us=3000, **felt)
+    drag = {"drag_q13": round(0.8 * 2**13), "friction_cN64": 5 * 64, "friction_mm_s16": 10 * 16}
+    settings = tuned(250, brake_lead_us=3000, **drag)
     x = (0.2 if speed_mm_s >= 0 else 3.8) + speed_mm_s * 250e-6 * np.arange(70)
     found = armed(NOTHING, settings).run(inputs_at(settings, x))["commanded_cN64"][-10:] / 64
     wanted = -0.2 * speed_mm_s - 5 * np.clip(speed_mm_s / 10, -1, 1)

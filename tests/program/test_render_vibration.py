@@ -49,10 +49,10 @@ def test_the_plain_slot_is_kept_where_the_exciter_hardly_shapes_it() -> None:
 
 def test_what_is_expected_is_that_of_the_boards_very_samples() -> None:
     made = render_vibration(SNAP, EXCITER)
-    felt = acceleration_m_s2(EXCITER, slot_volts(made.slot, 1000))
+    rendered = acceleration_m_s2(EXCITER, slot_volts(made.slot, 1000))
     wanted = SNAP.acceleration_m_s2((np.arange(1000) + 0.5) / 16_000 - made.lead_s)
-    assert correlation(felt, wanted) == pytest.approx(made.likeness, abs=1e-3)
-    error = np.linalg.norm(felt - wanted) / np.linalg.norm(wanted)
+    assert correlation(rendered, wanted) == pytest.approx(made.likeness, abs=1e-3)
+    error = np.linalg.norm(rendered - wanted) / np.linalg.norm(wanted)
     assert error == pytest.approx(made.error_ratio, abs=1e-3)
 
 

@@ -1,4 +1,4 @@
-"""What was felt and what was intended on one grid."""
+"""Rendered and intended force on one grid."""
 
 import numpy as np
 import pytest
@@ -7,23 +7,23 @@ from fdvv.device.twin import TwinDevice
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
-from fdvv.rendering.press_check import FORCE_JND_ratio, felt_press, intended_press, noticeable_cN
+from fdvv.rendering.press_check import FORCE_JND_ratio, intended_press, noticeable_cN, rendered_press
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session_run import PressDone
 
 MODEL = load_builtin("mx-clear")
 
 
-def test_what_was_felt_is_what_a_probe_judges() -> None:
+def test_the_rendered_force_is_what_a_probe_judges() -> None:
     device, surface = TwinDevice(seed=3), ForceSurface.of_model(MODEL, [100.0])
     made: list[PressDone] = []
     result = probe(device, MODEL, surface, [100.0], 1, made.append)
     press = made[0].press
     assert press
-    found = felt_press(press, MODEL.travel_mm)
-    for curve, felt_cN in zip(result.curves, (found.press_cN, found.release_cN), strict=True):
+    found = rendered_press(press, MODEL.travel_mm)
+    for curve, force_cN in zip(result.curves, (found.press_cN, found.release_cN), strict=True):
         rows = np.searchsorted(found.displacement_mm, curve.displacement_mm - 1e-9)
-        assert np.nan_to_num(felt_cN[rows]) == pytest.approx(curve.rendered_cN[0])
+        assert np.nan_to_num(force_cN[rows]) == pytest.approx(curve.rendered_cN[0])
 
 
 def test_what_was_intended_is_the_models_force() -> None:

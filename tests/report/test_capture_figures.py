@@ -82,15 +82,15 @@ def test_the_force_is_drawn_as_read_and_as_felt_and_their_difference_below() -> 
     processed = recorded().processed
     top, below = plot_force(capture(), processed, FAST).axes
     (one,) = [o for o in processed.judged if o.press.take == FAST]
-    felt = line(top, "filter of 0.33 ms undone")
+    rendered = line(top, "filter of 0.33 ms undone")
     np.testing.assert_array_equal(
-        felt.get_ydata(), one.press.force_cN[np.isin(one.press.t_s, felt.get_xdata())]
+        rendered.get_ydata(), one.press.force_cN[np.isin(one.press.t_s, rendered.get_xdata())]
     )
     read = line(top, "as read")
     change: Any = below.get_lines()[0]
     at = np.interp(change.get_xdata(), read.get_xdata(), read.get_ydata())
     inner = slice(1, -1)
-    np.testing.assert_allclose(change.get_ydata()[inner], (felt.get_ydata() - at)[inner], atol=1e-9)
+    np.testing.assert_allclose(change.get_ydata()[inner], (rendered.get_ydata() - at)[inner], atol=1e-9)
 
 
 def test_the_path_goes_through_its_samples_with_a_colour_for_each_stroke() -> None:

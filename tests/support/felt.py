@@ -90,7 +90,7 @@ def press_with(rig: Rig, settings: Settings, at_mm: float, velocity_mm_s: float,
     return plant.record()
 
 
-def felt(rig: Rig, settings: Settings, at_mm: float, velocity_mm_s: float) -> CapVibration:
+def cap_vibration(rig: Rig, settings: Settings, at_mm: float, velocity_mm_s: float) -> CapVibration:
     """Compare a press with its vibration and without."""
     with_it, without = (press_with(rig, settings, at_mm, velocity_mm_s, s) for s in ([snap()], []))
     added = with_it.cap_acceleration_m_s2 - without.cap_acceleration_m_s2

@@ -17,7 +17,7 @@ Meddle = Callable[[int, Inputs], Inputs]
 
 
 class ScriptedPlant:
-    """A cap on a path; the force felt is that of the duty. `record` has one row per tick.
+    """A cap on a path; the rendered force is that of the duty. `record` has one row per tick.
 
     Parameters
     ----------
@@ -40,15 +40,15 @@ class ScriptedPlant:
         self.meddle = meddle
         self._noise = random.integers(-noise_counts, noise_counts + 1, 1024)
         self._tick = 0
-        self._felt_cN: list[float] = []
+        self._rendered_cN: list[float] = []
 
     @property
     def ticks(self) -> int:
         return self._path_mm.size
 
     def step(self, duty_q15: int, enable: int, stop_us: int, slot: int) -> Inputs:
-        felt = duty_q15 * 65536 / self._settings.duty_gain_q16 / CN64_PER_cN if enable else 0.0
-        self._felt_cN.append(felt)
+        rendered = duty_q15 * 65536 / self._settings.duty_gain_q16 / CN64_PER_cN if enable else 0.0
+        self._rendered_cN.append(rendered)
         x_um16 = UM16_PER_mm * float(self._path_mm[min(self._tick, self.ticks - 1)])
         scale = self._settings.position_gain_q14 / 2**14
         total = round((x_um16 - self._settings.position_offset_um16) / scale)
@@ -63,7 +63,7 @@ class ScriptedPlant:
         n = self._tick
         path = self._path_mm[np.minimum(np.arange(n), self.ticks - 1)]
         t_s = np.arange(n, dtype=np.float64) * (self._settings.tick_us * 1e-6)
-        force = np.array(self._felt_cN, dtype=np.float64)
+        force = np.array(self._rendered_cN, dtype=np.float64)
         every = np.ones(n, dtype=np.bool_)
         return Press(t_s, path, force, self._velocity_mm_s, tick=every, simulated=True)
 

@@ -14,7 +14,7 @@ from fdvv.twin.rig import Rig
 from fdvv.twin.rig_moves import Coil, Exciter, Mover
 from fdvv.twin.settings import settings_of
 from tests.support.closed_forms import coil_error_ratio, mean_response, ripple_N
-from tests.support.felt import SNAP_AT_mm, SNAP_Hz, felt, press_with, snap, ways
+from tests.support.felt import SNAP_AT_mm, SNAP_Hz, cap_vibration, press_with, snap, ways
 from tests.support.loop import (
     AWAY,
     LinearLoop,
@@ -61,7 +61,7 @@ def test_friction_swallows_the_grain_of_the_position_up_to_its_known_limit_and_n
 def test_a_synthesised_vibration_is_felt_within_a_millisecond_of_its_displacement() -> None:
     _, rig, settings, at_mm = ways()[3]
     for velocity in (50.0, 300.0):
-        seen = felt(rig, settings, at_mm, velocity)
+        seen = cap_vibration(rig, settings, at_mm, velocity)
         assert abs(seen.late_ms) < 1.0
         assert seen.frequency_Hz == pytest.approx(SNAP_Hz, rel=0.08)
 
@@ -70,7 +70,7 @@ def test_a_late_sample_makes_a_vibration_late() -> None:
     rig = Rig(exciter=Exciter(latency_s=2e-4, jitter_s=0.0))
     late = Rig(exciter=Exciter(latency_s=6e-3, jitter_s=0.0))
     settings = settings_of(rig)
-    onset = [felt(r, settings, SNAP_AT_mm, 100.0).late_ms for r in (rig, late)]
+    onset = [cap_vibration(r, settings, SNAP_AT_mm, 100.0).late_ms for r in (rig, late)]
     assert onset[1] - onset[0] == pytest.approx(5.8, abs=0.3)
 
 

@@ -23,14 +23,14 @@ def played(exciter: KnownExciter, drive_V: FloatArray, rate_Hz: float, count: in
     times = (np.arange(count) + 0.5) / 16_000
     volts = np.interp(times * rate_Hz, np.arange(drive_V.size + 1), [*drive_V, 0.0], right=0.0)
     omega, fine_s = 2 * np.pi * exciter.resonance_Hz, 1 / 16_000 / 20
-    x, v, felt = 0.0, 0.0, []
+    x, v, rendered = 0.0, 0.0, []
     for held in np.repeat(volts, 20):
         # x is the magnet's place in the cap, in units in which its acceleration is the cap's
         a = exciter.gain_m_s2_V * held - omega / exciter.quality * v - omega**2 * x
         v += a * fine_s
         x += v * fine_s
-        felt.append(a)
-    return np.asarray(np.array(felt).reshape(-1, 20).mean(axis=1), dtype=np.float64)
+        rendered.append(a)
+    return np.asarray(np.array(rendered).reshape(-1, 20).mean(axis=1), dtype=np.float64)
 
 
 def test_acceleration_is_what_solving_the_equation_of_motion_gives() -> None:
@@ -43,10 +43,10 @@ def test_acceleration_is_what_solving_the_equation_of_motion_gives() -> None:
 
 def test_the_drive_makes_the_cap_follow_a_weak_vibration_closely() -> None:
     drive = drive_for(EXCITER, SNAP, InverseSettings(lead_s=0.002))
-    felt = played(EXCITER, drive.volts, drive.rate_Hz)
+    rendered = played(EXCITER, drive.volts, drive.rate_Hz)
     wanted = SNAP.acceleration_m_s2((np.arange(1200) + 0.5) / 16_000 - drive.lead_s)
-    assert correlation(felt, wanted) > 0.97
-    assert correlation(felt, wanted) == pytest.approx(drive.likeness, abs=0.01)
+    assert correlation(rendered, wanted) > 0.97
+    assert correlation(rendered, wanted) == pytest.approx(drive.likeness, abs=0.01)
     assert 0.9 < drive.strength_ratio < 1.05
 
 

@@ -37,9 +37,9 @@ def test_both_metrics_give_the_figures_of_the_published_implementation(seed: int
 @settings(max_examples=40, deadline=None)
 def test_delay_strength_and_sign_do_not_change_a_correlation(shift: int, gain: float, turned: bool) -> None:
     padded = np.pad(SNAP, 300)
-    felt = (-gain if turned else gain) * np.roll(padded, shift)
-    assert correlation(felt, padded) == pytest.approx(1.0)
-    assert delay_samples(felt, padded) == shift
+    rendered = (-gain if turned else gain) * np.roll(padded, shift)
+    assert correlation(rendered, padded) == pytest.approx(1.0)
+    assert delay_samples(rendered, padded) == shift
 
 
 def test_a_correlation_is_the_largest_of_all_delays() -> None:

@@ -131,8 +131,8 @@ def test_chosen_pairs_find_the_best_more_often_than_pairs_by_chance() -> None:
         won = np.zeros((8, 8))
         for _ in range(24):
             a, b = random.choice(8, 2, replace=False)
-            felt = np.array([likes[a], likes[b]]) + random.normal(size=2)
-            won[(a, b) if felt[0] > felt[1] else (b, a)] += 1
+            perceived = np.array([likes[a], likes[b]]) + random.normal(size=2)
+            won[(a, b) if perceived[0] > perceived[1] else (b, a)] += 1
         drawn += int(np.argmax(posterior(won)[0])) == 5
     assert chosen > drawn
 

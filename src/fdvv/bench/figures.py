@@ -145,14 +145,14 @@ def _draw_ends(ax: Axes, bounds: EdgeBounds, doubt_s: float) -> None:
 
 @style.in_house_style
 def plot_force(recording: Recording, processed: Processed, number: int, simulated: bool = False) -> Figure:
-    """Draw the force of one take as its converter gave it and as the sensor felt it, and the difference.
+    """Draw the force of one take as its converter gave it and as the sensor received it, and the difference.
 
     Raises ModelError if the take holds no press.
     """
     one, take = _judged(processed, number), _take(recording, number)
     stream, press = take.of(Quantity.FORCE)[0], one.press
     inside = (stream.t_s >= one.spans.start_s - 0.03) & (stream.t_s <= one.spans.end_s + 0.03)
-    felt = (press.t_s >= one.spans.start_s - 0.03) & (press.t_s <= one.spans.end_s + 0.03)
+    shown = (press.t_s >= one.spans.start_s - 0.03) & (press.t_s <= one.spans.end_s + 0.03)
     read_cN = stream.values - idle_cN(recording)
     fig = style.new_figure(8.0, 4.8)
     top, below = fig.subplots(2, 1, sharex=True, height_ratios=(2.4, 1))
@@ -160,9 +160,9 @@ def plot_force(recording: Recording, processed: Processed, number: int, simulate
     label = f"filter of {recording.bench.force_filter_ms:g} ms undone"
     if recording.bench.force_play_cN:
         label += f", play of {recording.bench.force_play_cN:g} cN too"
-    top.plot(press.t_s[felt], press.force_cN[felt], color=style.PALETTE[0], linewidth=1.1, label=label)
-    change_cN = press.force_cN[felt] - np.interp(press.t_s[felt], stream.t_s, read_cN)
-    below.plot(press.t_s[felt], change_cN, color=style.INK, linewidth=0.9)
+    top.plot(press.t_s[shown], press.force_cN[shown], color=style.PALETTE[0], linewidth=1.1, label=label)
+    change_cN = press.force_cN[shown] - np.interp(press.t_s[shown], stream.t_s, read_cN)
+    below.plot(press.t_s[shown], change_cN, color=style.INK, linewidth=0.9)
     top.set_ylabel(style.FORCE)
     below.set(ylabel="change (cN)", xlabel="time on the clock of the board (s)")
     top.legend(loc="upper right")

@@ -87,8 +87,8 @@ def _probe(take: Take, plan: CapturePlan) -> TakeCheck:
         return found if isinstance(found, TakeCheck) else _deep(float(found[1].max()), plan)
     displacement, force = displacements[0], forces[0]
     turn = int(np.argmax(displacement.values))
-    felt = np.interp(displacement.t_s, force.t_s, force.values)
-    loaded = np.flatnonzero(felt[: turn + 1] > felt[:10].mean() + 3.0)
+    force_cN = np.interp(displacement.t_s, force.t_s, force.values)
+    loaded = np.flatnonzero(force_cN[: turn + 1] > force_cN[:10].mean() + 3.0)
     if not loaded.size:
         return TakeCheck(False, reason="the probe felt no force; lead it down until the stop")
     return _deep(float(displacement.values[turn] - displacement.values[loaded[0]]), plan)

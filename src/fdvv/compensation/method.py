@@ -106,7 +106,7 @@ class CurveOutcome:
     Attributes
     ----------
     error_cN : error_k of every press used, in order.
-    mean_error_cN, max_error_cN : of |target - felt| over the bins, for the table that is returned.
+    mean_error_cN, max_error_cN : of |target - rendered| over the bins, for the table that is returned.
     sentence : summary for people.
     """
 

@@ -29,7 +29,7 @@ compute, half a tick, the coil's inductance and the force's filter."""
 
 @dataclass(frozen=True)
 class PaperLaw:
-    """Settings of the law u(p) += gain(error_k) * (target(p) - felt(p)), learned per curve.
+    """Settings of the law u(p) += gain(error_k) * (target(p) - rendered(p)), learned per curve.
 
     Attributes
     ----------
@@ -119,7 +119,7 @@ class PaperLaw:
         return replace(state, command_cN=self._start(state))
 
     def step(self, measured_cN: FloatArray, state: CurveState) -> tuple[FloatArray, CurveState]:
-        """Learn from one press: measured_cN (n,) felt with the current command, NaN where unknown.
+        """Learn from one press: measured_cN (n,) rendered with the current command, NaN where unknown.
 
         Returns the next command and state; after the last press of a round, the next round's start.
         Raises ModelError if nothing was measured.

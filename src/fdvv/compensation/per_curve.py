@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fdvv.compensation.identification.balance import felt_at_mm, observe
+from fdvv.compensation.identification.balance import acting_at_mm, observe
 from fdvv.compensation.method import CompensationJob, CurveOutcome, Outcome, PressCount, Trial
 from fdvv.compensation.paper import PaperLaw
 from fdvv.compensation.presses import rig_columns, split_strokes
@@ -116,10 +116,10 @@ class PerCurve:
 
     def _learn(self, press: Press, job: CompensationJob, pair: Pair) -> Pair:
         t_s, sensed, force = rig_columns(press)
-        felt = felt_at_mm(t_s, sensed, self.law.delays)
+        acting = acting_at_mm(t_s, sensed, self.law.delays)
         measured = [
             observe(t_s, sensed, force, span, c.target_cN, c.grid_mm, self.law.delays)
-            for span, c in zip(split_strokes(felt, job.travel_mm), pair, strict=True)
+            for span, c in zip(split_strokes(acting, job.travel_mm), pair, strict=True)
         ]
         for stroke, column in zip(Stroke, measured, strict=True):
             if not np.isfinite(column).any():

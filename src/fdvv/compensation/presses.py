@@ -78,8 +78,8 @@ class AcceptanceLimits:
     lifted_mm : largest upward motion during the press. A continuous press goes back by 0.01 mm.
     paused_ratio : largest part of the stroke's time spent within a sixteenth of the travel; a continuous
         press with a slow start spends up to a quarter.
-    saturated_ratio : largest part of both strokes in which the rig was at its limit. Beyond it the felt force
-        is not what the table commands. 1 where the rig itself is judged: its limit is part of the result.
+    saturated_ratio : largest part of both strokes in which the rig was at its limit, where it does not render
+        what the table commands. 1 where the rig itself is judged: its limit is part of the result.
     patience : the session stops after this many unusable presses in a row.
     """
 

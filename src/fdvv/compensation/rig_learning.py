@@ -47,7 +47,7 @@ def predicted_change(
     A finger that feels less force moves faster, and the cap with it, so a command that cancels inertia
     causes more of it. The change q obeys
 
-        m q'' + b q' + k q = felt - target(x + q)
+        m q'' + b q' + k q = rendered - target(x + q)
 
     target_cN, grid_mm : (g,) intended force.
     """
@@ -57,7 +57,7 @@ def predicted_change(
     parts = max(1, round(stroke.tick_s / LONGEST_STEP_s))
     step = stroke.tick_s / parts
     slope = np.gradient(target_cN, grid_mm)
-    excess = (stroke.felt_cN - np.interp(stroke.displacement_mm, grid_mm, target_cN)).tolist()
+    excess = (stroke.rendered_cN - np.interp(stroke.displacement_mm, grid_mm, target_cN)).tolist()
     softer = (stiffness + np.interp(stroke.displacement_mm, grid_mm, slope)).tolist()
     rows, q, w = [], 0.0, 0.0
     for push, spring in zip(excess, softer, strict=True):
@@ -125,9 +125,9 @@ def required_change(
     viscous = DRAG_cN * (rig.drag_N_s_m - rig.back_emf_N_s_m)
     own = stroke.own_cN + viscous * dv + cN_PER_g_m_s2 * rig.mass_g * da
     braking = DRAG_cN * rig.back_emf_N_s_m * gain**2 * late_v
-    felt = np.interp(x, *target)
-    table = (felt - own - braking) / gain + added_cN(tuning, late_v)
-    return x, table - command_cN(rig, x, felt)
+    wanted = np.interp(x, *target)
+    table = (wanted - own - braking) / gain + added_cN(tuning, late_v)
+    return x, table - command_cN(rig, x, wanted)
 
 
 def unrepeatable_cN(rig: RigModel, speed_mm_s: float) -> float:
@@ -201,9 +201,9 @@ def press_error(
     """Compare one stroke with its target. Raises ModelError if no bin was visited."""
     grid = table.grid_mm
     judged = (grid >= FROM_mm) & (grid <= travel_mm - STOP_GUARD_mm)
-    felt = bin_force(stroke.displacement_mm, stroke.felt_cN, grid)[judged]
-    whole = error_cN(target_cN[judged], felt)
-    off = np.abs(felt - target_cN[judged])
+    rendered = bin_force(stroke.displacement_mm, stroke.rendered_cN, grid)[judged]
+    whole = error_cN(target_cN[judged], rendered)
+    off = np.abs(rendered - target_cN[judged])
     return PressError(whole, float(np.nanmean(off)), float(np.nanmax(off)), table.rows_cN[at])
 
 
@@ -264,12 +264,12 @@ def minimum_lift_surface(job: CompensationJob) -> ForceSurface:
     return ForceSurface(target.displacement_mm, target.velocity_mm_s, press, release)
 
 
-def best_rows(tables: Pair, felt: PressErrors) -> Pair:
+def best_rows(tables: Pair, errors: PressErrors) -> Pair:
     """Return the tables, with the row of the best press where the last press was far worse."""
     made = []
     for j, table in enumerate(tables):
         rows = table.rows_cN.copy()
-        for at, presses in enumerate(felt):
+        for at, presses in enumerate(errors):
             if better := _better([pair[j] for pair in presses]):
                 rows[at] = better.row_cN
         made.append(replace(table, rows_cN=rows))
@@ -284,13 +284,13 @@ def _better(errors: list[PressError]) -> PressError | None:
 
 
 def curves_of(
-    job: CompensationJob, felt: PressErrors, learned: LearnedRig | None
+    job: CompensationJob, errors: PressErrors, learned: LearnedRig | None
 ) -> tuple[CurveOutcome, ...]:
     """Return the outcome of every curve, presses first; the expected errors where nothing was pressed."""
     speeds = job.target.velocity_mm_s
     expected = np.full((2, speeds.size), np.nan) if learned is None else learned.expected_cN(speeds)
     return tuple(
-        _curve(stroke, float(speed), [pair[j] for pair in felt[i]], float(expected[j, i]))
+        _curve(stroke, float(speed), [pair[j] for pair in errors[i]], float(expected[j, i]))
         for j, stroke in enumerate(Stroke)
         for i, speed in enumerate(speeds)
     )
@@ -311,10 +311,10 @@ def _curve(stroke: Stroke, speed_mm_s: float, errors: list[PressError], expected
 
 
 def press_summary(
-    rig: RigModel, tables: tuple[Pair, Pair], felt: tuple[PressError, PressError], at: int
+    rig: RigModel, tables: tuple[Pair, Pair], errors: tuple[PressError, PressError], at: int
 ) -> str:
     """Describe a press of speed number ``at``: its errors, and its change of the tables (before, after)."""
-    (down, up), speed = felt, float(tables[0][0].speeds_mm_s[at])
+    (down, up), speed = errors, float(tables[0][0].speeds_mm_s[at])
     moved = [float(np.abs(new.rows_cN[at] - old.rows_cN[at]).max()) for old, new in zip(*tables, strict=True)]
     return (
         f"mean error {down.mean_cN:.1f} cN on the press, {up.mean_cN:.1f} on the release; tables moved by up "

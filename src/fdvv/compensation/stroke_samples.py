@@ -10,7 +10,7 @@ from fdvv.compensation.identification.balance import (
     Sensor,
     Ticks,
     cN_PER_g_m_s2,
-    felt_cN,
+    rendered_cN,
     ticks_of,
     windowed,
     windows,
@@ -31,15 +31,15 @@ class StrokeSample:
     Attributes
     ----------
     displacement_mm, velocity_mm_s, acceleration_m_s2 : true motion, as estimated afterwards from both sides.
-    felt_cN : force on the finger, with the sensor's filter, cone and play taken out.
-    own_cN : felt_cN minus the coil's force: friction, weight and inertia.
+    rendered_cN : force on the finger, with the sensor's filter, cone and play taken out.
+    own_cN : rendered_cN minus the coil's force: friction, weight and inertia.
     tick_s : between rows. speed_mm_s : mean of the stroke.
     """
 
     displacement_mm: FloatArray
     velocity_mm_s: FloatArray
     acceleration_m_s2: FloatArray
-    felt_cN: FloatArray
+    rendered_cN: FloatArray
     own_cN: FloatArray
     tick_s: float
     speed_mm_s: float
@@ -54,12 +54,12 @@ def stroke_samples(
     lag = rig.position_lag_s
     x, v, a = (value + lag * rate for value, rate in zip((position, *slopes[:2]), slopes, strict=True))
     a = a / 1000.0  # from mm/s2
-    felt = felt_cN(ticks, sensor) + _play_cN(ticks, rig.play_cN) - cN_PER_g_m_s2 * sensor.cone_g * a
-    own = felt - rig.coil_cN(ticks.t_s, x, v, ticks.commanded_cN)
+    rendered = rendered_cN(ticks, sensor) + _play_cN(ticks, rig.play_cN) - cN_PER_g_m_s2 * sensor.cone_g * a
+    own = rendered - rig.coil_cN(ticks.t_s, x, v, ticks.commanded_cN)
 
     def between(rows: slice) -> StrokeSample:
         speed = mean_speed_mm_s(ticks.t_s, x, rows)
-        return StrokeSample(x[rows], v[rows], a[rows], felt[rows], own[rows], ticks.tick_s, speed)
+        return StrokeSample(x[rows], v[rows], a[rows], rendered[rows], own[rows], ticks.tick_s, speed)
 
     down, up = split_strokes(x, travel_mm)
     return between(down), between(up)

@@ -31,7 +31,7 @@ def extend(
     seen: Seen,
     path: Path,
     forward: bool,
-    felt: tuple[FloatArray, FloatArray],
+    recorded: tuple[FloatArray, FloatArray],
     shape: CurveOfForce,
     moving_g: float,
     ends_mm: tuple[float, float],
@@ -39,10 +39,10 @@ def extend(
     """Add samples after a stroke's window, or before it, with a guess of the path there.
 
     forward : after it.
-    felt : times and forces of the whole press, on the same grid as seen.t_s.
+    recorded : times and forces of the whole press, on the same grid as seen.t_s.
     ends_mm : between these depths the stroke lies; samples beyond belong to rest or stop.
     """
-    t_s, force_cN = felt
+    t_s, force_cN = recorded
     edge, way = (-1, 1) if forward else (0, -1)
     here = int(np.argmin(np.abs(t_s - seen.t_s[edge])))
     x, v = float(path.displacement_mm[edge]), float(path.velocity_mm_s[edge])
@@ -117,8 +117,8 @@ class Paths:
             return None
         low, high = press.frame_s[frames[0]], press.frame_s[frames[-1]]
         step_s = float(press.t_s[1] - press.t_s[0])
-        felt = (press.t_s >= low - 0.2 * step_s) & (press.t_s <= high + 0.2 * step_s)
-        t_s = press.t_s[felt]
+        in_window = (press.t_s >= low - 0.2 * step_s) & (press.t_s <= high + 0.2 * step_s)
+        t_s = press.t_s[in_window]
         if t_s.size < 4:
             return None
         shown = (press.frame_s >= t_s[0]) & (press.frame_s <= t_s[-1])
@@ -126,7 +126,7 @@ class Paths:
             return None
         depth_mm = press.frame_mm + self.zero_mm
         guess = np.interp(t_s, press.frame_s, depth_mm)
-        return Seen(t_s, press.force_cN[felt], press.frame_s[shown], depth_mm[shown], guess)
+        return Seen(t_s, press.force_cN[in_window], press.frame_s[shown], depth_mm[shown], guess)
 
     def find(
         self, used: Sequence[Judged], stroke: Stroke, known: CurveOfForce | None
@@ -148,9 +148,9 @@ class Paths:
         paths, shape = fuse([seen for _, seen in whole], known, fusion)
         longer = []
         for (one, short), path in zip(whole, paths, strict=True):
-            felt = one.press.t_s, one.press.force_cN
+            recorded = one.press.t_s, one.press.force_cN
             ends_mm = self.zero_mm + LEFT_mm, one.spans.bottom_mm + self.zero_mm - LEFT_mm
-            longer.append(extend(short, path, stroke is Stroke.PRESS, felt, shape, moving_g, ends_mm))
+            longer.append(extend(short, path, stroke is Stroke.PRESS, recorded, shape, moving_g, ends_mm))
         paths, shape = fuse(longer, known, fusion)
         used = [one for one, _ in whole]
         found = zip(used, longer, paths, strict=True)

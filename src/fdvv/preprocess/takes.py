@@ -38,7 +38,7 @@ def press_axis(takes: Sequence[Take]) -> FloatArray | None:
 
     It is the first principal axis of all movement; its sign is that in which force and place rise together.
     """
-    moved, felt = [], []
+    moved, loads = [], []
     for take in takes:
         for marker in take.of(Quantity.MARKER):
             if marker.raw.ndim != 2 or not np.isfinite(marker.values).any():
@@ -47,10 +47,10 @@ def press_axis(takes: Sequence[Take]) -> FloatArray | None:
             seen = np.isfinite(place).all(axis=1)
             moved.append(place[seen])
             force = _force_at(take, marker.t_s[seen])
-            felt.append(force if force is not None else np.zeros(int(seen.sum())))
+            loads.append(force if force is not None else np.zeros(int(seen.sum())))
     if not moved:
         return None
-    places, forces = np.concatenate(moved), np.concatenate(felt)
+    places, forces = np.concatenate(moved), np.concatenate(loads)
     if places.shape[0] < 3:
         raise ModelError("the markers were seen in fewer than 3 frames")
     far = np.linalg.norm(places, axis=1) >= np.quantile(np.linalg.norm(places, axis=1), 0.5)
@@ -234,8 +234,8 @@ def _of_take(
         rest_mm = _rest_mm(frame_s, depth, ends[k], begins[k], begins[0])
         low, high = ends[k] + GUARD_s, begins[k + 1] - GUARD_s
         seen = (frame_s >= low) & (frame_s <= high)
-        felt = (t_s >= low - TAIL_s) & (t_s <= high + TAIL_s)
-        if felt.sum() < LEAST_REST or seen.sum() < LEAST_REST:
+        in_window = (t_s >= low - TAIL_s) & (t_s <= high + TAIL_s)
+        if in_window.sum() < LEAST_REST or seen.sum() < LEAST_REST:
             continue
         shut = closed[(closed >= low) & (closed <= high)]
         free = opened[(opened >= low) & (opened <= high)]
@@ -244,8 +244,8 @@ def _of_take(
                 take.number,
                 k + 1,
                 take.velocity_mm_s,
-                t_s[felt],
-                force_cN[felt],
+                t_s[in_window],
+                force_cN[in_window],
                 frame_s[seen],
                 depth.depth_mm[seen] - rest_mm,
                 depth.apart_mm[seen],

@@ -132,10 +132,11 @@ def _judged(
     """Compare what the exciter makes of the board's samples with the vibration."""
     longest = max(slot.duration_samples, round((vibration.duration_s + lead_s) * RATE_HZ))
     volts = slot_volts(slot, longest + round(RING_s * RATE_HZ))
-    felt = acceleration_m_s2(exciter, volts)
+    rendered = acceleration_m_s2(exciter, volts)
     wanted = vibration.acceleration_m_s2((np.arange(volts.size) + 0.5) / RATE_HZ - lead_s)
     power = float(wanted @ wanted)
     if not power:
         raise ModelError("the vibration is silent, there is nothing to render")
-    strength, error = float(felt @ wanted) / power, float(np.sum((felt - wanted) ** 2)) / power
-    return RenderedVibration(slot, way, lead_s, correlation(felt, wanted), strength, float(np.sqrt(error)))
+    strength, error = float(rendered @ wanted) / power, float(np.sum((rendered - wanted) ** 2)) / power
+    likeness = correlation(rendered, wanted)
+    return RenderedVibration(slot, way, lead_s, likeness, strength, float(np.sqrt(error)))

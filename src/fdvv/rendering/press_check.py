@@ -113,7 +113,7 @@ FORCE_JND_ratio = 0.07
 
 
 @dataclass(frozen=True, eq=False)
-class FeltPress:
+class RenderedPress:
     """Force of both strokes on a grid of true displacement.
 
     Attributes
@@ -127,21 +127,21 @@ class FeltPress:
     release_cN: FloatArray
 
 
-def felt_press(press: Press, travel_mm: float) -> FeltPress:
+def rendered_press(press: Press, travel_mm: float) -> RenderedPress:
     """Bin the force on the finger of both strokes; a press that turned early has what it has."""
     grid = grid_mm(travel_mm, BIN_mm)
     x, force = press.displacement_mm, press.force_cN
     down, up = (bin_force(x[rows], force[rows], grid) for rows in split_strokes(x, travel_mm))
-    return FeltPress(grid, down, up)
+    return RenderedPress(grid, down, up)
 
 
-def intended_press(model: FDVVModel, velocity_mm_s: float) -> FeltPress:
-    """Return what a model intends at a speed, on the grid of felt_press."""
+def intended_press(model: FDVVModel, velocity_mm_s: float) -> RenderedPress:
+    """Return what a model intends at a speed, on the grid of rendered_press."""
     grid = grid_mm(model.travel_mm, BIN_mm)
     # without a release curve the press serves for both, as on a device
     served = (stroke if model.of(stroke) else Stroke.PRESS for stroke in Stroke)
     down, up = (model.force_cN(grid, velocity_mm_s, stroke) for stroke in served)
-    return FeltPress(grid, down, up)
+    return RenderedPress(grid, down, up)
 
 
 def noticeable_cN(model: FDVVModel, velocity_mm_s: float) -> tuple[float, float]:

@@ -138,12 +138,12 @@ def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Pres
     x, curves = grid[judged], []
     spans = [split_strokes(press.displacement_mm, model.travel_mm) for press in presses]
     for i, stroke in enumerate(Stroke):
-        felt, speeds = [], []
+        forces, speeds = [], []
         for press, strokes in zip(presses, spans, strict=True):
             rows = strokes[i]
-            felt.append(bin_force(press.displacement_mm[rows], press.force_cN[rows], grid)[judged])
+            forces.append(bin_force(press.displacement_mm[rows], press.force_cN[rows], grid)[judged])
             speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, rows))
-        rendered, achieved = np.stack(felt), np.array(speeds)
+        rendered, achieved = np.stack(forces), np.array(speeds)
         # without a release curve the press serves for both
         served = stroke if model.of(stroke) else Stroke.PRESS
         paces = np.nan_to_num(achieved, nan=velocity_mm_s)[:, None]
@@ -217,7 +217,7 @@ def probe(
     guide: Guide | None = None,
     tuning: Tuning = UNTUNED,
 ) -> ProbeResult:
-    """Upload a surface once, press it afresh at every speed, and hold the felt force against the model.
+    """Upload a surface once, press it afresh at every speed, and compare the rendered force with the model.
 
     presses : per velocity, usable ones. The force on the finger is binned on the true displacement of
     the cap and held against the model at the speed that was asked for. A press that cannot be used is not

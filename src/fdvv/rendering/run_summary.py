@@ -47,7 +47,7 @@ class CurveErrors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ----------
     first_cN, last_cN, best_cN : error_k of presses, measured by the rig itself
         while it learned, or by a probe in true displacement.
-    mean_cN, max_cN : of |target - felt| over the displacement.
+    mean_cN, max_cN : of |target - rendered| over the displacement.
     """
 
     stroke: Literal["press", "release"]

@@ -130,6 +130,6 @@ def simulated_observer(candidates: Sequence[Candidates], seed: int = 0) -> Simul
 
 
 def _like(vibration: Vibration, favourite: Vibration) -> float:
-    felt, wanted = (v.acceleration_m_s2(TIMES_s) for v in (vibration, favourite))
-    strength = abs(float(np.log2((np.linalg.norm(felt) + 1e-9) / (np.linalg.norm(wanted) + 1e-9))))
-    return FOR_SHAPE * (correlation(felt, wanted) - 1) - FOR_STRENGTH * strength
+    rendered, wanted = (v.acceleration_m_s2(TIMES_s) for v in (vibration, favourite))
+    strength = abs(float(np.log2((np.linalg.norm(rendered) + 1e-9) / (np.linalg.norm(wanted) + 1e-9))))
+    return FOR_SHAPE * (correlation(rendered, wanted) - 1) - FOR_STRENGTH * strength

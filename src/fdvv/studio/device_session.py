@@ -19,7 +19,7 @@ from fdvv.program.button import button_program
 from fdvv.program.compile import compile_program
 from fdvv.protocol.tables import Fault
 from fdvv.rendering.compensate import CompensationResult
-from fdvv.rendering.press_check import felt_press, intended_press
+from fdvv.rendering.press_check import intended_press, rendered_press
 from fdvv.rendering.tuning import settings_with
 from fdvv.studio.contract import Message, Tell
 from fdvv.studio.device_thread import DeviceThread, mode_of
@@ -127,13 +127,13 @@ def put_button(
 
 
 def press_seen(press: Press, model: FDVVModel, velocity_mm_s: float) -> PressSeen:
-    felt, wanted = felt_press(press, model.travel_mm), intended_press(model, velocity_mm_s)
+    rendered, wanted = rendered_press(press, model.travel_mm), intended_press(model, velocity_mm_s)
     return PressSeen(
         velocity_mm_s,
         press.simulated,
-        rounded(felt.displacement_mm),
-        finite_row(felt.press_cN),
-        finite_row(felt.release_cN),
+        rounded(rendered.displacement_mm),
+        finite_row(rendered.press_cN),
+        finite_row(rendered.release_cN),
         rounded(wanted.press_cN),
         rounded(wanted.release_cN),
     )

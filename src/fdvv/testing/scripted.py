@@ -33,9 +33,9 @@ class ScriptedDevice:
 
     Parameters
     ----------
-    gain : felt force per commanded force.
+    gain : rendered force per commanded force.
     offset_cN, drag_cN_s_mm : constant force, and force per speed (positive against the motion).
-    noise_cN, noise_mm : standard deviation of the force felt, and of the displacement sensed.
+    noise_cN, noise_mm : standard deviation of the rendered force, and of the sensed displacement.
     pace_spread_ratio : standard deviation of the speed of a press, as a part of the speed asked for.
     force_limit_cN, travel_limit_mm : limits of upload; commands beyond the force are cut and flagged.
     seed : of everything random.
@@ -99,10 +99,10 @@ class ScriptedDevice:
         down, up = (_read(surface, sensed, velocity_mm_s, stroke) for stroke in Stroke)
         wanted = np.where(v[held] >= 0, down, up)
         command = np.clip(wanted, -self._info.force_limit_cN, self._info.force_limit_cN)
-        felt = self._gain * command + self._offset_cN + self._drag_cN_s_mm * v
-        felt = felt + self._noise_cN * self._random.standard_normal(t.size)
-        sensed_cN, cut, tick = felt[held], command != wanted, np.arange(t.size) % TICKS == 0
-        return Press(t, x, felt, velocity_mm_s, sensed, sensed_cN, command, cut, tick, simulated=True)
+        rendered = self._gain * command + self._offset_cN + self._drag_cN_s_mm * v
+        rendered = rendered + self._noise_cN * self._random.standard_normal(t.size)
+        sensed_cN, cut, tick = rendered[held], command != wanted, np.arange(t.size) % TICKS == 0
+        return Press(t, x, rendered, velocity_mm_s, sensed, sensed_cN, command, cut, tick, simulated=True)
 
 
 def _stroke_pair(travel_mm: float, speed_mm_s: float) -> tuple[FloatArray, FloatArray, FloatArray]:

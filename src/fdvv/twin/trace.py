@@ -80,7 +80,7 @@ class Trace:
         """Convert the kernel's rows to record units; a duty below lowest_ratio is one the bridge cuts."""
         t, x, v, a, force, _, amps, finger, magnet, energy = rows.physics.T.copy()
         per_tick = t.size // len(rows.outputs)
-        felt, warm, stop = (np.repeat(column, per_tick) for column in rows.sensed.T)
+        sensed_N, warm, stop = (np.repeat(column, per_tick) for column in rows.sensed.T)
         out = np.repeat(rows.outputs, per_tick)
         flags, duty_ratio = out["flags"], out["duty_q15"] / 32768
         return cls(
@@ -89,7 +89,7 @@ class Trace:
             cap_velocity_mm_s=mm_from_m(v),
             cap_acceleration_m_s2=a,
             force_cN=cN_from_N(force),
-            sensed_cN=out["force_cN64"] / CN64_PER_cN if has_cell else cN_from_N(felt),
+            sensed_cN=out["force_cN64"] / CN64_PER_cN if has_cell else cN_from_N(sensed_N),
             saturated=((flags & CUT) > 0) | (duty_ratio < lowest_ratio),
             release=(flags & TickFlag.RELEASE) > 0,
             tick=np.arange(t.size) % per_tick == 0,

@@ -34,37 +34,37 @@ STEPS = tuple(2.0**n for n in range(12))
 """Where the drive would exceed its limit, the inverse is bounded more tightly by these factors."""
 
 
-def correlation(felt: FloatArray, target: FloatArray) -> float:
+def correlation(rendered: FloatArray, target: FloatArray) -> float:
     """Return the largest |correlation| of two signals at any delay: 1 is the same shape, at any strength.
 
-    felt, target : of one rate and any lengths. Everything in them counts, ringing after the end too. 0 if one
-    of them is silent.
+    rendered, target : of one rate and any lengths. Everything in them counts, ringing after the end too. 0 if
+    one of them is silent.
     """
-    scale = float(np.linalg.norm(felt) * np.linalg.norm(target))
-    return float(np.abs(_correlated(felt, target)).max()) / scale if scale else 0.0
+    scale = float(np.linalg.norm(rendered) * np.linalg.norm(target))
+    return float(np.abs(_correlated(rendered, target)).max()) / scale if scale else 0.0
 
 
-def delay_samples(felt: FloatArray, target: FloatArray) -> int:
-    """Return the delay of felt at which it is most like target, in samples; negative if it is early."""
-    found = _correlated(felt, target)
+def delay_samples(rendered: FloatArray, target: FloatArray) -> int:
+    """Return the delay of rendered at which it is most like target, in samples; negative if it is early."""
+    found = _correlated(rendered, target)
     at = int(np.argmax(np.abs(found)))
-    return at if at < felt.size else at - found.size
+    return at if at < rendered.size else at - found.size
 
 
-def spectral_similarity(felt: FloatArray, target: FloatArray, rate_Hz: float) -> float:
+def spectral_similarity(rendered: FloatArray, target: FloatArray, rate_Hz: float) -> float:
     """Return the cosine of the two magnitude spectra from 40 to 1000 Hz: 1 is equal, whatever the phases."""
-    size = 1 << int(np.ceil(np.log2(max(felt.size, target.size, rate_Hz / 5))))
+    size = 1 << int(np.ceil(np.log2(max(rendered.size, target.size, rate_Hz / 5))))
     frequency_Hz = np.fft.rfftfreq(size, 1 / rate_Hz)
     band = (frequency_Hz >= BAND_Hz[0]) & (frequency_Hz <= BAND_Hz[1])
-    a, b = (np.abs(np.fft.rfft(signal, size))[band] for signal in (felt, target))
+    a, b = (np.abs(np.fft.rfft(signal, size))[band] for signal in (rendered, target))
     scale = float(np.linalg.norm(a) * np.linalg.norm(b))
     return float(a @ b) / scale if scale else 0.0
 
 
-def st_sim(felt: FloatArray, target: FloatArray, rate_Hz: float, weight: float = 2 / 3) -> float:
+def st_sim(rendered: FloatArray, target: FloatArray, rate_Hz: float, weight: float = 2 / 3) -> float:
     """Return the spectral temporal similarity: 1 is the same.
 
-    felt is moved to where it is most like target first, turned over if need be. weight : of time against
+    rendered is moved to where it is most like target first, turned over if need be. weight : of time against
     spectrum, 0 to 1. Temporal and spectral similarity are means over blocks of Σ r d / Σ r²: of the blocks
     less their mean over their deviation, and of Φ(level above threshold / 12 dB). Below 0 counts as 0.
     """
@@ -72,7 +72,7 @@ def st_sim(felt: FloatArray, target: FloatArray, rate_Hz: float, weight: float =
         raise ModelError(f"weight must lie between 0 and 1, got {weight}")
     from scipy.special import ndtr
 
-    d, r = _blocks(felt, target, rate_Hz)
+    d, r = _blocks(rendered, target, rate_Hz)
     if np.array_equal(d, r):
         return 1.0
     spectral = _similar(ndtr(_audible_dB(r) / 12), ndtr(_audible_dB(d) / 12))
@@ -81,14 +81,14 @@ def st_sim(felt: FloatArray, target: FloatArray, rate_Hz: float, weight: float =
 
 
 def spqi(
-    felt: FloatArray, target: FloatArray, rate_Hz: float, slope: float = 0.3, offset: float = -2.0
+    rendered: FloatArray, target: FloatArray, rate_Hz: float, slope: float = 0.3, offset: float = -2.0
 ) -> float:
     """Return the spectral perceptual quality index: 1 is as good as the target.
 
     Mean over blocks of (1 - tanh(slope ε - offset)) / 2, where ε is the summed difference of perceptual
     spectra over the target's sum, in dB. Alignment as for st_sim.
     """
-    d, r = _blocks(felt, target, rate_Hz)
+    d, r = _blocks(rendered, target, rate_Hz)
     if np.array_equal(d, r):
         return 1.0
     reference, other = (10 ** (_audible_dB(signal) / 10) for signal in (r, d))
@@ -97,20 +97,20 @@ def spqi(
     return float(np.mean((1 - np.tanh(slope * error_dB - offset)) / 2))
 
 
-def _correlated(felt: FloatArray, target: FloatArray) -> FloatArray:
-    """Return the correlation at every delay of felt, circular over a length that keeps them apart."""
-    size = felt.size + target.size
-    return np.asarray(np.fft.irfft(np.fft.rfft(felt, size) * np.conj(np.fft.rfft(target, size)), size))
+def _correlated(rendered: FloatArray, target: FloatArray) -> FloatArray:
+    """Return the correlation at every delay of rendered, circular over a length that keeps them apart."""
+    size = rendered.size + target.size
+    return np.asarray(np.fft.irfft(np.fft.rfft(rendered, size) * np.conj(np.fft.rfft(target, size)), size))
 
 
-def _blocks(felt: FloatArray, target: FloatArray, rate_Hz: float) -> tuple[FloatArray, FloatArray]:
+def _blocks(rendered: FloatArray, target: FloatArray, rate_Hz: float) -> tuple[FloatArray, FloatArray]:
     """Align, bring to the metrics' rate and level, and cut into blocks of (count, 512)."""
     peak = float(np.abs(target).max(initial=0.0))
     if not peak:
         raise ModelError("a vibration can only be compared with one that is not silent")
-    delay = delay_samples(felt, target)
+    delay = delay_samples(rendered, target)
     at = np.arange(target.size) + delay
-    moved = np.where((at >= 0) & (at < felt.size), felt[np.clip(at, 0, felt.size - 1)], 0.0)
+    moved = np.where((at >= 0) & (at < rendered.size), rendered[np.clip(at, 0, rendered.size - 1)], 0.0)
     turned = -moved if moved @ target < 0 else moved
     count = int(np.ceil(max(target.size / rate_Hz * METRIC_Hz, 1.0) / BLOCK)) * BLOCK
     times = np.arange(count) / METRIC_Hz * rate_Hz
@@ -220,10 +220,10 @@ def drive_for(exciter: KnownExciter, vibration: Vibration, settings: InverseSett
     drives = _hats(int(length_s * rate_Hz) + 1, rate_Hz, wanted.size)
     moves = acceleration_m_s2(exciter, drives)
     volts = _nearest(drives, moves, wanted, exciter, chosen)
-    felt = moves @ volts
+    rendered = moves @ volts
     power = float(wanted @ wanted)
-    strength = float(felt @ wanted) / power if power else 0.0
-    return Drive(volts, rate_Hz, chosen.lead_s, correlation(felt, wanted), strength)
+    strength = float(rendered @ wanted) / power if power else 0.0
+    return Drive(volts, rate_Hz, chosen.lead_s, correlation(rendered, wanted), strength)
 
 
 def acceleration_m_s2(exciter: KnownExciter, volts: FloatArray) -> FloatArray:

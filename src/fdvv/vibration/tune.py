@@ -230,10 +230,10 @@ class SimulatedObserver:
         """Rate one template, or compare two; the same question, by its number, is answered the same."""
         random = np.random.default_rng([self.seed, question.number])
         likes = self.likes[question.place]
-        felt = [likes[i] + self.noise * random.normal() for i in question.templates]
-        if len(felt) == 1:
+        perceived = [likes[i] + self.noise * random.normal() for i in question.templates]
+        if len(perceived) == 1:
             middle = (LOWEST + HIGHEST) / 2
-            return int(np.clip(round(middle + SCALE * felt[0]), LOWEST, HIGHEST))
-        if abs(felt[0] - felt[1]) < self.unsure:
+            return int(np.clip(round(middle + SCALE * perceived[0]), LOWEST, HIGHEST))
+        if abs(perceived[0] - perceived[1]) < self.unsure:
             return Preferred.NEITHER
-        return Preferred.FIRST if felt[0] > felt[1] else Preferred.SECOND
+        return Preferred.FIRST if perceived[0] > perceived[1] else Preferred.SECOND

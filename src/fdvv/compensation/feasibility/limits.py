@@ -238,8 +238,8 @@ def rendered_cN(rig: RigModel, motion: Motion, command_cN: FloatArray, tick_s: f
     is a function of displacement, so learning leads a known delay, and the rig's own force changes slowly.
     The finger cannot pull: the force is at least zero. Source: RigModel.
     """
-    felt = rig.gain_at(motion.displacement_mm) * command_cN + opposed_cN(rig, motion)
-    lagged = smeared(felt, rig.electric_lag_s, motion.step_s, tick_s)
+    rendered = rig.gain_at(motion.displacement_mm) * command_cN + opposed_cN(rig, motion)
+    lagged = smeared(rendered, rig.electric_lag_s, motion.step_s, tick_s)
     return np.asarray(np.maximum(0.0, lagged), dtype=np.float64)
 
 
@@ -256,12 +256,12 @@ def achievable_stroke(
     most = limits.force_limit_cN
     limited = np.clip(needed, -most, most)
     slewed = slew(limited, limits.slew_cN_tick * motion.step_s / limits.tick_s)
-    felt = rendered_cN(rig, motion, slewed, limits.tick_s)
+    rendered = rendered_cN(rig, motion, slewed, limits.tick_s)
     cut, late_by = (
         motion.at_places((np.abs(lost) > NOTICED_cN).astype(np.float64), displacement_mm) > 0.5
         for lost in (needed - limited, limited - slewed)
     )
-    achievable, command = (motion.at_places(c, displacement_mm) for c in (felt, needed))
+    achievable, command = (motion.at_places(c, displacement_mm) for c in (rendered, needed))
     forces = displacement_mm, intended_cN, achievable
     lag_mm = float(np.abs(motion.velocity_mm_s).max()) * (rig.delay_s + rig.position_lag_s)
     return AchievableStroke(*forces, command, cut, late_by, lag_mm, *_bump_left(*forces))

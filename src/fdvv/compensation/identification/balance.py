@@ -101,8 +101,8 @@ def ticks_of(press: Press, name: str, tick_s: float | None = None) -> Ticks:
     even = np.arange(t_s[0], t_s[-1] + 0.5 * tick_s, tick_s)
     cut = np.zeros(t_s.size, np.bool_) if press.saturated is None else press.saturated[rows].copy()
     cut[1:] |= np.diff(t_s) > 1.5 * tick_s
-    displacement, felt, commanded = (np.interp(even, t_s, column) for column in (sensed, force, command))
-    return Ticks(tick_s, even, displacement, felt, commanded, np.interp(even, t_s, cut) > 0)
+    displacement, measured, commanded = (np.interp(even, t_s, column) for column in (sensed, force, command))
+    return Ticks(tick_s, even, displacement, measured, commanded, np.interp(even, t_s, cut) > 0)
 
 
 def noise(columns: list[FloatArray]) -> float:
@@ -172,7 +172,7 @@ def true_runs(rows: BoolArray) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in turns.reshape(-1, 2)]
 
 
-def felt_cN(ticks: Ticks, sensor: Sensor) -> FloatArray:
+def rendered_cN(ticks: Ticks, sensor: Sensor) -> FloatArray:
     """Return the windowed force on the finger, the sensor's filter inverted, (n,)."""
     mean, slope = (windowed(w, ticks.force_cN) for w in windows(ticks.tick_s)[:2])
     return mean + sensor.filter_s * slope
@@ -234,9 +234,9 @@ def predicted(ticks: Ticks, numbers: FloatArray, stretch: FloatArray, sensor: Se
 
 def with_cone(numbers: FloatArray, sensor: Sensor) -> FloatArray:
     """Return the linear parameters with the sensor's cone added to the mass, (9,)."""
-    felt = numbers[LINEAR].copy()
-    felt[MASS] += sensor.cone_g
-    return felt
+    loaded = numbers[LINEAR].copy()
+    loaded[MASS] += sensor.cone_g
+    return loaded
 
 
 def slopes(
@@ -305,7 +305,7 @@ class Delays:
             raise ModelError(f"delays must be less than 0.1 s, got {self}")
 
 
-def felt_at_mm(t_s: FloatArray, sensed_mm: FloatArray, delays: Delays) -> FloatArray:
+def acting_at_mm(t_s: FloatArray, sensed_mm: FloatArray, delays: Delays) -> FloatArray:
     """Estimate the true displacement at the time of each sensed force, (n,)."""
     return np.interp(t_s + delays.position_s, t_s, sensed_mm) if delays.position_s else sensed_mm
 
@@ -328,9 +328,9 @@ def observe(
     """
     if delays == Delays():
         return bin_force(sensed_mm[rows], force_cN[rows], grid_mm)
-    felt = felt_at_mm(t_s, sensed_mm, delays)[rows]
+    acting = acting_at_mm(t_s, sensed_mm, delays)[rows]
     commanded = np.interp(t_s[rows] - delays.command_s, t_s, sensed_mm)
-    shortfall = np.interp(felt, grid_mm, target_cN) - force_cN[rows]
+    shortfall = np.interp(acting, grid_mm, target_cN) - force_cN[rows]
     return target_cN - bin_force(commanded, shortfall, grid_mm)
 
 

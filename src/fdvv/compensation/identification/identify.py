@@ -27,11 +27,11 @@ from fdvv.compensation.identification.balance import (
     VISCOUS,
     WEIGHT,
     Ticks,
-    felt_cN,
     noise,
     noise_windows,
     play_stretch,
     predicted,
+    rendered_cN,
     slopes,
     ticks_of,
     true_runs,
@@ -77,7 +77,7 @@ class RigEstimation:
         self.ticks, self.travel_mm, self.sensor = ticks, travel_mm, prior.sensor
         self.tick_s = ticks[0].tick_s
         self.mean, self.spread, self.low, self.high = prior.vectors(self.tick_s)
-        self.felt = [felt_cN(t, self.sensor) for t in ticks]
+        self.rendered = [rendered_cN(t, self.sensor) for t in ticks]
         self.stretches = [play_stretch(t) for t in ticks]
         self.position_noise_mm = noise([t.sensed_mm for t in ticks])
         self.force_noise_cN = noise([t.force_cN for t in ticks])
@@ -148,8 +148,8 @@ class RigEstimation:
         return total
 
     def residuals(self, numbers: FloatArray) -> list[FloatArray]:
-        each = zip(self.felt, self.ticks, self.stretches, strict=True)
-        return [felt - predicted(t, numbers, s, self.sensor) for felt, t, s in each]
+        each = zip(self.rendered, self.ticks, self.stretches, strict=True)
+        return [rendered - predicted(t, numbers, s, self.sensor) for rendered, t, s in each]
 
     def normal(self, numbers: FloatArray, runs: list[WindowRun]) -> tuple[FloatArray, FloatArray]:
         """Return the negative gradient, (12,), and normal matrix, (12, 12), both in spreads of the prior."""
@@ -159,7 +159,7 @@ class RigEstimation:
         for run in runs:
             force, slope = predictions[run.press]
             white = run.white @ slope[run.rows]
-            gradient += white.T @ (run.white @ (self.felt[run.press] - force)[run.rows])
+            gradient += white.T @ (run.white @ (self.rendered[run.press] - force)[run.rows])
             matrix += white.T @ white
         gradient = self.spread * gradient - (numbers - self.mean) / self.spread
         # less the noise's mean effect the matrix may bend the wrong way along what no press shows

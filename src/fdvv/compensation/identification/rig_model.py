@@ -22,7 +22,7 @@ from fdvv.units import FloatArray
 class RigModel:
     """A rig as identified from its own presses; the finger's force at time t is
 
-        felt(t) = coil(t) + viscous v + friction sign(v) - weight + mass a
+        rendered(t) = coil(t) + viscous v + friction sign(v) - weight + mass a
         coil(t) + lag coil'(t) = gain(x) command(t - delay_s + lag) + back_emf gain(x)^2 v
 
     with x, v, a the cap's true motion, positive into the button, and lag the electric one. To first order a
@@ -108,7 +108,7 @@ class RigModel:
         coil = self.gain_at(displacement_mm) * pushed + emf * velocity_mm_s
         return first_order_lag(coil, self.electric_lag_s, float(t_s[1] - t_s[0]))
 
-    def felt_cN(
+    def rendered_cN(
         self,
         t_s: FloatArray,
         displacement_mm: FloatArray,

@@ -98,12 +98,12 @@ def _curve(
     # a clock without a unit tells no time
     known = {q: column for q, column in extra.items() if column is not None and column.scale is not None}
     picks = [travel.index, force.index, *(column.index for column in known.values())]
-    x, felt, *rest = table.columns(picks, notes, force.title)
+    x, values, *rest = table.columns(picks, notes, force.title)
     scaled = {q: values * (known[q].scale or 1.0) for q, values in zip(known, rest, strict=True)}
     where = force.title if several else "run"
     # rounded to a picometre, so that 1880 um is 1.88 mm
     x_mm = np.round(x * _length_scale(table.source, travel, x, notes), 9)
-    force_cN = felt * (force.scale or 1.0)
+    force_cN = values * (force.scale or 1.0)
     track = Track(where, x_mm, force_cN, scaled.get(Quantity.TIME), scaled.get(Quantity.CLOSED))
     return _as_cycle(track, force, stroke, where if several else "")
 

@@ -205,13 +205,13 @@ def rising(track: Track, notes: Notes) -> tuple[FloatArray, FloatArray]:
     quantum = float(np.median(forward[forward > 0])) if (forward > 0).any() else 0.0
     # in the air the order makes no difference to the curve
     loaded = x[force > AIR_cN]
-    felt = float((np.maximum.accumulate(loaded) - loaded).max()) if loaded.size else 0.0
-    if felt > 1.01 * max(quantum, 0.005):
+    back_loaded = float((np.maximum.accumulate(loaded) - loaded).max()) if loaded.size else 0.0
+    if back_loaded > 1.01 * max(quantum, 0.005):
         notes.tally(
             "{places}: displacement wavers back by up to {most:.3f} mm; the samples were put in the order "
             "of displacement, none dropped",
             track.where,
-            felt,
+            back_loaded,
         )
     if back > 0.0:
         order = np.argsort(x, kind="stable")

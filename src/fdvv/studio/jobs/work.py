@@ -16,7 +16,7 @@ from fdvv.device.open import pressed_by_person
 from fdvv.model.model import FDVVModel
 from fdvv.rendering.actuation_file import load_actuation
 from fdvv.rendering.compensate import CompensationResult
-from fdvv.rendering.press_check import felt_press, intended_press, noticeable_cN
+from fdvv.rendering.press_check import intended_press, noticeable_cN, rendered_press
 from fdvv.rendering.session import Session
 from fdvv.rendering.session_run import Guide, PressDone
 from fdvv.studio.contract import message_of
@@ -79,7 +79,7 @@ class Work:
 
 def press_event(done: PressDone, travel_mm: float) -> events.PressEvent:
     standing = next((s for s in done.progress() if s.velocity_mm_s == done.velocity_mm_s), None)
-    felt = felt_press(done.press, travel_mm) if done.press else None
+    rendered = rendered_press(done.press, travel_mm) if done.press else None
     return events.PressEvent(
         "probe" if done.stage == "probe" else "compensate",
         done.velocity_mm_s,
@@ -91,7 +91,9 @@ def press_event(done: PressDone, travel_mm: float) -> events.PressEvent:
         standing.made if standing else 0,
         standing.wanted if standing else None,
         tuple(curve_progress(curve) for curve in standing.curves) if standing else (),
-        events.FeltCurve(finite_row(felt.press_cN), finite_row(felt.release_cN)) if felt else None,
+        events.FeltCurve(finite_row(rendered.press_cN), finite_row(rendered.release_cN))
+        if rendered
+        else None,
     )
 
 

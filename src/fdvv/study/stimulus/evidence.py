@@ -11,7 +11,7 @@ from fdvv.live.press import DEEP_mm, TOP_mm
 from fdvv.model.model import FDVVModel
 from fdvv.model.press import Press
 from fdvv.protocol.tables import Fault
-from fdvv.rendering.press_check import felt_press, intended_press
+from fdvv.rendering.press_check import intended_press, rendered_press
 from fdvv.study.plan.trial import Rendered
 from fdvv.units import FloatArray
 
@@ -124,23 +124,24 @@ def _next_press(rows: FloatArray, settle_s: float = SETTLE_s) -> tuple[int, int,
 
 
 def judged(model: FDVVModel, rows: FloatArray) -> tuple[float | None, float | None]:
-    """Return rms of felt against intended force (cN) over both strokes, and the speed of the way down (mm/s).
+    """Return the rms error of the rendered force (cN) over both strokes, and the speed of the press (mm/s).
 
     rows : (3, n) time, true displacement and force of one press. Both strokes are binned as a probe bins
     them, and each is compared with the model at its own mean speed. None where it cannot be judged.
     """
     t_s, x_mm, force_cN = rows
     press = Press(t_s, x_mm, force_cN, 0.0)
-    felt = felt_press(press, model.travel_mm)
+    rendered = rendered_press(press, model.travel_mm)
     down, up = (mean_speed_mm_s(t_s, x_mm, span) for span in split_strokes(x_mm, model.travel_mm))
-    counts = (felt.displacement_mm >= FROM_mm) & (felt.displacement_mm <= model.travel_mm - STOP_GUARD_mm)
+    at_mm = rendered.displacement_mm
+    counts = (at_mm >= FROM_mm) & (at_mm <= model.travel_mm - STOP_GUARD_mm)
     if not math.isfinite(down):
         return None, None
     speed_mm_s = round(down, 3)
-    if np.isfinite(felt.press_cN[counts]).mean() < REACHED_ratio:
+    if np.isfinite(rendered.press_cN[counts]).mean() < REACHED_ratio:
         return None, speed_mm_s
-    off = [felt.press_cN - intended_press(model, down).press_cN]
+    off = [rendered.press_cN - intended_press(model, down).press_cN]
     if math.isfinite(up):
-        off.append(felt.release_cN - intended_press(model, up).release_cN)
+        off.append(rendered.release_cN - intended_press(model, up).release_cN)
     error_cN = float(np.sqrt(np.nanmean(np.stack([one[counts] for one in off]) ** 2)))
     return round(error_cN, 4), speed_mm_s

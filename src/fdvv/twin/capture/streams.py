@@ -131,10 +131,12 @@ class Instruments:
             return ()
         t_s = np.arange(int(trace.t_s[-1] * rig.shake_Hz + 1e-9) + 1) / rig.shake_Hz
         shaken_m_s2 = np.gradient(m_from_mm(trace.plate_velocity_mm_s), trace.t_s)
-        felt = np.interp(t_s, trace.t_s, shaken_m_s2) + rig.shake_noise_m_s2 * random.standard_normal(
+        shaken = np.interp(t_s, trace.t_s, shaken_m_s2) + rig.shake_noise_m_s2 * random.standard_normal(
             t_s.size
         )
-        shake = converted("shake", Quantity.ACCELERATION, BOARD, begin_s + t_s, felt, rig.shake_step_m_s2, 0)
+        shake = converted(
+            "shake", Quantity.ACCELERATION, BOARD, begin_s + t_s, shaken, rig.shake_step_m_s2, 0
+        )
         return (shake,)
 
     # -- on the cameras' clock --
