@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from tests.support.cap_vibration import cap_vibration, ways
 from tests.support.closed_forms import coil_error_ratio, mean_response, ripple_N
-from tests.support.felt import cap_vibration, ways
 from tests.support.loop import LinearLoop, bare_loop, cycles, grainy_loop, onset_N_m, quantisation_limit_N_m
 from tests.support.reference.reference import reference_simulate
 from tests.support.table_press import simulate

@@ -5,7 +5,7 @@ Run as ``python -m benchmarks.rig_vibration``.
 
 from __future__ import annotations
 
-from tests.support.felt import SNAP_AT_mm, SNAP_DURATION_s, SNAP_Hz, cap_vibration, ways
+from tests.support.cap_vibration import SNAP_AT_mm, SNAP_DURATION_s, SNAP_Hz, cap_vibration, ways
 
 VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0, 300.0)
 

@@ -13,8 +13,8 @@ from fdvv.twin.plant import RigPlant
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_moves import Coil, Exciter, Mover
 from fdvv.twin.settings import settings_of
+from tests.support.cap_vibration import SNAP_AT_mm, SNAP_Hz, cap_vibration, press_with, snap, ways
 from tests.support.closed_forms import coil_error_ratio, mean_response, ripple_N
-from tests.support.felt import SNAP_AT_mm, SNAP_Hz, cap_vibration, press_with, snap, ways
 from tests.support.loop import (
     AWAY,
     LinearLoop,
