@@ -24,7 +24,7 @@ from fdvv.bench.capture import TakeDone, TakeRequest, VelocityProgress
 from fdvv.bench.plan import COUNT_IN_s, Step
 from fdvv.bench.plan import DWELL_s as TOLD_DWELL_s
 from fdvv.bench.take_check import TakeCheck
-from fdvv.cli.bench.capture_view import CaptureLines, CaptureTable, asked, beeps, frame
+from fdvv.cli.bench.capture_view import CaptureLines, CaptureTable, beeps, frame, request_line
 from fdvv.cli.cue import BEATS, BEAT_s, DWELL_s, TONES_Hz, beeper, tone
 from fdvv.device.bench import SerialBench
 from fdvv.errors import InputError
@@ -229,17 +229,19 @@ def test_on_a_terminal_the_bar_goes_down_and_up_and_the_last_press_stays_in_sigh
 
 
 def test_what_is_asked_says_pace_way_and_time() -> None:
-    assert asked(ASK) == "3 of 62: press, 50 mm/s, 4.0 mm in 80 ms, down to the stop and let go"
+    assert request_line(ASK) == "3 of 62: press, 50 mm/s, 4.0 mm in 80 ms, down to the stop and let go"
     again = TakeRequest(ASK.step, 3, 62, 4.0, "too slow")
-    assert asked(again).startswith("3 of 62: press once more, 50 mm/s")
+    assert request_line(again).startswith("3 of 62: press once more, 50 mm/s")
     probe = TakeRequest(Step(Stage.PROBE, 0.5), 2, 62, 4.0)
-    assert asked(probe).endswith("0.5 mm/s, 4.0 mm in 8 s, slowly, down to the stop and let go as slowly")
+    assert request_line(probe).endswith(
+        "0.5 mm/s, 4.0 mm in 8 s, slowly, down to the stop and let go as slowly"
+    )
 
 
 def test_in_a_pipe_a_person_is_asked_line_by_line(capsys: pytest.CaptureFixture[str]) -> None:
     view = CaptureLines(True, False, lambda _event: None)
     view.cue(ASK)(1.6)
-    assert capsys.readouterr().err == asked(ASK) + "\n"
+    assert capsys.readouterr().err == request_line(ASK) + "\n"
 
 
 def test_a_player_is_given_a_sound_file_for_each_beep(tmp_path: Path) -> None:

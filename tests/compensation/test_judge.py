@@ -16,14 +16,14 @@ from fdvv.units import FloatArray
 STEP_s = 0.0005
 
 
-def along(*corners: tuple[float, float], asked_mm_s: float = 100.0) -> Press:
+def along(*corners: tuple[float, float], requested_mm_s: float = 100.0) -> Press:
     """Make a press whose cap goes straight between (time, displacement) corners."""
     times, places = zip(*corners, strict=True)
     t = np.arange(0.0, times[-1] + STEP_s / 2, STEP_s)
-    return Press(t, np.asarray(np.interp(t, times, places)), np.zeros(t.size), asked_mm_s)
+    return Press(t, np.asarray(np.interp(t, times, places)), np.zeros(t.size), requested_mm_s)
 
 
-def plain(speed_mm_s: float, asked_mm_s: float = 100.0, depth_mm: float = 4.0) -> Press:
+def plain(speed_mm_s: float, requested_mm_s: float = 100.0, depth_mm: float = 4.0) -> Press:
     down = depth_mm / speed_mm_s
     corners = (
         (0.0, 0.0),
@@ -32,7 +32,7 @@ def plain(speed_mm_s: float, asked_mm_s: float = 100.0, depth_mm: float = 4.0) -
         (0.05 + down, depth_mm),
         (0.05 + 2 * down, 0.0),
     )
-    return along(*corners, asked_mm_s=asked_mm_s)
+    return along(*corners, requested_mm_s=requested_mm_s)
 
 
 def test_a_press_at_its_speed_down_to_the_stop_is_used() -> None:

@@ -228,10 +228,10 @@ def test_more_presses_are_asked_for_while_a_rig_cannot_be_known_and_the_last_is_
 
 
 def test_a_press_far_off_its_pace_tells_the_rig_but_not_the_tables() -> None:
-    def met(asked_mm_s: float) -> RigState:
+    def met(requested_mm_s: float) -> RigState:
         method, job = (
             RigAware(identification_presses=2),
-            replace(JOB, target=ForceSurface.of_model(MODEL, [asked_mm_s])),
+            replace(JOB, target=ForceSurface.of_model(MODEL, [requested_mm_s])),
         )
         state = method.init(job)
         for seed in (1, 2):

@@ -250,7 +250,7 @@ def kept_of(folder: Path) -> list[Any]:
 
     log = PressLog(folder)
     try:
-        return list(log.kept())
+        return list(log.records())
     finally:
         log.close()
 

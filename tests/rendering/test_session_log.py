@@ -51,7 +51,7 @@ def test_a_file_of_the_first_version_is_read_and_written_again_byte_for_byte(tmp
     old = Path(__file__).parent / "files" / "presses-0.1.jsonl"
     (tmp_path / PRESSES).write_bytes(old.read_bytes())
     log = PressLog(tmp_path)
-    (first, second), (run,) = list(log.kept()), log.runs
+    (first, second), (run,) = list(log.records()), log.runs
     log.close()
     assert first.press is not None
     assert first.press.displacement_mm.tobytes() == np.array([0.1, -0.0, np.nan]).tobytes()
@@ -72,7 +72,7 @@ def test_a_file_of_the_first_version_is_read_and_written_again_byte_for_byte(tmp
 def test_every_column_of_every_press_comes_back_to_the_last_bit(tmp_path: Path) -> None:
     filled(tmp_path).close()
     again = PressLog(tmp_path)
-    found = list(again.kept())
+    found = list(again.records())
     assert [str(k.entry) for k in found] == [
         "press 1 at 100 mm/s: used",
         "press 2 at 100 mm/s: too fast",
@@ -89,7 +89,7 @@ def test_every_column_of_every_press_comes_back_to_the_last_bit(tmp_path: Path) 
 def test_a_press_that_the_device_could_not_tell_of_is_kept_without_columns(tmp_path: Path) -> None:
     log = PressLog(tmp_path)
     log.add(PressRecord(kept(1, "over speed").entry, SURFACE, None))
-    assert [k.press for k in log.kept()] == [None]
+    assert [k.press for k in log.records()] == [None]
     log.close()
 
 
@@ -97,7 +97,7 @@ def test_a_log_without_a_folder_keeps_what_became_of_presses(tmp_path: Path) -> 
     log = PressLog()
     log.begin(RUN)
     log.add(kept(1))
-    assert (len(log.entries), list(log.kept())) == (1, [])
+    assert (len(log.entries), list(log.records())) == (1, [])
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25, deadline=None)

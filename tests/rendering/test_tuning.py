@@ -114,7 +114,7 @@ def test_a_probe_is_made_under_its_tuning_and_the_log_tells_which(tmp_path: Path
     probe(RecordingDevice(), MODEL, SURFACE, [50.0], 2, session=Session(tmp_path / "n"))
     for name, wanted in (("t", TUNING), ("n", Tuning())):
         log = PressLog(tmp_path / name)
-        assert [kept.tuning for kept in log.kept()] == [wanted, wanted]
+        assert [kept.tuning for kept in log.records()] == [wanted, wanted]
         log.close()
     assert "tuning" not in (tmp_path / "n" / PRESSES).read_text()
     with pytest.raises(InputError, match="tuning"):
@@ -147,7 +147,7 @@ def probed_under(lead_s: float, folder: Path) -> Session:
     """Return a session of two presses whose file holds this lead."""
     probe(RecordingDevice(), MODEL, SURFACE, [50.0], 2, session=Session(folder), tuning=TUNING)
     log = PressLog(folder)
-    found = [replace(kept, tuning=replace(kept.tuning, lead_s=lead_s)) for kept in log.kept()]
+    found = [replace(kept, tuning=replace(kept.tuning, lead_s=lead_s)) for kept in log.records()]
     run = log.runs[0]
     log.close()
     (folder / PRESSES).unlink()

@@ -222,9 +222,9 @@ def plot_velocities(processed: Processed, simulated: bool = False) -> Figure:
     fig = style.new_figure(8.0, 4.4)
     ax = fig.add_subplot()
     order = np.arange(1, len(processed.judged) + 1)
-    asked = np.array([one.press.velocity_mm_s or np.nan for one in processed.judged])
+    requested_mm_s = np.array([one.press.velocity_mm_s or np.nan for one in processed.judged])
     made = np.array([one.achieved_mm_s for one in processed.judged])
-    ax.plot(order, asked, drawstyle="steps-mid", color=style.QUIET, linewidth=1.2, label="asked")
+    ax.plot(order, requested_mm_s, drawstyle="steps-mid", color=style.QUIET, linewidth=1.2, label="asked")
     used = np.array([one.reason is None for one in processed.judged])
     ax.plot(order[used], made[used], "o", markersize=4.5, color=style.PALETTE[0], label=f"used: {used.sum()}")
     for i, reason in enumerate(Reason):
@@ -234,7 +234,7 @@ def plot_velocities(processed: Processed, simulated: bool = False) -> Figure:
             label = f"{reason}: {which.sum()}"
             ax.plot(order[which], made[which], LEFT_OUT[i], **look, label=style.wrapped(label))
     ax.set(xlabel="press (count, in the order made)", ylabel="mean speed of the press (mm/s)")
-    ax.set_ylim(0.0, 1.06 * float(np.nanmax(np.concatenate([made, asked, [1.0]]))))
+    ax.set_ylim(0.0, 1.06 * float(np.nanmax(np.concatenate([made, requested_mm_s, [1.0]]))))
     ax.legend(**BESIDE)
     style.set_titles(ax, "speeds asked and achieved", simulated)
     return fig

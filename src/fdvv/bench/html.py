@@ -42,8 +42,8 @@ def _example(recorded: RecordedModel, fastest: bool) -> Judged:
     """Choose the press of median speed among those used at the fastest or slowest velocity."""
     used = [one for one in recorded.processed.judged if one.reason is None]
     velocities = [one.press.velocity_mm_s or 0.0 for one in used]
-    asked_mm_s = max(velocities) if fastest else min(velocities)
-    group = [one for one, its in zip(used, velocities, strict=True) if its == asked_mm_s]
+    requested_mm_s = max(velocities) if fastest else min(velocities)
+    group = [one for one, its in zip(used, velocities, strict=True) if its == requested_mm_s]
     return sorted(group, key=lambda one: one.achieved_mm_s)[len(group) // 2]
 
 
@@ -125,14 +125,14 @@ def _speed(velocity_mm_s: float | None) -> str:
 
 def _registration(recorded: RecordedModel) -> Section:
     processed, simulated = recorded.processed, recorded.recording.simulated
-    asked_mm_s = _example(recorded, fastest=True).press.velocity_mm_s
+    requested_mm_s = _example(recorded, fastest=True).press.velocity_mm_s
     figures = tuple(
         figure_svg(
-            plot_registration(processed, curve.stroke, asked_mm_s, simulated=simulated),
+            plot_registration(processed, curve.stroke, requested_mm_s, simulated=simulated),
             f"Samples, mean and spread of the {curve.stroke}",
         )
         for curve in processed.curves
-        if curve.velocity_mm_s == asked_mm_s
+        if curve.velocity_mm_s == requested_mm_s
     )
     text = (
         "Every sample of every press counts at the place where it was taken. The dashed line is what the "

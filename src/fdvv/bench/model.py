@@ -198,11 +198,11 @@ def model_of_recording(
 def _averaged(curve: AveragedCurve) -> tuple[MeasuredCurve, CurveSpread | None]:
     """Return a curve as a fit takes it, at the achieved velocity where none was requested."""
     x_mm = np.round(curve.displacement_mm, DECIMALS_mm)
-    asked_mm_s = curve.velocity_mm_s or round(curve.achieved_mm_s, 1)
+    requested_mm_s = curve.velocity_mm_s or round(curve.achieved_mm_s, 1)
     spread_cN = np.round(curve.spread_cN, DECIMALS_cN)
     speeds = (round(curve.achieved_mm_s, 2), round(curve.achieved_spread_mm_s, 2))
     spread = CurveSpread(x_mm, spread_cN, curve.presses, *speeds) if curve.presses > 1 else None
-    return MeasuredCurve(x_mm, curve.force_cN, curve.stroke, asked_mm_s), spread
+    return MeasuredCurve(x_mm, curve.force_cN, curve.stroke, requested_mm_s), spread
 
 
 def _probed(

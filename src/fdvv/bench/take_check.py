@@ -140,7 +140,9 @@ def _along(position_mm: FloatArray) -> FloatArray:
     return np.asarray(off @ (far / max(float(np.linalg.norm(far)), 1e-9)))
 
 
-def _press(asked_mm_s: float | None, t_s: FloatArray, down_mm: FloatArray, plan: CapturePlan) -> TakeCheck:
+def _press(
+    requested_mm_s: float | None, t_s: FloatArray, down_mm: FloatArray, plan: CapturePlan
+) -> TakeCheck:
     # one frame that shows too much must not make a press
     smooth = np.median(np.stack([down_mm[:-2], down_mm[1:-1], down_mm[2:]]), axis=0)
     depth_mm = float(smooth.max())
@@ -157,7 +159,7 @@ def _press(asked_mm_s: float | None, t_s: FloatArray, down_mm: FloatArray, plan:
     achieved = (level_mm - START_mm) / max(done_s - begun_s, 1e-4)
     stroke = slice(max(start - 1, 0), end + 1)
     reason = _fault(t_s[stroke], down_mm[stroke], smooth, achieved)
-    reason = reason or _off_velocity(achieved, asked_mm_s, plan)
+    reason = reason or _off_velocity(achieved, requested_mm_s, plan)
     return TakeCheck(not reason, achieved, depth_mm, reason)
 
 
@@ -175,11 +177,11 @@ def _fault(t_s: FloatArray, stroke_mm: FloatArray, smooth_mm: FloatArray, achiev
     return ""
 
 
-def _off_velocity(achieved_mm_s: float, asked_mm_s: float | None, plan: CapturePlan) -> str:
-    if asked_mm_s is None or abs(achieved_mm_s / asked_mm_s - 1) <= plan.pace_ratio:
+def _off_velocity(achieved_mm_s: float, requested_mm_s: float | None, plan: CapturePlan) -> str:
+    if requested_mm_s is None or abs(achieved_mm_s / requested_mm_s - 1) <= plan.pace_ratio:
         return ""
-    way, remedy = ("slow", "faster") if achieved_mm_s < asked_mm_s else ("fast", "slower")
-    return f"too {way}, {achieved_mm_s:.0f} instead of {asked_mm_s:g} mm/s; press {remedy}"
+    way, remedy = ("slow", "faster") if achieved_mm_s < requested_mm_s else ("fast", "slower")
+    return f"too {way}, {achieved_mm_s:.0f} instead of {requested_mm_s:g} mm/s; press {remedy}"
 
 
 def _crossing_s(t_s: FloatArray, x_mm: FloatArray, i: int, level_mm: float) -> float:

@@ -100,15 +100,15 @@ def scaled_vibrations(
 def _scaled(scaling: StrokeScaling, one: StrokeVibration, own: Sequence[Vibration]) -> Vibration:
     assert one.energy is not None
     assert one.velocity_mm_s is not None
-    asked_mm_s = one.velocity_mm_s
-    near = min(own, key=lambda v: abs(math.log((v.velocity_mm_s or asked_mm_s) / asked_mm_s)))
+    requested_mm_s = one.velocity_mm_s
+    near = min(own, key=lambda v: abs(math.log((v.velocity_mm_s or requested_mm_s) / requested_mm_s)))
     found = one.found if isinstance(one.found, MeasuredVibration) else None
     speed = found.snap_velocity_mm_s.value if found else scaling.speed_ratio * one.achieved_mm_s
     wanted = scaling.scaling.amplitude(speed, one.energy.energy_mJ)
     grown = wanted / abs(near.modes[0].amplitude_m_s2)
     modes = tuple(replace(mode, amplitude_m_s2=grown * mode.amplitude_m_s2) for mode in near.modes)
     onset_mm = found.onset_mm.value if found else near.onset_mm
-    return replace(near, velocity_mm_s=asked_mm_s, onset_mm=onset_mm, modes=modes, spread=None)
+    return replace(near, velocity_mm_s=requested_mm_s, onset_mm=onset_mm, modes=modes, spread=None)
 
 
 def scaling_words(scaling: StrokeScaling, made: Sequence[Vibration]) -> str:

@@ -130,13 +130,13 @@ def _format(path: Path) -> str | None:
 
 
 def _curves(path: Path, settings: ImportSettings) -> Imported:
-    asked = {
+    options = {
         "--into": settings.into,
         "--velocity": settings.velocity_mm_s,
         "--onset-mm": settings.onset_mm,
         "--full-scale-m-s2": settings.full_scale_m_s2,
     }
-    for option, value in asked.items():
+    for option, value in options.items():
         if value is not None:
             raise InputError(path, "whole file", "holds curves, no vibration", f"leave {option} out")
     found = fit_file(path, settings.fit)

@@ -108,12 +108,12 @@ def demo(
     open_device : gives a device for a seed; learning and judging use different seeds.
     switch : a file of measured curves; the shipped one if None. Raises InputError, DeviceError.
     """
-    begun = time.perf_counter()
+    started = time.perf_counter()
     with resources.as_file(resources.files("fdvv.button") / "examples" / SWITCH) as shipped:
         fitted = _fit_switch(switch or shipped, stage)
     button = load_builtin(BUTTON)
     renderings = _render(open_device, button, seed, stage)
-    return DemoResult(fitted, button, renderings, seed, time.perf_counter() - begun)
+    return DemoResult(fitted, button, renderings, seed, time.perf_counter() - started)
 
 
 def _fit_switch(path: Path, stage: Stage) -> SwitchFit:

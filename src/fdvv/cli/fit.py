@@ -44,14 +44,14 @@ def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) ->
 )
 @ui.json_option
 def fit(
-    path: Path, method: str, output: Path | None, max_rmse_cN: float | None, as_json: bool, **asked: Any
+    path: Path, method: str, output: Path | None, max_rmse_cN: float | None, as_json: bool, **options: Any
 ) -> None:
     """Fit measured force curves: one file, or every file of a folder.
 
     PATH is a file in any known format (docs/reference/force-files.md) or a folder of them. The report
     tells the error against the raw curve, how much of the bump is kept, and what was repaired.
     """
-    settings = FitSettings(FitMethod(method), **asked)
+    settings = FitSettings(FitMethod(method), **options)
     worst, where = (_folder if path.is_dir() else _file)(path, settings, output, as_json)
     if max_rmse_cN is not None and worst > max_rmse_cN:
         reason = f"RMSE of {worst:.3f} cN exceeds the bound of {max_rmse_cN:g} cN"

@@ -26,7 +26,7 @@ OUTPUT = ui.option("-o", "--output", type=ui.NEW_FILE, required=True, help="The 
     "--conflict", ("refuse", "first", "last"), help="If two curves of one stroke and velocity differ."
 )
 @OUTPUT
-def merge(parts: tuple[str, ...], output: Path, **asked: Any) -> None:
+def merge(parts: tuple[str, ...], output: Path, **options: Any) -> None:
     """Merge force curves at several velocities into one FDVV model.
 
     PARTS are FILE[:press|:release][@VELOCITY]: a built-in, a *.fdvv.json or a measured file; only that
@@ -34,7 +34,7 @@ def merge(parts: tuple[str, ...], output: Path, **asked: Any) -> None:
     """
     ui.check_output(output, MODEL_SUFFIX)
     try:
-        model = merge_parts(parts, **asked)
+        model = merge_parts(parts, **options)
     except ModelError as error:
         raise click.UsageError(_as_option(str(error))) from error
     save_model(model, output)
@@ -58,13 +58,13 @@ def _as_option(reason: str) -> str:
 )
 @ui.option("--blend-mm", type=ui.POSITIVE, default=0.1, help="Width of the transition at the segment's ends.")
 @OUTPUT
-def assign(button: str, curve: str, output: Path, **asked: Any) -> None:
+def assign(button: str, curve: str, output: Path, **options: Any) -> None:
     """Assign a curve, or a segment of one, to press or release of a model.
 
     BUTTON is the model that is changed (a copy is written); CURVE is FILE[:press|:release], whose own
     stroke and velocity do not matter.
     """
     ui.check_output(output, MODEL_SUFFIX)
-    model = assign_curve(open_button(button), one_curve(curve), **asked)
+    model = assign_curve(open_button(button), one_curve(curve), **options)
     save_model(model, output)
     click.echo(f"{output}: {ui.counted(len(model.curves), 'curve')}")

@@ -30,7 +30,7 @@ FIGURES = {
 @ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the presses.")
 @ui.option("-o", "--output", type=ui.PATH, help="The *.csv of every press to write.")
 @ui.json_option
-def press(output: Path | None, as_json: bool, **asked: Any) -> None:
+def press(output: Path | None, as_json: bool, **options: Any) -> None:
     """Press a real button; simulated.
 
     Finger, switch or dome, leaf and plate are those of the twin (docs/explanation/real-buttons.md). Forces
@@ -38,7 +38,7 @@ def press(output: Path | None, as_json: bool, **asked: Any) -> None:
     cap's first 0.05 mm.
     """
     ui.check_output(output, ".csv")
-    found = press_button(**asked)
+    found = press_button(**options)
     if output:
         found.write_csv(output)
     if as_json:

@@ -157,8 +157,8 @@ def check(program: str, weight_cN: float | None, opposing_cN: float | None, as_j
 
 
 def _limits(weight_cN: float | None, opposing_cN: float | None) -> Limits:
-    asked: dict[str, Any] = {"weight_cN": weight_cN, "opposing_cN": opposing_cN}
-    return Limits(**{name: value for name, value in asked.items() if value is not None})
+    limits: dict[str, Any] = {"weight_cN": weight_cN, "opposing_cN": opposing_cN}
+    return Limits(**{name: value for name, value in limits.items() if value is not None})
 
 
 def _report(opened: Program, report: Report) -> dict[str, Any]:

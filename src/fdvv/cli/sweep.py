@@ -29,24 +29,25 @@ def sweep(plan: Path, output: Path | None, preview: bool, where: Workers, as_jso
     Parquet file with a column for each factor and figure; one that fails is a row with its reason. Whatever
     ended a sweep, the same command goes on. The result is the same however many processes work on it.
     """
-    asked = read_sweep_plan(plan)
+    sweep_plan = read_sweep_plan(plan)
     if preview:
-        _preview(asked, plan, output, where.processes or where.workers, as_json)
+        _preview(sweep_plan, plan, output, where.processes or where.workers, as_json)
         return
     if output is None:
         raise click.UsageError("a sweep needs --output FOLDER, or --preview")
     ui.check_folder(output)
-    _run(asked, plan, output, where, as_json)
+    _run(sweep_plan, plan, output, where, as_json)
 
 
-def _run(asked: Any, plan: Path, output: Path, where: Workers, as_json: bool) -> None:
-    with where.at_work(output, "cells", asked.count) as (executor, tell):
-        result = run_sweep(asked, output, executor, tell, plan.parent)
+def _run(sweep_plan: Any, plan: Path, output: Path, where: Workers, as_json: bool) -> None:
+    with where.at_work(output, "cells", sweep_plan.count) as (executor, tell):
+        result = run_sweep(sweep_plan, output, executor, tell, plan.parent)
     document = {**result.to_dict(), "summary": sweep_summary(result)}
     if as_json:
         ui.print_json(document)
         return
-    click.echo(f"{asked.measure}: {ui.counted(result.cells, 'cell')} (simulated), {result.failed} failed")
+    cells = ui.counted(result.cells, "cell")
+    click.echo(f"{sweep_plan.measure}: {cells} (simulated), {result.failed} failed")
     for part in document["summary"]:
         figure, factor = part["figure"], part["factor"]
         rows = [
@@ -59,8 +60,8 @@ def _run(asked: Any, plan: Path, output: Path, where: Workers, as_json: bool) ->
     click.echo(f"written to {result.path}")
 
 
-def _preview(asked: Any, plan: Path, output: Path | None, processes: int | None, as_json: bool) -> None:
-    found = preview_sweep(asked, output, plan.parent)
+def _preview(sweep_plan: Any, plan: Path, output: Path | None, processes: int | None, as_json: bool) -> None:
+    found = preview_sweep(sweep_plan, output, plan.parent)
     count = processes or len(os.sched_getaffinity(0))
     ui.print_warnings([f"a cell that was tried failed: {reason}" for reason in found.failed])
     if as_json:
@@ -69,7 +70,7 @@ def _preview(asked: Any, plan: Path, output: Path | None, processes: int | None,
             "estimated_s": found.seconds(count), "failed": list(found.failed),
         })  # fmt: skip
         return
-    for name, values in asked.levels().items():
+    for name, values in sweep_plan.levels().items():
         listed = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in values[:6])
         more = f" ... {values[-1]}" if len(values) > 6 else ""
         click.echo(f"{name} ({len(values)}): {listed}{more}")

@@ -160,11 +160,11 @@ def _constant_force(press: Press) -> str:
     return f"the force sensor read {press.sensed_cN[0]:g} cN throughout; check it and its cable"
 
 
-def _off_pace(achieved_mm_s: float, asked_mm_s: float, bound: float) -> str:
-    if abs(achieved_mm_s / asked_mm_s - 1) <= bound:
+def _off_pace(achieved_mm_s: float, requested_mm_s: float, bound: float) -> str:
+    if abs(achieved_mm_s / requested_mm_s - 1) <= bound:
         return ""
-    remedy = "slower" if achieved_mm_s > asked_mm_s else "faster"
-    return f"{achieved_mm_s:.0f} mm/s instead of {asked_mm_s:g}: press {remedy}"
+    remedy = "slower" if achieved_mm_s > requested_mm_s else "faster"
+    return f"{achieved_mm_s:.0f} mm/s instead of {requested_mm_s:g}: press {remedy}"
 
 
 def _lifted(x_mm: FloatArray, bound_mm: float) -> str:

@@ -98,14 +98,16 @@ class HostBoard:
         self._link, slave = os.openpty()
         tty.setraw(slave)
         os.set_blocking(self._link, False)
-        given, asked = os.pipe(), os.pipe()
-        command = [str(program), str(asked[0]), str(given[1]), os.ttyname(slave)]
-        self._process = subprocess.Popen(command, pass_fds=(asked[0], given[1]), stdin=subprocess.DEVNULL)
-        for file in (asked[0], given[1]):
+        replies, requests = os.pipe(), os.pipe()
+        command = [str(program), str(requests[0]), str(replies[1]), os.ttyname(slave)]
+        self._process = subprocess.Popen(
+            command, pass_fds=(requests[0], replies[1]), stdin=subprocess.DEVNULL
+        )
+        for file in (requests[0], replies[1]):
             os.close(file)
         # held open, so that the line outlives the moment before the program has opened it
         self._slave = slave
-        self._asked, self._given = asked[1], given[0]
+        self._requests, self._replies = requests[1], replies[0]
         self._written = self._heard = 0
         self._waiting = self._arrived = self._answer = b""
         self._plugged, self._open, self._owed = True, True, False
@@ -120,7 +122,7 @@ class HostBoard:
                 self._take()  # Ctrl-C came between question and answer
             self._flush()
             self._owed = True
-            os.write(self._asked, inputs.pack() + TAIL.pack(self._written % 2**32, self._plugged))
+            os.write(self._requests, inputs.pack() + TAIL.pack(self._written % 2**32, self._plugged))
             answer = self._take()
         except (BrokenPipeError, EOFError):
             status = self._process.poll()
@@ -140,9 +142,9 @@ class HostBoard:
 
     def _take(self) -> bytes:
         while len(self._answer) < ANSWER_BYTES:
-            if not select.select([self._given], [], [], PATIENCE_s)[0]:
+            if not select.select([self._replies], [], [], PATIENCE_s)[0]:
                 raise DeviceError(f"host: no tick in {PATIENCE_s:g} s; the program hangs")
-            piece = os.read(self._given, ANSWER_BYTES - len(self._answer))
+            piece = os.read(self._replies, ANSWER_BYTES - len(self._answer))
             if not piece:
                 raise EOFError
             self._answer += piece
@@ -175,7 +177,7 @@ class HostBoard:
     def close(self) -> None:
         if self._open:
             self._open = False
-            for file in (self._asked, self._given, self._link, self._slave):
+            for file in (self._requests, self._replies, self._link, self._slave):
                 os.close(file)
             self._process.terminate()
             self._process.wait()

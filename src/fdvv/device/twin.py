@@ -71,9 +71,9 @@ class TwinDevice:
         The rig reads its sensor as it did: tick_us and reads stay what they are.
         """
         for name in ("tick_us", "reads"):
-            kept, asked = getattr(self._settings, name), getattr(settings, name)
-            if kept != asked:
-                raise DeviceError(f"twin: {name} is {kept} in this rig and cannot be {asked}")
+            fixed, requested = getattr(self._settings, name), getattr(settings, name)
+            if fixed != requested:
+                raise DeviceError(f"twin: {name} is {fixed} in this rig and cannot be {requested}")
         try:
             Core(settings)  # refuses them as a board does
         except ModelError as error:

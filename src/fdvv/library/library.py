@@ -39,7 +39,7 @@ By = Literal["all", "curve", "landmarks"]
 PARTS: dict[By, tuple[int, ...]] = {"all": (0, 1, 2), "curve": (0, 1), "landmarks": (2,)}
 """Which of the distances of force, shape and landmarks count."""
 
-ASKED = "asked:"
+QUERY = "asked:"
 """Begins the id of a button that is not of the library and that others are to be like."""
 
 
@@ -102,10 +102,10 @@ class Library:
         spec : the id or the place of one of the library, a built-in's name, a model file or a measured file.
         Raises InputError.
         """
-        asked = self._asked(spec)
-        if self._search.row(asked.id) is None:
-            self._search.extend([asked])
-        found = self._search.find(SearchQuery(like=asked.id))
+        row = self._query_row(spec)
+        if self._search.row(row.id) is None:
+            self._search.extend([row])
+        found = self._search.find(SearchQuery(like=row.id))
         distance = distances(found.parts[:, PARTS[by]])
         nearest = [i for i in np.argsort(distance, kind="stable") if np.isfinite(distance[i])]
         hits = (self._hit(found.positions[i], distance[i], found.parts[i]) for i in nearest)
@@ -136,12 +136,12 @@ class Library:
         rounded = tuple(round(float(part), 3) if np.isfinite(part) else None for part in parts)
         return LibraryHit(row, self._places.get(row.id, ""), round(float(distance), 3), rounded)
 
-    def _asked(self, spec: str) -> ButtonRow:
+    def _query_row(self, spec: str) -> ButtonRow:
         known = self._search.row(spec) or self._at_place(spec)
         if known is not None:
             return known
         if spec in builtin_names():
-            return row_of_model(load_builtin(spec), f"{ASKED}{spec}", Origin.BUILTIN)
+            return row_of_model(load_builtin(spec), f"{QUERY}{spec}", Origin.BUILTIN)
         path = Path(spec)
         if not path.is_file():
             reason = "is no button of the library, no built-in and no file"
@@ -150,7 +150,7 @@ class Library:
         if kind and kind != MODEL:
             remedy = "name a model or a measured file"
             raise InputError(path, "whole file", f"holds {kind}, no button", remedy)
-        return row_of_file(path, f"{ASKED}{spec}", "")
+        return row_of_file(path, f"{QUERY}{spec}", "")
 
     def _at_place(self, place: str) -> ButtonRow | None:
         return next((self._search.row(i) for i, there in self._places.items() if there == place), None)

@@ -85,7 +85,7 @@ class RealLine:
         lost: Callable[[DeviceError], None],
     ) -> None:
         self._device, self._heard, self._watched, self._lost = device, heard, watched, lost
-        self._asked: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._requests: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._over, self._watch_s = False, time.monotonic()
         self._thread = Thread(target=self._run, name="device line", daemon=True)
         self._thread.start()
@@ -100,7 +100,7 @@ class RealLine:
             except BaseException as error:
                 found.set_exception(error)
 
-        self._asked.put(done)
+        self._requests.put(done)
         while True:
             try:
                 return found.result(ASKS_s)
@@ -132,13 +132,13 @@ class RealLine:
             except DeviceError as error:
                 self._lost(error)
                 self._over = True
-            self._do_asked()
-        self._do_asked()  # what was asked for meanwhile fails or is done, but nobody waits for ever
+            self._run_requests()
+        self._run_requests()  # what was asked for meanwhile fails or is done, but nobody waits for ever
 
-    def _do_asked(self) -> None:
+    def _run_requests(self) -> None:
         while True:
             try:
-                self._asked.get_nowait()()
+                self._requests.get_nowait()()
             except Empty:
                 return
 

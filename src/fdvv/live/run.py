@@ -93,7 +93,7 @@ class LiveRun:
         self._press, self._show, self._clock, self._silent_s = press, show, clock, silent_s
         self._refused, self._failed = refused, failed
         self._changed = Condition()
-        self._asked: list[Callable[[LivePress], None]] = []
+        self._requests: list[Callable[[LivePress], None]] = []
         self._sequence, self._over, self._looking = 0, False, True
         self._dropped_s, self._shown_sequence = 0.0, 0
         self._heard_s = clock()
@@ -103,7 +103,7 @@ class LiveRun:
     def ask(self, work: Callable[[LivePress], None], sequence: int | None = None) -> None:
         """Queue work on the press before its next tick. sequence : number that frames return."""
         with self._changed:
-            self._asked.append(work)
+            self._requests.append(work)
             if sequence is not None:
                 self._sequence = sequence
             self._hear()
@@ -147,7 +147,7 @@ class LiveRun:
         while self._goes_on():
             due_s, lost_s = pace.due()
             self._dropped_s += lost_s
-            gathered.led |= self._do_asked()
+            gathered.led |= self._run_requests()
             began_s = self._clock()
             gathered.take(*self._press.advance(due_s), self._clock() - began_s)
             gathered.zero_s = (pace.last_s or 0.0) - self._press.due_s
@@ -171,16 +171,16 @@ class LiveRun:
                 self._looking = False
             return self._looking and not self._over
 
-    def _do_asked(self) -> bool:
+    def _run_requests(self) -> bool:
         """Do the queued work; return whether there was any."""
         with self._changed:
-            asked, self._asked, self._shown_sequence = self._asked, [], self._sequence
-        for work in asked:
+            requests, self._requests, self._shown_sequence = self._requests, [], self._sequence
+        for work in requests:
             try:
                 work(self._press)
             except FdvvError as error:
                 self._refused(str(error))
-        return bool(asked)
+        return bool(requests)
 
 
 class _Gathered:

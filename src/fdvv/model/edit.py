@@ -306,21 +306,21 @@ def _decided(what: str, given: _Value | None, stated: Sequence[tuple[str, _Value
 
 def _settled(what: str, parts: Sequence[tuple[str, _Part]], rule: Conflict) -> tuple[_Part, ...]:
     """Keep one part for each stroke and velocity, as the rule says."""
-    kept: dict[tuple[Stroke, float | None], tuple[str, _Part]] = {}
+    chosen: dict[tuple[Stroke, float | None], tuple[str, _Part]] = {}
     for who, part in parts:
         key = (part.stroke, part.velocity_mm_s)
-        earlier, there = kept.setdefault(key, (who, part))
+        earlier, there = chosen.setdefault(key, (who, part))
         alike = replace(there, spread=None) == replace(part, spread=None)
         if alike and (None in (there.spread, part.spread) or there.spread == part.spread):
-            kept[key] = (earlier, there) if there.spread else (who, part)
+            chosen[key] = (earlier, there) if there.spread else (who, part)
             continue
         if rule is Conflict.REFUSE:
             sides = f"one from {earlier!r}, one from {who!r}"
             remedy = 'pass conflict="first" or "last" to decide'
             raise ModelError(f"two different {what}s for {_label(part)}, {sides}; {remedy}")
         if rule is Conflict.LAST:
-            kept[key] = (who, part)
-    return tuple(part for _, part in kept.values())
+            chosen[key] = (who, part)
+    return tuple(part for _, part in chosen.values())
 
 
 def _joined(provenances: Sequence[Provenance], note: str) -> Provenance:

@@ -146,11 +146,11 @@ def _hold_bump(
     weight, trial, bound = np.ones_like(x), (t, c), math.inf
     for _ in range(BUMP_ROUNDS):
         fitted = bspline.evaluate(*trial, degree, x)
-        error, kept = float(np.sum((fitted - y) ** 2)), find_bump(x, fitted, least_drop_cN=0.0)
+        error, fitted_bump = float(np.sum((fitted - y) ** 2)), find_bump(x, fitted, least_drop_cN=0.0)
         bound = min(bound, BUMP_COST**2 * error)
         if error > bound:
             break
-        if kept and kept.drop_cN >= BUMP_KEPT_ratio * bump.drop_cN:
+        if fitted_bump and fitted_bump.drop_cN >= BUMP_KEPT_ratio * bump.drop_cN:
             return trial
         weight[near] *= BUMP_WEIGHT
         trial = _adaptive(x, y, degree, c.size, weight)
@@ -217,7 +217,7 @@ def fit_curve(
     """
     import scipy.interpolate  # noqa: F401  loaded here so that the first curve's time_s does not hold it
 
-    begun = time.perf_counter()
+    started = time.perf_counter()
     method = FitMethod(method)
     chosen = _degree(method, degree)
     x, raw, _ = measured.by_displacement()
@@ -233,7 +233,7 @@ def fit_curve(
         t, c = _hold_bump(x, y, chosen, t, c)
     curve = ForceCurve(measured.stroke, measured.velocity_mm_s, chosen, t, c)
     scores = _scores(curve, measured, penalty)
-    time_s = time.perf_counter() - begun
+    time_s = time.perf_counter() - started
     return CurveFit(curve, method, **scores, samples=x.size, smoothing_mm=smoothing_mm, time_s=time_s)
 
 
@@ -243,12 +243,12 @@ def _scores(curve: ForceCurve, measured: MeasuredCurve, penalty: float) -> dict[
     fitted = curve.force_cN(x)
     error = fitted - raw
     rows = curve.force_cN(measured.displacement_mm) - measured.force_cN
-    bump, kept = find_bump(x, raw), find_bump(x, fitted, least_drop_cN=0.0)
+    bump, fitted_bump = find_bump(x, raw), find_bump(x, fitted, least_drop_cN=0.0)
     squared = float(np.sum(error**2))
     return {
         "rmse_cN": math.sqrt(squared / x.size),
         "max_cN": float(np.abs(error).max()),
         "rows_rmse_cN": float(np.sqrt(np.mean(rows**2))),
-        "bump_kept_ratio": kept.drop_cN / bump.drop_cN if bump and kept else None,
+        "bump_kept_ratio": fitted_bump.drop_cN / bump.drop_cN if bump and fitted_bump else None,
         "bic_star": bic_star(x.size, curve.control_points_cN.size, squared, penalty),
     }

@@ -162,8 +162,8 @@ class TemporalPointing:
             "lost_ratio": [float(late is None) for late in late_ms],
             "effort_N_s": [press.effort_N_s for press in presses if press.effort_N_s is not None],
         }
-        asked = (ASYNCHRONY.name, *self.also)
-        return {name: mean_score(np.array(column)) for name, column in columns.items() if name in asked}
+        names = (ASYNCHRONY.name, *self.also)
+        return {name: mean_score(np.array(column)) for name, column in columns.items() if name in names}
 
 
 RATE, UNEVEN = Objective("rate_Hz", larger_is_better=True), Objective("interval_spread_ratio")

@@ -105,14 +105,14 @@ SPEED_START_mm = 0.1
 def excursions(depth_mm: FloatArray) -> list[tuple[int, int]]:
     """Find presses in a record of depth whose rest is 0: (first, last) index of each, rest left out."""
     found = []
-    begun: int | None = None
+    start: int | None = None
     for i, depth in enumerate(depth_mm):
-        if begun is None and depth > MOVED_mm:
-            begun = i
-        elif begun is not None and depth < 0.5 * MOVED_mm:
-            found.append((begun, i))
-            begun = None
-    return found if begun is None else [*found, (begun, depth_mm.size - 1)]
+        if start is None and depth > MOVED_mm:
+            start = i
+        elif start is not None and depth < 0.5 * MOVED_mm:
+            found.append((start, i))
+            start = None
+    return found if start is None else [*found, (start, depth_mm.size - 1)]
 
 
 def whole_press(press: RawPress) -> tuple[int, int]:

@@ -72,30 +72,32 @@ class Curves:
         """Average both strokes at every velocity that has enough presses, in reading order."""
         known = {stroke: self._probe.curve(stroke) if self._probe else None for stroke in Stroke}
         found: dict[Stroke, list[_Done]] = {stroke: [] for stroke in Stroke}
-        for asked_mm_s in sorted({one.press.velocity_mm_s for one in self.judged}, key=lambda v: v or 0.0):
-            for stroke, curve in self._at_velocity(asked_mm_s, known).items():
+        velocities = {one.press.velocity_mm_s for one in self.judged}
+        for requested_mm_s in sorted(velocities, key=lambda v: v or 0.0):
+            for stroke, curve in self._at_velocity(requested_mm_s, known).items():
                 known[stroke] = curve.shape
                 found[stroke].append(curve)
         ordered = [curve for stroke in Stroke for curve in found[stroke]]
         return [c.average for c in ordered], [c.tracks for c in ordered]
 
     def _at_velocity(
-        self, asked_mm_s: float | None, known: Mapping[Stroke, CurveOfForce | None]
+        self, requested_mm_s: float | None, known: Mapping[Stroke, CurveOfForce | None]
     ) -> dict[Stroke, _Done]:
         """Average both strokes at one velocity, and again without the outlying presses."""
         while True:
-            used = [o for o in self.judged if o.reason is None and o.press.velocity_mm_s == asked_mm_s]
-            curves = {stroke: self._curve(used, stroke, asked_mm_s, known[stroke]) for stroke in Stroke}
+            used = [o for o in self.judged if o.reason is None and o.press.velocity_mm_s == requested_mm_s]
+            curves = {stroke: self._curve(used, stroke, requested_mm_s, known[stroke]) for stroke in Stroke}
             strange = [one for curve in curves.values() if curve for one in curve.strange]
             if not strange:
                 break
             self.judged = [replace(o, reason=Reason.FORCE) if o in strange else o for o in self.judged]
         if len(used) < FEWEST:
-            self.warnings.append(f"{asked_mm_s or 'unknown'} mm/s: {len(used)} presses can be used, no curve")
+            velocity = requested_mm_s or "unknown"
+            self.warnings.append(f"{velocity} mm/s: {len(used)} presses can be used, no curve")
         return {stroke: curve for stroke, curve in curves.items() if curve}
 
     def _curve(
-        self, used: Sequence[Judged], stroke: Stroke, asked_mm_s: float | None, known: CurveOfForce | None
+        self, used: Sequence[Judged], stroke: Stroke, requested_mm_s: float | None, known: CurveOfForce | None
     ) -> _Done | None:
         found = self._paths.find(used, stroke, known)
         if found is None:
@@ -104,7 +106,7 @@ class Curves:
         pooled = pool(tracks, shape, *_extent_mm(tracks))
         speeds = np.array([one.achieved_mm_s for one in whole])
         strange = [whole[i] for i in unlike(pooled, self._limit)]
-        return _Done(averaged(tracks, pooled, asked_mm_s, speeds), tracks, shape, strange)
+        return _Done(averaged(tracks, pooled, requested_mm_s, speeds), tracks, shape, strange)
 
 
 def _extent_mm(tracks: Sequence[StrokeTrack]) -> tuple[float, float]:

@@ -126,7 +126,7 @@ def _off_pace(found: Sequence[Judged], limits: Limits) -> list[Judged]:
     for one in found:
         if one.press.velocity_mm_s is not None and one.reason is None:
             speeds.setdefault(one.press.velocity_mm_s, []).append(one.achieved_mm_s)
-    usual = {asked_mm_s: float(np.nanmedian(achieved)) for asked_mm_s, achieved in speeds.items()}
+    usual = {requested_mm_s: float(np.nanmedian(achieved)) for requested_mm_s, achieved in speeds.items()}
     judged = []
     for one in found:
         if one.press.velocity_mm_s is not None and one.reason is None:

@@ -171,8 +171,8 @@ def read_motive(source: Path, lines: Sequence[str]) -> Reading:
     warnings += notes + counted_warning(int((~keep).sum()), "frame", "left out: the times do not rise")
     warnings += _frames(head, table[:, 0])
     start = head.pairs.get("Capture Start Time", "")
-    begun = made(start)
-    if begun is None:
+    started = made(start)
+    if started is None:
         warnings.append(f"the capture start {start!r:.40} tells no certain moment")
     scale = LENGTH_mm[head.pairs["Length Units"].lower()]
     streams = unlike(
@@ -180,7 +180,7 @@ def read_motive(source: Path, lines: Sequence[str]) -> Reading:
         for triple in head.triples
     )
     form = f"motive-{head.pairs['Format Version']}"
-    return Reading(form, streams, (), warnings, begun or "", head.pairs.get("Take Name", ""))
+    return Reading(form, streams, (), warnings, started or "", head.pairs.get("Take Name", ""))
 
 
 def _unread(head: MotiveHead) -> list[str]:

@@ -152,10 +152,10 @@ class PressLog(SessionFile[PressEntry]):
     def _entry(self, body: Any, number: int) -> PressEntry:
         return _record(self.path, body, number).entry
 
-    def kept(self) -> Iterator[PressRecord]:
+    def records(self) -> Iterator[PressRecord]:
         """Read the presses on file again, with all columns, in order; nothing if there is no file."""
-        records = read_bodies(self.path, self.kind) if self.path else ()
-        presses = (body for key, body, _ in records if key == "press")
+        bodies = read_bodies(self.path, self.kind) if self.path else ()
+        presses = (body for key, body, _ in bodies if key == "press")
         for number, body in enumerate(presses, 1):
             yield _record(self.path, body, number)
 
@@ -164,16 +164,16 @@ class PressLog(SessionFile[PressEntry]):
         """Number of used presses."""
         return sum(entry.used for entry in self.entries)
 
-    def add(self, kept: PressRecord) -> None:
+    def add(self, record: PressRecord) -> None:
         if self.path is not None:
-            self._write({"press": _packed(kept)})
-        self.entries.append(kept.entry)
+            self._write({"press": _packed(record)})
+        self.entries.append(record.entry)
 
 
-def _packed(kept: PressRecord) -> dict[str, Any]:
-    columns = pack_record(kept.press) if kept.press else None
-    tuning = {} if kept.tuning == UNTUNED else {"tuning": kept.tuning.to_dict()}
-    found = {**msgspec.to_builtins(kept.entry), "surface": pack_record(kept.surface), "columns": columns}
+def _packed(record: PressRecord) -> dict[str, Any]:
+    columns = pack_record(record.press) if record.press else None
+    tuning = {} if record.tuning == UNTUNED else {"tuning": record.tuning.to_dict()}
+    found = {**msgspec.to_builtins(record.entry), "surface": pack_record(record.surface), "columns": columns}
     return found | tuning
 
 

@@ -164,16 +164,16 @@ def released(device: Device, resume: Callable[[], str]) -> Iterator[None]:
 
 def replay(plan: SessionPlan[S], state: S, log: PressLog) -> S:
     """Rebuild the state from the used presses. Raises InputError if they were made on other tables."""
-    for kept in log.kept():
-        if not kept.entry.used:
+    for record in log.records():
+        if not record.entry.used:
             continue
         trial = plan.source.trial(state)
-        if trial is None or kept.press is None or not _same(trial, kept):
-            _refuse(log, kept, "was made on another table or tuning than this method asks for")
+        if trial is None or record.press is None or not _same(trial, record):
+            _refuse(log, record, "was made on another table or tuning than this method asks for")
         try:
-            state = plan.source.step(kept.press, state)
+            state = plan.source.step(record.press, state)
         except ModelError as error:
-            _refuse(log, kept, str(error))
+            _refuse(log, record, str(error))
     return state
 
 
@@ -187,20 +187,20 @@ def _resume_notice(plan: SessionPlan[S], state: S, log: PressLog) -> str:
     return f"the session in {log.folder}, with {count.made} of {count.total} presses, {rest}"
 
 
-def _same(trial: Trial, kept: PressRecord) -> bool:
+def _same(trial: Trial, record: PressRecord) -> bool:
     """Return whether a press was made with the tables and tuning of a trial."""
-    if trial.velocity_mm_s != kept.entry.velocity_mm_s:
+    if trial.velocity_mm_s != record.entry.velocity_mm_s:
         return False
-    numbers = trial.tuning.numbers(), kept.tuning.numbers()
+    numbers = trial.tuning.numbers(), record.tuning.numbers()
     if numbers[0].shape != numbers[1].shape or not np.allclose(*numbers, rtol=SAME_TUNING_ratio, atol=0):
         return False
-    pairs = [(column, getattr(kept.surface, name)) for name, column in vars(trial.surface).items()]
+    pairs = [(column, getattr(record.surface, name)) for name, column in vars(trial.surface).items()]
     return all(a.shape == b.shape and np.allclose(a, b, rtol=0, atol=SAME_TABLE_cN) for a, b in pairs)
 
 
-def _refuse(log: PressLog, kept: PressRecord, reason: str) -> NoReturn:
+def _refuse(log: PressLog, record: PressRecord, reason: str) -> NoReturn:
     why = f"{reason}; another version of fdvv made it"
-    raise InputError(log.path, f"press {kept.entry.number}", why, REMEDY)
+    raise InputError(log.path, f"press {record.entry.number}", why, REMEDY)
 
 
 def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S:

@@ -221,9 +221,9 @@ def _replayed(method: Method, candidates: Sequence[Candidates], log: AnswerLog) 
     """Rebuild the state from the answers on file. Raises InputError if they belong to other questions."""
     state = method.init(Job(tuple(len(c.vibrations) for c in candidates)))
     for given in log.entries:
-        asked = method.ask(state)
+        question = method.ask(state)
         try:
-            if asked is None or _place(asked, candidates) != (given.velocity_mm_s, given.templates):
+            if question is None or _place(question, candidates) != (given.velocity_mm_s, given.templates):
                 raise ModelError("was asked another question; another version of fdvv made it")
             answer = given.answer
             state = method.tell(state, Preferred(answer) if isinstance(answer, str) else answer)
@@ -232,8 +232,8 @@ def _replayed(method: Method, candidates: Sequence[Candidates], log: AnswerLog) 
     return state
 
 
-def _place(asked: Question, candidates: Sequence[Candidates]) -> tuple[float, list[int]]:
-    return candidates[asked.place].velocity_mm_s, list(asked.templates)
+def _place(question: Question, candidates: Sequence[Candidates]) -> tuple[float, list[int]]:
+    return candidates[question.place].velocity_mm_s, list(question.templates)
 
 
 def _greet(guide: Guide, log: AnswerLog, done: bool) -> None:
@@ -253,33 +253,33 @@ def _standing(
 def _asked(plan: _TuningPlan, method: Method, state: TuningState, log: AnswerLog) -> TuningState:
     clear_latched(plan.device, plan.guide.notice)
     with released(plan.device, lambda: how_to_resume(log, len(log.entries), "answer", "answers")):
-        while (asked := method.ask(state)) is not None:
-            reply, speeds = _answered(plan, asked)
+        while (question := method.ask(state)) is not None:
+            reply, speeds = _answered(plan, question)
             with defer_interrupt():
                 after = method.tell(state, reply)
                 stored = str(reply) if isinstance(reply, Preferred) else reply
-                velocity, templates = _place(asked, plan.candidates)
-                given = AnswerRecord(asked.number, velocity, templates, stored, speeds, now())
+                velocity, templates = _place(question, plan.candidates)
+                given = AnswerRecord(question.number, velocity, templates, stored, speeds, now())
                 log.add(given)
                 state = after
-            plan.answered(AnswerEvent(given, asked.total, _standing(plan.candidates, method, state)))
+            plan.answered(AnswerEvent(given, question.total, _standing(plan.candidates, method, state)))
     return state
 
 
-def _answered(plan: _TuningPlan, asked: Question) -> tuple[int | Preferred, list[float | None]]:
+def _answered(plan: _TuningPlan, question: Question) -> tuple[int | Preferred, list[float | None]]:
     """Have the vibrations pressed, as often as the person wants, until there is an answer."""
     while True:
-        speeds = [_pressed(plan, asked, template) for template in asked.templates]
-        if (reply := plan.answer(asked)) is not None:
+        speeds = [_pressed(plan, question, template) for template in question.templates]
+        if (reply := plan.answer(question)) is not None:
             return reply, speeds
 
 
-def _pressed(plan: _TuningPlan, asked: Question, template: int) -> float | None:
+def _pressed(plan: _TuningPlan, question: Question, template: int) -> float | None:
     """Have one vibration pressed at the requested speed; return the mean speed of the press."""
-    found = plan.candidates[asked.place]
+    found = plan.candidates[question.place]
     for _ in range(PATIENCE):
         plan.upload(found.vibrations[template])
-        plan.guide.ask(PressRequest(found.velocity_mm_s, plan.travel_mm, asked.number, asked.total))
+        plan.guide.ask(PressRequest(found.velocity_mm_s, plan.travel_mm, question.number, question.total))
         press = plan.device.press(found.velocity_mm_s)
         verdict = judge_press(press, plan.travel_mm, plan.session.acceptance)
         if not verdict.reason:

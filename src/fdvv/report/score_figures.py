@@ -148,15 +148,15 @@ def _draw_training(ax: Axes, panel: TrainingScores) -> None:
         ax.plot(trials, row, ".", **dot, label="a person's trial" if number == 0 else None)
     # before its first score a person has no best, and of a trial that nobody scored there is no median
     best = np.fmin.accumulate(panel.scores, axis=1)
-    scored, begun = (np.isfinite(columns).any(axis=0) for columns in (panel.scores, best))
+    scored, started = (np.isfinite(columns).any(axis=0) for columns in (panel.scores, best))
     if not alone:
-        low, high = np.nanpercentile(best[:, begun], [25, 75], axis=0)
-        ax.fill_between(trials[begun], low, high, color=style.PALETTE[0], alpha=style.BAND, linewidth=0.0)
+        low, high = np.nanpercentile(best[:, started], [25, 75], axis=0)
+        ax.fill_between(trials[started], low, high, color=style.PALETTE[0], alpha=style.BAND, linewidth=0.0)
         middle = np.nanmedian(panel.scores[:, scored], axis=0)
         ax.plot(trials[scored], middle, color=style.PALETTE[1], label="median of people")
     label = "best so far" if alone else "best so far, median and quartiles"
     line: Any = {"color": style.PALETTE[0], "linewidth": 2.0, "label": label}
-    ax.plot(trials[begun], np.nanmedian(best[:, begun], axis=0), **line)
+    ax.plot(trials[started], np.nanmedian(best[:, started], axis=0), **line)
 
 
 def _panels(count: int, width_in: float, height_in: float) -> Any:

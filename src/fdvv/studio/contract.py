@@ -87,7 +87,7 @@ def call(name: str) -> Callable[[Callable[[Any, Any], object]], Call]:
         (_, service), (_, ask), (_, answer) = get_type_hints(function, include_extras=True).items()
         if service is Studio:
             return Call(name, ask, answer, function)
-        return Call(name, ask, answer, lambda studio, asked: function(studio.part(service), asked))
+        return Call(name, ask, answer, lambda studio, request: function(studio.part(service), request))
 
     return made
 

@@ -44,7 +44,7 @@ class DeviceThread:
     ) -> None:
         self.device = device
         self._ticks, self._lost = ticks, lost
-        self._asked: queue.Queue[tuple[Callable[[], Any], Future[Any]]] = queue.Queue()
+        self._requests: queue.Queue[tuple[Callable[[], Any], Future[Any]]] = queue.Queue()
         self._over, self._lock = threading.Event(), threading.Lock()
         self._twin_s = 0.0
         self._thread = threading.Thread(target=self._serve, name="device", daemon=True)
@@ -63,7 +63,7 @@ class DeviceThread:
         with self._lock:
             if self._over.is_set():
                 raise DeviceError(GONE)
-            self._asked.put((work, answer))
+            self._requests.put((work, answer))
         try:
             return answer.result(PATIENCE_s)
         except TimeoutError:
@@ -101,14 +101,14 @@ class DeviceThread:
     def _refuse(self) -> None:
         with self._lock:
             self._over.set()
-            while not self._asked.empty():
-                self._asked.get()[1].set_exception(DeviceError(GONE))
+            while not self._requests.empty():
+                self._requests.get()[1].set_exception(DeviceError(GONE))
 
     def _turn(self) -> None:
         """Do what is asked, or look at what the device tells for a moment."""
         wait_s = self._watch() if self.remote else GLANCE_s
         try:
-            work, answer = self._asked.get(timeout=max(wait_s, 0.001))
+            work, answer = self._requests.get(timeout=max(wait_s, 0.001))
         except queue.Empty:
             return
         try:

@@ -112,11 +112,11 @@ class Method(ABC):
 
     def tell(self, state: TuningState, answer: int | Preferred) -> TuningState:
         """Take the answer to what is asked; ModelError if it is none."""
-        asked = self.ask(state)
-        if asked is None:
+        question = self.ask(state)
+        if question is None:
             raise ModelError("nothing is asked any more")
         self._check(answer)
-        return replace(state, answers=(*state.answers, Answered(asked.place, asked.templates, answer)))
+        return replace(state, answers=(*state.answers, Answered(question.place, question.templates, answer)))
 
     @abstractmethod
     def _check(self, answer: int | Preferred) -> None:

@@ -64,7 +64,7 @@ def capture(
     player: str | None,
     output: Path | None,
     as_json: bool,
-    **asked: Any,
+    **options: Any,
 ) -> None:
     """Record a button: a guided session of presses at several paces.
 
@@ -78,8 +78,8 @@ def capture(
     """
     ui.check_output(recording, RECORDING_SUFFIX)
     ui.check_output(output, MODEL_SUFFIX)
-    shuffled = asked.pop("shuffle")
-    plan = CapturePlan(**asked, shuffled=shuffled, seed=seed)
+    shuffled = options.pop("shuffle")
+    plan = CapturePlan(**options, shuffled=shuffled, seed=seed)
     twin = spec == "twin"
     device = open_bench(spec, button or TWIN_BUTTON, participant, seed, watch)
     name = (button and Path(button).name.removesuffix(".toml")) or (

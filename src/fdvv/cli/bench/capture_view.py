@@ -61,7 +61,7 @@ class CaptureLines:
         """Ask a person; only beeps show the pace."""
         if not self._paced:
             return lambda _t_s: None
-        ui.print_stderr(asked(ask))
+        ui.print_stderr(request_line(ask))
         return beeps(ask, self._beep)
 
     def done(self, event: TakeDone) -> None:
@@ -89,7 +89,7 @@ class CaptureTable:
             sound(t_s)
             if t_s - drawn_s[0] >= FRAME_s:
                 drawn_s[0] = t_s
-                self._draw(asked(ask), frame(ask, t_s))
+                self._draw(request_line(ask), frame(ask, t_s))
 
         return show
 
@@ -128,7 +128,7 @@ def frame(ask: TakeRequest, t_s: float) -> str:
     return f"   {bar(depth_at(t_s - begun_s, stroke_s))}"
 
 
-def asked(ask: TakeRequest) -> str:
+def request_line(ask: TakeRequest) -> str:
     at, again = f"{ask.number} of {ask.total}", " once more" if ask.again else ""
     stroke_s, velocity = stroke_of(ask), ask.step.velocity_mm_s
     if stroke_s is None:

@@ -33,15 +33,15 @@ FACTS = {
 @click.option("--licence", default="", help="Of the data, as its owner states it.")
 @click.option("--person", default="", help="A word for who pressed, never a name.")
 @ui.json_option
-def join(logs: tuple[Path, ...], output: Path, as_json: bool, **asked: Any) -> None:
+def join(logs: tuple[Path, ...], output: Path, as_json: bool, **options: Any) -> None:
     """Join logs of instruments that ran at once into a recording.
 
     LOGS are files of instruments that ran at once, as an export of Motive and the text of a board
     (docs/reference/log-files.md); each keeps its own clock, and process joins them by the light.
     """
     ui.check_output(output, RECORDING_SUFFIX)
-    bench = Bench(**{name: asked.pop(name) for name in FACTS})
-    recording = join_logs(logs, bench=bench, **asked)
+    bench = Bench(**{name: options.pop(name) for name in FACTS})
+    recording = join_logs(logs, bench=bench, **options)
     save_recording(recording, output)
     if as_json:
         ui.print_json({"recording": str(output), **facts_of(recording), "warnings": list(recording.warnings)})

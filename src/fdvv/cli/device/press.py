@@ -84,12 +84,12 @@ def _uploaded(
 @exciter_option
 @record_option
 @ui.json_option
-def upload(as_json: bool, **asked: Any) -> None:
+def upload(as_json: bool, **options: Any) -> None:
     """Make BUTTON the program of a device: a program image, a built-in, a *.fdvv.json or a measured file.
 
     A model is rendered by its own force, not compensated for the rig.
     """
-    with _uploaded(**asked) as (found, image):
+    with _uploaded(**options) as (found, image):
         name = found.info().name
     travel_mm = travel_mm_of(image)
     document = {"device": name, "bytes": len(image), "states": head_of(image).states, "travel_mm": travel_mm}
@@ -108,14 +108,14 @@ def upload(as_json: bool, **asked: Any) -> None:
 @ui.option("--presses", type=click.IntRange(1, 1000), default=3, help="How many.")
 @record_option
 @ui.json_option
-def press(speed_mm_s: float, presses: int, as_json: bool, **asked: Any) -> None:
+def press(speed_mm_s: float, presses: int, as_json: bool, **options: Any) -> None:
     """Upload BUTTON and have it pressed.
 
     On a simulated device the presses are simulated; on a serial one a person presses. Ctrl-C stops the
     device and keeps what was recorded.
     """
     rows = []
-    with _uploaded(**asked) as (found, _image):
+    with _uploaded(**options) as (found, _image):
         info = found.info()
         for count in range(presses):
             if not info.simulated:

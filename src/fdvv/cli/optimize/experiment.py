@@ -52,7 +52,7 @@ from fdvv.parallel.open import open_executor
 @ui.json_option
 def experiment(
     folder: Path, engine: tuple[str, dict[str, Any]], priors: tuple[Path, ...], processes: int | None,
-    winner: bool, as_json: bool, **asked: Any,
+    winner: bool, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
     """Run the paper's whole experiment on simulated people.
 
@@ -62,8 +62,8 @@ def experiment(
     """
     ui.check_folder(folder)
     begun_s = time.perf_counter()
-    prior = experiment_prior(priors, asked["seed"])
-    setup = ExperimentSetup(engine=engine[0], options=engine[1], prior=prior, **asked)
+    prior = experiment_prior(priors, options["seed"])
+    setup = ExperimentSetup(engine=engine[0], options=engine[1], prior=prior, **options)
     kept = f"stopped; every finished trial is in {folder}, the same command goes on"
     with ui.stages() as stage, kept_on_interrupt(kept), open_executor(processes) as executor:
         result = run_experiment(folder, setup, executor, stage)

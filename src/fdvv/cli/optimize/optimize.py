@@ -10,7 +10,7 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.optimize.options import Play, engine_option, level_option, on_strip, rig_option, strip_options
 from fdvv.optimize.problem import Trial
-from fdvv.optimize.run.begin import RunAsked, begin_run
+from fdvv.optimize.run.begin import RunRequest, begin_run
 from fdvv.optimize.run.player import POINTING, player_of
 from fdvv.optimize.run.report import optimize_html, optimize_report
 from fdvv.optimize.run.session import Optimization, replay_differences
@@ -57,13 +57,13 @@ def optimize() -> None:
 @rig_option
 @strip_options
 @ui.json_option
-def run(folder: Path, strip: str | None, device: str, as_json: bool, **asked: Any) -> None:
+def run(folder: Path, strip: str | None, device: str, as_json: bool, **arguments: Any) -> None:
     """Begin an optimisation and play it to its end, with a simulated person or on an LED strip.
 
     The same options give the same trials. Ctrl-C stops between two trials; fdvv optimize resume goes on.
     """
     ui.check_folder(folder)
-    wanted = _asked(strip=strip, **asked)
+    wanted = _request(strip=strip, **arguments)
     with on_strip(strip, device) as play, begin_run(folder, wanted) as session:
         _play(session, play, as_json)
 
@@ -118,14 +118,14 @@ def report(folder: Path, output: Path | None, as_json: bool) -> None:
         click.echo(f"written to {path}")
 
 
-def _asked(
-    engine: tuple[str, dict[str, Any]], trials: int, person: int, strip: str | None, **asked: Any
+def _request(
+    engine: tuple[str, dict[str, Any]], trials: int, person: int, strip: str | None, **arguments: Any
 ) -> Any:
-    if strip and asked["task"] != POINTING:
-        raise click.UsageError(f"on a strip one plays {POINTING}, not {asked['task']}")
+    if strip and arguments["task"] != POINTING:
+        raise click.UsageError(f"on a strip one plays {POINTING}, not {arguments['task']}")
     name, options = engine
     simulated = person if strip in (None, "host") else None
-    return RunAsked(engine=name, options=options, budget=trials, person=simulated, **asked)
+    return RunRequest(engine=name, options=options, budget=trials, person=simulated, **arguments)
 
 
 def _play(session: Optimization, play: Play | None, as_json: bool) -> None:

@@ -36,14 +36,14 @@ from fdvv.optimize.tasks import TemporalPointing
 @executor_options
 @ui.json_option
 def population(
-    folder: Path, grid: int | None, prior: Path | None, where: Workers, as_json: bool, **asked: Any
+    folder: Path, grid: int | None, prior: Path | None, where: Workers, as_json: bool, **options: Any
 ) -> None:
     """Optimise a button for every one of many simulated people, or score a grid of designs by all.
 
     FOLDER keeps every part that is done: whatever ended the run, the same command goes on with it. The result
     is the same however many processes work on it. Everything is simulated.
     """
-    plan = _plan(grid=grid, **asked)
+    plan = _plan(grid=grid, **options)
     trials = read_grid(prior).prior() if prior else ()
     label = "people" if grid is None else "grid"
     with where.at_work(folder, label, plan.chunks) as (executor, tell):
@@ -51,7 +51,7 @@ def population(
     _show(result.summary(), folder, as_json)
 
 
-def _plan(grid: int | None, level: str, engine: str, shifts: tuple[str, ...], **asked: Any) -> Any:
+def _plan(grid: int | None, level: str, engine: str, shifts: tuple[str, ...], **options: Any) -> Any:
     engine_of(engine)
     found = PopulationPlan(
         kind="optimize" if grid is None else "grid",
@@ -59,7 +59,7 @@ def _plan(grid: int | None, level: str, engine: str, shifts: tuple[str, ...], **
         level="easy" if level == "easy" else "hard",
         engine=engine,
         designs=grid or 1,
-        **asked,
+        **options,
     )
     # one round by one person refuses a rig or a shift that cannot be, before hundreds are begun
     middle = paper_model(paper_space().of_unit([[0.5] * 8])[0])

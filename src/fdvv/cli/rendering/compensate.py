@@ -26,7 +26,7 @@ from fdvv.rendering.probe import probe as judge
 @ui.option("-o", "--output", type=ui.PATH, help="The *.actuation.json to write.")
 @ui.json_option
 def compensate(
-    button: str, pressing: Pressing, save_rig: Path | None, output: Path | None, as_json: bool, **asked: Any
+    button: str, pressing: Pressing, save_rig: Path | None, output: Path | None, as_json: bool, **options: Any
 ) -> None:
     """Learn the actuation that makes a rig feel like a model.
 
@@ -43,7 +43,7 @@ def compensate(
     """
     ui.check_output(output, ".actuation.json")
     ui.check_output(save_rig, ".rig.json")
-    law = law_of(**asked, save_rig=save_rig)
+    law = law_of(**options, save_rig=save_rig)
     model = open_button(button)
     session = pressing.session(beside(output, button, "session"))
     with pressing.guided(session, as_json) as (found, view, guide):

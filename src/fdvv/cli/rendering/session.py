@@ -51,7 +51,7 @@ class LineView:
 
     def ask(self, ask: PressRequest) -> None:
         if self._person:
-            ui.print_stderr(asked(ask))
+            ui.print_stderr(request_line(ask))
 
     def done(self, event: PressDone) -> None:
         step = max(1, event.presses_total // LINES)
@@ -73,8 +73,8 @@ class TableView:
 
     def ask(self, ask: PressRequest) -> None:
         if self._person:
-            self._cue(ask.travel_mm / ask.velocity_mm_s, lambda cue: self._draw(asked(ask), cue))
-            self._draw(asked(ask), "press now")
+            self._cue(ask.travel_mm / ask.velocity_mm_s, lambda cue: self._draw(request_line(ask), cue))
+            self._draw(request_line(ask), "press now")
 
     def done(self, event: PressDone) -> None:
         """Report a press; simulated ones come faster than anyone reads."""
@@ -97,7 +97,7 @@ class TableView:
         self._live.update(Group(table, *map(Text, (self._line, *lines))), refresh=True)
 
 
-def asked(ask: PressRequest) -> str:
+def request_line(ask: PressRequest) -> str:
     stroke_ms = 1000 * ask.travel_mm / ask.velocity_mm_s
     return (
         f"press {ask.number} of {ask.total}: {ask.velocity_mm_s:g} mm/s, "

@@ -40,7 +40,7 @@ class TuneView:
 
     def __init__(self, person: bool, as_json: bool) -> None:
         self._person, self._as_json = person, as_json
-        self._asked, self._press = 0, 0
+        self._question_number, self._press = 0, 0
 
     @property
     def guide(self) -> Guide:
@@ -49,8 +49,8 @@ class TuneView:
     def _ask(self, ask: PressRequest) -> None:
         if not self._person:
             return
-        self._press = self._press + 1 if ask.number == self._asked else 1
-        self._asked = ask.number
+        self._press = self._press + 1 if ask.number == self._question_number else 1
+        self._question_number = ask.number
         ui.print_stderr(
             f"question {ask.number} of {ask.total} at most, press {self._press}: {ask.velocity_mm_s:g} mm/s, "
             "down to the stop and let go"

@@ -105,7 +105,7 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
 
 
 def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Answers, StudyPlan | None, str]:
-    asked = ColumnMap(
+    column_map = ColumnMap(
         kind=table["kind"],
         stimuli=tuple(name.strip() for name in table["stimuli"].split(",") if name.strip()),
         columns=_pairs("--map", table["columns"]),
@@ -113,7 +113,7 @@ def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Ans
         missing=frozenset(table["missing"]),
         simulated=table["simulated"],
     )
-    answers = read_answers(source, asked)
+    answers = read_answers(source, column_map)
     if plan is not None:
         data = read_limited(plan, 4_000_000, "name the study's file")
         return answers, read_plan_text(data.decode(errors="replace"), plan), f"answers of {source.name}"

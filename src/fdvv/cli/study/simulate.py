@@ -63,7 +63,7 @@ set_option = ui.option(
 @ui.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, help="Repeats the simulated answers.")
 @ui.json_option
 def power(
-    file: Path, difference: float | None, changes: tuple[str, ...], as_json: bool, **asked: Any
+    file: Path, difference: float | None, changes: tuple[str, ...], as_json: bool, **options: Any
 ) -> None:
     """Estimate how many people a study needs: the power of its claim, by simulated participants.
 
@@ -72,7 +72,7 @@ def power(
     """
     settings = proxy_settings(changes)
     with ui.stages() as tell:
-        found = study_power(file, **asked, settings=settings, given_JND=difference, progress=tell)
+        found = study_power(file, **options, settings=settings, given_JND=difference, progress=tell)
     if as_json:
         ui.print_json(found.to_dict())
         return
@@ -108,11 +108,11 @@ def _show_power(found: StudyPower) -> None:
     _show_rows(found)
     click.echo("")
     enough = found.table.enough()
-    asked = "more people than that" if enough is None else f"{enough} people"
+    needed = "more people than that" if enough is None else f"{enough} people"
     # fewer than the first number of people were not tried
     most = " at most" if enough == found.table.rows[0].people else ""
     ui.print_wrapped(
-        f"For a power of 0.8 the proxies ask for {asked}{most}; {found.plan.people} are planned."
+        f"For a power of 0.8 the proxies ask for {needed}{most}; {found.plan.people} are planned."
     )
 
 

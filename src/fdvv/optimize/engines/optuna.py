@@ -60,7 +60,7 @@ class TPEEngine(RecommendsBelievedBest):
             study = _study(problem, optuna.samplers.TPESampler(seed=seed, n_startup_trials=0))
             for trial in (*prior, *trials):
                 _tell(study, problem, trial)
-            return _asked(study, problem, trials, count)
+            return _suggested(study, problem, trials, count)
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class CMAESEngine(RecommendsBelievedBest):
             seed = problem.seed & 0x7FFFFFFF
             independent = optuna.samplers.RandomSampler(seed=seed)
             sampler = optuna.samplers.CmaEsSampler(seed=seed, independent_sampler=independent)
-            return _asked(_replayed(problem, trials, sampler), problem, trials, count)
+            return _suggested(_replayed(problem, trials, sampler), problem, trials, count)
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ class NSGA2Engine(RecommendsBelievedBest):
             sampler = optuna.samplers.NSGAIISampler(
                 seed=problem.seed & 0x7FFFFFFF, population_size=self.population
             )
-            return _asked(_replayed(problem, trials, sampler), problem, trials, count)
+            return _suggested(_replayed(problem, trials, sampler), problem, trials, count)
 
 
 def _replayed(problem: Problem, trials: Sequence[Trial], sampler: BaseSampler) -> Study:
@@ -120,11 +120,11 @@ def _replayed(problem: Problem, trials: Sequence[Trial], sampler: BaseSampler) -
     study = _study(problem, sampler)
     for trial in trials:
         study.enqueue_trial(_params(problem, trial))
-        asked = study.ask(_ranges(problem))
+        optuna_trial = study.ask(_ranges(problem))
         if finished(problem, [trial]):
-            study.tell(asked, _values(problem, trial))
+            study.tell(optuna_trial, _values(problem, trial))
         elif trial.state not in OPEN:
-            study.tell(asked, state=optuna.trial.TrialState.FAIL)
+            study.tell(optuna_trial, state=optuna.trial.TrialState.FAIL)
     return study
 
 
@@ -201,14 +201,14 @@ def _values(problem: Problem, trial: Trial) -> list[float]:
     return [trial.scores[one.name].value for one in problem.objectives]
 
 
-def _asked(study: Study, problem: Problem, trials: Sequence[Trial], count: int) -> list[dict[str, float]]:
+def _suggested(study: Study, problem: Problem, trials: Sequence[Trial], count: int) -> list[dict[str, float]]:
     """Ask until count designs hold the constraints and are new; one at random where asking finds none."""
     tried = tried_places(problem.space, trials)
     rng, d = generator(problem, trials, 3), len(problem.space.names)
     found = np.empty((0, d))
     for _ in range(count):
-        asked = (_one(study, problem, np.vstack([tried, found])) for _ in range(ASKS))
-        place = next((place for place in asked if place is not None), None)
+        designs = (_one(study, problem, np.vstack([tried, found])) for _ in range(ASKS))
+        place = next((design for design in designs if design is not None), None)
         if place is None:
             place = draw_feasible(problem, lambda n: rng.random((n, d)), np.vstack([tried, found]), 1)[0]
         found = np.vstack([found, place])

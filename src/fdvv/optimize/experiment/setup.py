@@ -105,11 +105,11 @@ def begin_experiment(folder: Path, setup: ExperimentSetup) -> ExperimentSetup:
     return setup
 
 
-def _check_same(path: Path, there: ExperimentSetup, asked: ExperimentSetup) -> None:
+def _check_same(path: Path, there: ExperimentSetup, requested: ExperimentSetup) -> None:
     """Refuse to continue an experiment that was begun with other settings."""
     for name in ExperimentSetup.__struct_fields__:
-        if name not in MADE and getattr(there, name) != getattr(asked, name):
-            begun = f"was begun with {name} {getattr(there, name)!r}, not {getattr(asked, name)!r}"
+        if name not in MADE and getattr(there, name) != getattr(requested, name):
+            begun = f"was begun with {name} {getattr(there, name)!r}, not {getattr(requested, name)!r}"
             if name == "prior":
                 begun = "was begun from other trials of others"
             raise InputError(path, f"$.{name}", begun, "go on with the same, or name a new folder")

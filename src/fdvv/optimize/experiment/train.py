@@ -88,7 +88,7 @@ class Train:
         if (folder / SETUP_FILE).exists():
             return Optimization.open(folder)
         setup = self.setup
-        asked = OptimizeSetup(
+        run_setup = OptimizeSetup(
             engine=setup.engine,
             options=setup.options,
             level=level,
@@ -98,7 +98,7 @@ class Train:
             simulated=True,
             about={**about_player(person, setup.rig, setup.presses), "drawn_with_seed": setup.seed},
         )
-        return Optimization.create(folder, asked)
+        return Optimization.create(folder, run_setup)
 
     def _player(self, person: int, level: str) -> SimulatedPlayer:
         setup = self.setup

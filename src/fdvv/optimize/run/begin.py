@@ -83,7 +83,7 @@ PAPER = "paper"
 
 
 @dataclass(frozen=True)
-class RunAsked:
+class RunRequest:
     """What a person asks for.
 
     Attributes
@@ -109,50 +109,50 @@ class RunAsked:
     rig: str = "ideal"
 
 
-def begin_run(folder: Path, asked: RunAsked) -> Optimization:
+def begin_run(folder: Path, request: RunRequest) -> Optimization:
     """Begin a run in a folder that is new or empty. Raises InputError, BuildError, OSError."""
-    with _shelf_of(asked.within) as (project, rig_id):
-        space, start = _space(asked, rig_id)
-        task = task_named(asked.task, asked.level, asked.presses)
+    with _shelf_of(request.within) as (project, rig_id):
+        space, start = _space(request, rig_id)
+        task = task_named(request.task, request.level, request.presses)
         setup = OptimizeSetup(
             space=space,
-            engine=asked.engine,
-            options=asked.options,
-            task=asked.task,
-            level=asked.level if asked.task == POINTING else None,
+            engine=request.engine,
+            options=request.options,
+            task=request.task,
+            level=request.level if request.task == POINTING else None,
             objectives=task.objectives[:1],
-            seed=asked.seed,
-            budget=asked.budget,
+            seed=request.seed,
+            budget=request.budget,
             start=start,
-            prior=_prior(asked),
-            simulated=asked.person is not None,
-            about=_about(asked),
+            prior=_prior(request),
+            simulated=request.person is not None,
+            about=_about(request),
         )
         return Optimization.create(folder, setup, project)
 
 
-def _space(asked: RunAsked, rig_id: str | None) -> tuple[SpaceSetup, dict[str, float] | None]:
+def _space(request: RunRequest, rig_id: str | None) -> tuple[SpaceSetup, dict[str, float] | None]:
     """Return the space, and the design a run starts from: a button that is varied is tried as it is first."""
-    if asked.space == PAPER:
+    if request.space == PAPER:
         return SpaceSetup(rig=rig_id), None
-    base = open_button(asked.space)
-    setup = model_space_setup(base, asked.vary, rig=rig_id)
-    return setup, neutral_design(model_space(base, asked.vary), base)
+    base = open_button(request.space)
+    setup = model_space_setup(base, request.vary, rig=rig_id)
+    return setup, neutral_design(model_space(base, request.vary), base)
 
 
-def _about(asked: RunAsked) -> dict[str, Any]:
-    if asked.person is None:
-        return {OptimizeSetup.PRESSES: asked.presses}
-    return about_player(asked.person, asked.rig, asked.presses)
+def _about(request: RunRequest) -> dict[str, Any]:
+    if request.person is None:
+        return {OptimizeSetup.PRESSES: request.presses}
+    return about_player(request.person, request.rig, request.presses)
 
 
-def _prior(asked: RunAsked) -> tuple[Trial, ...]:
-    if asked.prior is None:
+def _prior(request: RunRequest) -> tuple[Trial, ...]:
+    if request.prior is None:
         return ()
-    found = read_grid(asked.prior)
-    if asked.space != PAPER or asked.task != POINTING:
+    found = read_grid(request.prior)
+    if request.space != PAPER or request.task != POINTING:
         reason = f"others played {POINTING} with designs of the space {PAPER}"
-        raise InputError("--prior", str(asked.prior), reason, "leave it out, or play the same")
+        raise InputError("--prior", str(request.prior), reason, "leave it out, or play the same")
     return found.prior()
 
 

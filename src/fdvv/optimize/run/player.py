@@ -45,11 +45,11 @@ class SimulatedPlayer:
 
         What the rig's firmware cannot hold fails with its reason; nobody presses it.
         """
-        asked = session.ask()
-        if not asked:
+        trials = session.ask()
+        if not trials:
             return None
         # a run killed in the middle of a trial has shown it already
-        (trial,) = asked
+        (trial,) = trials
         shown = trial if trial.state is TrialState.SHOWN else session.show(trial.number)
         model = session.model(shown.design)
         if refusal := refusal_of(model, self.rig):

@@ -104,11 +104,11 @@ class Optimization:
         """
         self._scored()
         left = [t for t in self.trials if t.state in OPEN and t.number not in self._given]
-        asked = left[:count]
-        while len(asked) < count and self.left:
-            asked.append(self._suggested())
-        self._given |= {trial.number for trial in asked}
-        return tuple(asked)
+        trials = left[:count]
+        while len(trials) < count and self.left:
+            trials.append(self._suggested())
+        self._given |= {trial.number for trial in trials}
+        return tuple(trials)
 
     def _suggested(self) -> Trial:
         if self.setup.start is not None and not self.trials:

@@ -43,7 +43,7 @@ def form_message(page: Page, language: str) -> StudyForm:
         page.name,
         text_in(page.title, language),
         [text for text in paragraphs if text],
-        [_asked(question, language) for question in page.questions],
+        [_question(question, language) for question in page.questions],
         page.when == "consent",
     )
 
@@ -73,7 +73,7 @@ def _scale(rating: Rating, language: str) -> StudyScale:
     return StudyScale(rating.name, question, low, high, rating.points)
 
 
-def _asked(question: Question, language: str) -> StudyAsked:
+def _question(question: Question, language: str) -> StudyAsked:
     choices = question.choices.get(language) or next(iter(question.choices.values()), ())
     return message_of(StudyAsked, question, question=text_in(question.question, language), choices=choices)
 

@@ -96,8 +96,8 @@ def _shared_files(order: RigOrder, model: FDVVModel, project: Path) -> dict[str,
     if order.rig != "default":
         files[names.rig.name] = rig_to_toml(load_rig(order.rig))
     learned = (("rig", "known_rig", names.known_rig), ("actuation", "actuation", names.actuation))
-    for kind, asked, copy in learned:
-        if name := getattr(order, asked, ""):
+    for kind, attribute, copy in learned:
+        if name := getattr(order, attribute, ""):
             files[copy.name] = result_file(project, kind, name).read_bytes()
     return files
 

@@ -50,8 +50,8 @@ class Answers:
         while True:
             # a wait without a bound cannot be interrupted on every system
             with contextlib.suppress(queue.Empty):
-                asked, answer = self._lines.get(timeout=0.1)
-                if asked == number:
+                question, answer = self._lines.get(timeout=0.1)
+                if question == number:
                     return answer
 
     def _listen(self) -> None:

@@ -62,14 +62,14 @@ def _cue(work: Work, paced: bool) -> Callable[[TakeRequest], Callable[[float], N
     def cue(ask: TakeRequest) -> Callable[[float], None]:
         if not paced:
             return show_nothing
-        work.tell(_asked(ask))
+        work.tell(_take_asked(ask))
         started = cache(lambda: work.tell(events.CueStarted()))  # at its first moment only
         return lambda _t_s: started()
 
     return cue
 
 
-def _asked(ask: TakeRequest) -> events.TakeAsked:
+def _take_asked(ask: TakeRequest) -> events.TakeAsked:
     velocity, stage = ask.step.velocity_mm_s, ask.step.stage
     moments = dict(cue_events(velocity, ask.travel_mm))
     return message_of(

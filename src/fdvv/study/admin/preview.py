@@ -128,7 +128,7 @@ def preview_sections(review: StudyReview) -> tuple[Section, ...]:
     trial = (plan_words.task_text(plan), *plan_words.staircase_texts(plan))
     return (
         Section("A person", _person(plan, summary), (), (_pages(plan),) if plan.pages else ()),
-        Section("A trial", trial, (), (_asked(plan),)),
+        Section("A trial", trial, (), (_questions(plan),)),
         Section("Buttons", (), (), (_items(review),)),
         Section("Orders", _order_texts(plan, summary), (), _orders(plan)),
         Section("What will not count", tuple(f"– {text}" for text in plan_words.exclusion_texts(plan))),
@@ -207,7 +207,7 @@ def _named(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[tuple[st
     return [(*(names if i == 0 else [""] * len(names)), *row) for i, row in enumerate(rows)]
 
 
-def _asked(plan: StudyPlan) -> Table:
+def _questions(plan: StudyPlan) -> Table:
     rows = list[tuple[str, ...]]()
     for language in plan.languages:
         rows += _named([language], [[line] for line in plan_words.asked_texts(plan, language)])

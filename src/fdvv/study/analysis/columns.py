@@ -75,18 +75,18 @@ class Layout:
         return "stimulus" in self.roles
 
 
-def layout_of(heads: Sequence[str], asked: ColumnMap, book: CodeBook | None, source: object) -> Layout:
+def layout_of(heads: Sequence[str], column_map: ColumnMap, book: CodeBook | None, source: object) -> Layout:
     """Find every column. InputError on one that is asked for and is not there, or that is there twice."""
     for name in heads:
         if name and list(heads).count(name) > 1:
             raise InputError(source, "line 1", f"two columns are called {name!r}", "give each its own name")
     roles = {role: heads.index(role) for role in ROLES if role in heads}
-    ratings = _by_name(heads, asked.stimuli)
+    ratings = _by_name(heads, column_map.stimuli)
     if book is not None:
         ratings = {}
         for name, (rating, stimulus) in book.rating_columns().items():
             ratings.setdefault(rating, {})[stimulus] = _place(name, heads, source)
-    for role, name in asked.columns.items():
+    for role, name in column_map.columns.items():
         rating, colon, stimulus = role.partition(":")
         if not colon and role in ROLES:
             roles[role] = _place(name, heads, source)
@@ -127,17 +127,17 @@ def _checked(layout: Layout, heads: Sequence[str], source: object) -> Layout:
     return layout
 
 
-def coded(word: str, asked: ColumnMap) -> str:
+def coded(word: str, column_map: ColumnMap) -> str:
     """Return what a word of the columns choice and stimulus means; "" where it says that there is nothing."""
-    if word in asked.codes:
-        return asked.codes[word]
-    if is_missing(word, asked):
+    if word in column_map.codes:
+        return column_map.codes[word]
+    if is_missing(word, column_map):
         return ""
     return EQUAL if word.lower() == EQUAL else word
 
 
-def is_missing(word: str, asked: ColumnMap) -> bool:
-    return word in asked.missing or word.lower() in MISSING
+def is_missing(word: str, column_map: ColumnMap) -> bool:
+    return word in column_map.missing or word.lower() in MISSING
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ class Row:
 
     path: Path
     heads: Sequence[str]
-    asked: ColumnMap
+    column_map: ColumnMap
     decimal_comma: bool
     line: int
     cells: Sequence[str]
@@ -159,7 +159,7 @@ class Row:
 
     def number(self, place: int | None) -> float:
         """Read a number; nan where there is none."""
-        if place is None or is_missing(self.cells[place], self.asked):
+        if place is None or is_missing(self.cells[place], self.column_map):
             return np.nan
         word = self.cells[place].replace(",", ".") if self.decimal_comma else self.cells[place]
         if word.lower() in (*YES, *NO):
@@ -175,4 +175,4 @@ class Row:
 
     def word(self, place: int | None) -> str:
         """Read a name; "" where there is none."""
-        return "" if place is None else coded(self.cells[place], self.asked)
+        return "" if place is None else coded(self.cells[place], self.column_map)

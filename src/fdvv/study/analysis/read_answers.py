@@ -51,42 +51,43 @@ def read_answers(path: Path, columns: ColumnMap | None = None) -> Answers:
     A code book beside answers.csv describes it; a foreign table needs its kind, and columns whose
     headings are not fdvv's mapped. Raises InputError that names line and column.
     """
-    path, asked = _table(Path(path)), columns or ColumnMap()
+    path, column_map = _table(Path(path)), columns or ColumnMap()
     book, beside = None, path.with_name(CODE_BOOK_FILE)
     if path.name == ANSWERS_FILE and beside.is_file():
         book = read_code_book(beside)
-        stimuli = asked.stimuli or book.stimuli
-        simulated = asked.simulated or book.simulated
-        asked = replace(asked, kind=asked.kind or book.kind, stimuli=stimuli, simulated=simulated)
+        stimuli = column_map.stimuli or book.stimuli
+        simulated = column_map.simulated or book.simulated
+        kind = column_map.kind or book.kind
+        column_map = replace(column_map, kind=kind, stimuli=stimuli, simulated=simulated)
     lines, _ = decode_lines(path, read_limited(path, LARGEST_bytes, "split the file"), REMEDY)
     # a name that fdvv wrote may hold a semicolon
     mark = "," if book else sniff_separator(next(line for line in lines if line.strip()))
     mark = "," if mark == " " else mark
     reader = csv.reader(io.StringIO("\n".join(lines), newline=""), delimiter=mark)
-    return _read(path, reader, asked, book, decimal_comma=mark != ",")
+    return _read(path, reader, column_map, book, decimal_comma=mark != ",")
 
 
 def _read(
-    path: Path, reader: Iterator[list[str]], asked: ColumnMap, book: CodeBook | None, decimal_comma: bool
+    path: Path, reader: Iterator[list[str]], column_map: ColumnMap, book: CodeBook | None, decimal_comma: bool
 ) -> Answers:
     rows = _filled(path, reader)
     _, heads = next(rows)
-    layout = layout_of(heads, asked, book, path)
+    layout = layout_of(heads, column_map, book, path)
     trials: dict[TrialKey, _Trial] = {}
     rounds: dict[tuple[str, ...], int] = {}
-    simulated = asked.simulated
+    simulated = column_map.simulated
     for line, cells in rows:
         if len(cells) != len(heads):
             reason = f"{len(cells)} cells under {len(heads)} headings"
             raise InputError(path, f"line {line}", reason, "check separators and quotes")
-        row = Row(path, heads, asked, decimal_comma, line, cells)
+        row = Row(path, heads, column_map, decimal_comma, line, cells)
         _take(row, layout, trials, rounds)
         simulated |= row.number(layout.roles.get("simulated")) == 1.0
     if not trials:
         raise InputError(path, "whole file", "it holds headings and no answer", REMEDY)
     found = list(trials.values())
-    stimuli = _stimuli(path, asked, layout, found)
-    return _answers(found, replace(asked, simulated=simulated), stimuli, layout, path)
+    stimuli = _stimuli(path, column_map, layout, found)
+    return _answers(found, replace(column_map, simulated=simulated), stimuli, layout, path)
 
 
 def _filled(path: Path, reader: Iterator[list[str]]) -> Iterator[tuple[int, list[str]]]:
@@ -142,11 +143,11 @@ def _reason(word: str) -> str:
     return "excluded in the file" if word.lower() in YES else word
 
 
-def _stimuli(path: Path, asked: ColumnMap, layout: Layout, trials: Sequence[_Trial]) -> tuple[str, ...]:
+def _stimuli(path: Path, column_map: ColumnMap, layout: Layout, trials: Sequence[_Trial]) -> tuple[str, ...]:
     rated = dict.fromkeys(key[1] for trial in trials for key in trial.ratings)
     chosen = sorted({trial.choice for trial in trials} - {"", EQUAL})
     found = tuple(sorted(rated) if layout.long else rated) or tuple(chosen)
-    stimuli = asked.stimuli or found
+    stimuli = column_map.stimuli or found
     strange = [one for one in (*chosen, *rated) if one not in stimuli]
     if strange:
         remedy = f"name it: --stimuli, or say what it means: --code {strange[0] or 'WORD'}=STIMULUS"
@@ -156,7 +157,7 @@ def _stimuli(path: Path, asked: ColumnMap, layout: Layout, trials: Sequence[_Tri
 
 
 def _answers(
-    trials: Sequence[_Trial], asked: ColumnMap, stimuli: tuple[str, ...], layout: Layout, path: Path
+    trials: Sequence[_Trial], column_map: ColumnMap, stimuli: tuple[str, ...], layout: Layout, path: Path
 ) -> Answers:
     names = np.array([(one.person, one.item, one.choice, one.excluded) for one in trials], dtype=str)
     ratings = {
@@ -164,7 +165,7 @@ def _answers(
         for rating in layout.ratings
     }
     ratio, time_s = (_numbers(trials, name) for name in ("ratio", "time_s"))
-    kind = asked.kind or _kind(ratings, ratio, path)
+    kind = column_map.kind or _kind(ratings, ratio, path)
     return Answers(
         kind,
         stimuli,
@@ -177,7 +178,7 @@ def _answers(
         ratio=None if np.isnan(ratio).all() else ratio,
         time_s=None if np.isnan(time_s).all() else time_s,
         excluded=names[:, 3],
-        simulated=asked.simulated,
+        simulated=column_map.simulated,
     )
 
 

@@ -217,10 +217,10 @@ def _check_rating(rating: Rating, given: Mapping[str, float], labels: tuple[str,
 
 def checked_page(plan: StudyPlan, page: Page, values: Mapping[str, Value]) -> dict[str, Value]:
     """Return a page's answers as they are kept; a choice in the study's first language. InputError."""
-    asked = {question.name: question for question in page.questions}
-    for name in set(values) - set(asked):
+    questions = {question.name: question for question in page.questions}
+    for name in set(values) - set(questions):
         raise InputError("answer", f"page {page.name}", f"does not ask {name!r:.60}", CHOOSE)
-    return {name: _kept(plan, page, one, values.get(name)) for name, one in asked.items()}
+    return {name: _kept(plan, page, one, values.get(name)) for name, one in questions.items()}
 
 
 def _kept(plan: StudyPlan, page: Page, question: Question, value: Value) -> Value:

@@ -234,14 +234,14 @@ def _question(place: str, question: Question) -> Iterator[str]:
 
 
 def _columns(plan: StudyPlan) -> Iterator[str]:
-    asked = [(f"ratings ({r.name!r})", r.name) for r in plan.ratings]
-    asked += [(f"pages ({p.name!r}), questions", q.name) for p in plan.pages for q in p.questions]
-    for place, name in asked:
+    named = [(f"ratings ({r.name!r})", r.name) for r in plan.ratings]
+    named += [(f"pages ({p.name!r}), questions", q.name) for p in plan.pages for q in p.questions]
+    for place, name in named:
         if not COLUMN.fullmatch(name):
             yield f"{place}: {name!r:.50} names a column: at most 40 letters, digits and _"
         if name.casefold() in TAKEN:
             yield f"{place}: {name!r} is a column that every file of answers has"
-    yield from _twice("ratings and questions", [name for _, name in asked])
+    yield from _twice("ratings and questions", [name for _, name in named])
 
 
 def _claim(plan: StudyPlan) -> Iterator[str]:

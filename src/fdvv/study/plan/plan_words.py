@@ -79,8 +79,8 @@ def task_text(plan: StudyPlan) -> str:
 
 def asked_texts(plan: StudyPlan, language: str) -> tuple[str, ...]:
     answers = " / ".join(filter(None, ("A", "B", equal_text(plan, language))))
-    asked = [f"{question_text(plan, language)}" + (f" {answers}" if asks_choice(plan) else "")]
-    return (*asked, *(rating_text(rating, language) for rating in plan.ratings))
+    questions = [f"{question_text(plan, language)}" + (f" {answers}" if asks_choice(plan) else "")]
+    return (*questions, *(rating_text(rating, language) for rating in plan.ratings))
 
 
 def rating_text(rating: Rating, language: str) -> str:

@@ -125,9 +125,9 @@ class SimulatedParticipant:
             np.asarray([[int(shown[first].name != reference.name)]]),
         )
         chosen = int(trials.chosen[0, 0])
-        asked = self._plan.kind != "mushra"
+        has_choice = self._plan.kind != "mushra"
         return TrialAnswer(
-            choice=(EQUAL if chosen < 0 else places[chosen]) if asked else "",
+            choice=(EQUAL if chosen < 0 else places[chosen]) if has_choice else "",
             ratings={
                 rating.name: dict(zip(places, points[0, 0].tolist(), strict=True))
                 for rating, points in zip(self._plan.ratings, trials.ratings, strict=True)

@@ -111,8 +111,8 @@ def _next_press(rows: FloatArray, settle_s: float = SETTLE_s) -> tuple[int, int,
     deep = rows[1] > DEEP_mm
     if not deep.any():
         return None
-    begun = int(deep.argmax())
-    back = begun + int((~deep[begun:]).argmax())
+    start = int(deep.argmax())
+    back = start + int((~deep[start:]).argmax())
     if deep[back]:
         return None
     t_s, x_mm = rows[0, back:], rows[1, back:]
@@ -120,7 +120,7 @@ def _next_press(rows: FloatArray, settle_s: float = SETTLE_s) -> tuple[int, int,
     if not over.size:
         return None
     end = back + int(over[0]) + 1
-    return end, back + int(rows[1, back:end].argmin()), begun > 0
+    return end, back + int(rows[1, back:end].argmin()), start > 0
 
 
 def judged(model: FDVVModel, rows: FloatArray) -> tuple[float | None, float | None]:
