@@ -248,7 +248,7 @@ class Sitter:
         return {"x": box["x"] + box["width"] / 2, "y": box["y"] + 0.6 * box["height"]}
 
 
-def kept(study: Study, person: str = "P01") -> list[dict[str, Any]]:
+def recorded_answers(study: Study, person: str = "P01") -> list[dict[str, Any]]:
     """Return the answers on the disk, in order, as their records hold them."""
     from fdvv.study.files.chained_log import read_chained
 

@@ -18,9 +18,9 @@ from tests.browser.study_screens import (
     InputMethod,
     Sitter,
     frozen_study,
-    kept,
     names_in,
     plan_text,
+    recorded_answers,
     wait_for_part,
 )
 from tests.studio.running import RunningStudio
@@ -56,7 +56,7 @@ def sitter(study: Study, page: Page, context: BrowserContext) -> Sitter:
 
 def answers(study: Study) -> list[tuple[str, dict[str, int]]]:
     """Return choice and realism of every recorded answer."""
-    return [(one["choice"], one["ratings"]["realism"]) for one in kept(study)]
+    return [(one["choice"], one["ratings"]["realism"]) for one in recorded_answers(study)]
 
 
 def screen_answers(sitter: Sitter) -> list[tuple[str, dict[str, int]]]:
@@ -107,7 +107,8 @@ def test_36_trials_are_answered_and_kept_and_no_message_names_what_a_label_hides
     context.close()
     assert answers(study) == screen_answers(sitter)
     assert all(
-        set(one["presses"]) == {"X", "A", "B"} and min(one["presses"].values()) > 0 for one in kept(study)
+        set(one["presses"]) == {"X", "A", "B"} and min(one["presses"].values()) > 0
+        for one in recorded_answers(study)
     )
     for texts in (seen, heard):
         assert any('"P01"' in text for text in texts)

@@ -20,8 +20,8 @@ from tests.browser.study_screens import (
     Sitter,
     TrialAnswer,
     frozen_study,
-    kept,
     plan_text,
+    recorded_answers,
     wait_for_part,
 )
 from tests.studio.running import RunningStudio
@@ -104,8 +104,10 @@ class Seated:
         self.crashes += 1
 
     def _check(self) -> None:
-        """Hold what the screen went on from against what is kept; one answer may have been on its way."""
-        found = [(one["choice"], one["ratings"]["realism"]) for one in kept(self.study, self.person)]
+        """Compare what the screen resumed from with what is on disk; one answer may be in transit."""
+        found = [
+            (one["choice"], one["ratings"]["realism"]) for one in recorded_answers(self.study, self.person)
+        ]
         known = [(one.choice, one.ratings) for one in self.known]
         assert found[: len(known)] == known
         assert len(found) <= len(known) + 1

@@ -307,10 +307,10 @@ def killed(folder: Path, draw: random.Random) -> tuple[int, bool]:
     ) as running:
         assert running.stderr is not None
         # one in five while it starts, the others while it records
-        begun = "" if draw.random() < 0.2 else running.stderr.readline()
+        first_line = "" if draw.random() < 0.2 else running.stderr.readline()
         time.sleep(draw.uniform(0.0, 0.25))
         running.kill()
-        numbers = TAKE_LINE.findall(begun + running.stderr.read())
+        numbers = TAKE_LINE.findall(first_line + running.stderr.read())
     return int(numbers[-1]) if numbers else 0, running.returncode == 0
 
 

@@ -32,7 +32,7 @@ def many(tmp_path: Path) -> Path:
     return below
 
 
-def begun(process: subprocess.Popen[bytes], sign: Path) -> None:
+def wait_until_started(process: subprocess.Popen[bytes], sign: Path) -> None:
     """Wait until a running command has done its first work."""
     for _ in range(400):
         if sign.exists() or process.poll() is not None:
@@ -127,7 +127,7 @@ def test_ctrl_c_ends_with_130_one_line_and_whole_files(many: Path, tmp_path: Pat
         # a shell's background job ignores Ctrl-C, and so would what it starts
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
-    begun(process, models / "00.csv.fdvv.json")
+    wait_until_started(process, models / "00.csv.fdvv.json")
     process.send_signal(signal.SIGINT)
     out, err = process.communicate()
     assert (process.returncode, out, err) == (130, b"", b"fdvv: interrupted\n")
@@ -140,7 +140,7 @@ def test_ctrl_c_ends_with_130_one_line_and_whole_files(many: Path, tmp_path: Pat
 def test_a_killed_command_leaves_no_half_written_model(many: Path, tmp_path: Path) -> None:
     models = tmp_path / "models"
     process = subprocess.Popen([*FDVV, "fit", str(many), "-o", str(models)], stderr=subprocess.DEVNULL)
-    begun(process, models / "00.csv.fdvv.json")
+    wait_until_started(process, models / "00.csv.fdvv.json")
     process.kill()
     process.wait()
     written = list(models.glob("*.fdvv.json"))

@@ -12,9 +12,9 @@ def test_help_takes_less_than_three_tenths_of_a_second() -> None:
     subprocess.run(command, check=True, capture_output=True)
     spent = []
     for _ in range(5):
-        begun = _children_s()
+        start_s = _children_s()
         subprocess.run(command, check=True, capture_output=True)
-        spent.append(_children_s() - begun)
+        spent.append(_children_s() - start_s)
     assert min(spent) < 0.3
 
 

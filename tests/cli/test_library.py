@@ -19,7 +19,7 @@ from fdvv.errors import InputError
 from tests.cli.conftest import tactile_csv
 
 
-def asked(*arguments: str) -> Result:
+def invoke(*arguments: str) -> Result:
     return CliRunner().invoke(cli, ["library", *arguments])
 
 
@@ -35,7 +35,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def library(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("library") / "library"
-    result = asked("build", str(folder), "--output", str(path), "--processes", "1", "--json")
+    result = invoke("build", str(folder), "--output", str(path), "--processes", "1", "--json")
     assert result.exit_code == 0, result.output
     report = json.loads(result.stdout)
     assert (report["files"], report["buttons"], report["refused"], report["read"]) == (3, 2, 1, 3)
@@ -43,18 +43,18 @@ def library(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_built_in_buttons_are_listed_with_and_without_a_subcommand() -> None:
-    assert asked().stdout == asked("list").stdout
-    assert asked("--json").stdout == asked("list", "--json").stdout
-    assert "mx-clear" in asked().stdout
+    assert invoke().stdout == invoke("list").stdout
+    assert invoke("--json").stdout == invoke("list", "--json").stdout
+    assert "mx-clear" in invoke().stdout
 
 
 def test_a_search_tells_figures_and_units_as_a_table_json_and_csv(library: Path, tmp_path: Path) -> None:
-    table = asked("search", str(library), "navy", "peak_cN>=1")
+    table = invoke("search", str(library), "navy", "peak_cN>=1")
     assert table.exit_code == 0
     assert "navy" in table.stdout
     assert table.stdout.endswith("1 found\n")
     path = tmp_path / "hits.csv"
-    report = json.loads(asked("search", str(library), "--json", "-o", str(path)).stdout)
+    report = json.loads(invoke("search", str(library), "--json", "-o", str(path)).stdout)
     assert (report["buttons"], report["found"]) == (2, 2)
     assert {hit["name"] for hit in report["hits"]} == {"red", "navy"}
     with path.open() as stream:
@@ -63,18 +63,18 @@ def test_a_search_tells_figures_and_units_as_a_table_json_and_csv(library: Path,
 
 
 def test_the_nearest_are_listed_with_their_distance(library: Path, folder: Path) -> None:
-    report = json.loads(asked("like", str(library), str(folder / "red.csv"), "-n", "1", "--json").stdout)
+    report = json.loads(invoke("like", str(library), str(folder / "red.csv"), "-n", "1", "--json").stdout)
     assert len(report["hits"]) == 1
     assert report["hits"][0]["distance_JND"] == pytest.approx(0.0, abs=1e-3)
     assert (
-        asked("like", str(library), "mx-clear", "--by", "landmarks").stdout.splitlines()[0].split()[3]
+        invoke("like", str(library), "mx-clear", "--by", "landmarks").stdout.splitlines()[0].split()[3]
         == "JND"
     )
 
 
 def test_refused_files_are_listed_with_their_reason(library: Path) -> None:
-    assert "broken.csv: " in asked("refused", str(library)).stdout
-    (refused,) = json.loads(asked("refused", str(library), "--json").stdout)["refused"]
+    assert "broken.csv: " in invoke("refused", str(library)).stdout
+    (refused,) = json.loads(invoke("refused", str(library), "--json").stdout)["refused"]
     assert refused["place"].endswith("broken.csv")
     assert refused["reason"]
 
@@ -95,7 +95,7 @@ def test_impossible_requests_are_refused_in_one_line(
     library: Path, folder: Path, tmp_path: Path, arguments: list[str], said: str
 ) -> None:
     names = {"LIBRARY": library, "FOLDER": folder, "NEW": tmp_path / "new"}
-    result = asked(*(str(names.get(a, a)) for a in arguments))
+    result = invoke(*(str(names.get(a, a)) for a in arguments))
     assert said in (str(result.exception) if isinstance(result.exception, InputError) else result.stderr)
     assert not (tmp_path / "new").exists()
 

@@ -22,19 +22,19 @@ from .conftest import Ran, Run
 SHORT = ("--trials", "4", "--presses", "4", "--person", "3", "--seed", "4", "--engine", "sobol")
 
 
-def begun(fdvv: Run, folder: str = "run", *more: str) -> Ran:
+def run_optimize(fdvv: Run, folder: str = "run", *more: str) -> Ran:
     return fdvv("optimize", "run", "--folder", folder, *SHORT, *more)
 
 
 def test_a_run_prints_its_trials_and_says_simulated(fdvv: Run) -> None:
-    ran = begun(fdvv)
+    ran = run_optimize(fdvv)
     assert ran.status == 0, ran.err
     assert ran.out.startswith("temporal-pointing, easy (simulated), engine sobol, 4 trials\n")
     assert "recommended: x1_mm" in ran.out
 
 
 def test_json_has_the_keys_that_programs_rely_on(fdvv: Run) -> None:
-    found = begun(fdvv, "run", "--json").json
+    found = run_optimize(fdvv, "run", "--json").json
     assert (found["seed"], found["engine"], found["simulated"]) == (4, "sobol", True)
     assert [trial["state"] for trial in found["trials"]] == ["done"] * 4
     for trial in found["trials"]:
@@ -43,21 +43,21 @@ def test_json_has_the_keys_that_programs_rely_on(fdvv: Run) -> None:
 
 
 def test_the_same_options_give_the_same_trials(fdvv: Run) -> None:
-    first, second = (begun(fdvv, name, "--json").json for name in ("a", "b"))
+    first, second = (run_optimize(fdvv, name, "--json").json for name in ("a", "b"))
     assert first["trials"] == second["trials"]
-    assert begun(fdvv, "c", "--json", "--seed", "5").json["trials"] != first["trials"]
+    assert run_optimize(fdvv, "c", "--json", "--seed", "5").json["trials"] != first["trials"]
 
 
 @pytest.mark.parametrize("task", ["tapping", "accuracy"])
 def test_other_tasks_are_played_too(fdvv: Run, task: str) -> None:
-    ran = begun(fdvv, "run", "--task", task, "--json")
+    ran = run_optimize(fdvv, "run", "--task", task, "--json")
     assert ran.status == 0, ran.err
     assert ran.json["level"] is None
     assert ran.json["best"] is not None
 
 
 def test_a_button_is_varied_and_tried_as_it_is_first(fdvv: Run) -> None:
-    found = begun(
+    found = run_optimize(
         fdvv, "run", "--space", "mx-clear", "--vary", "force_ratio", "--vary", "bump_cN", "--json"
     ).json
     first = found["trials"][0]["parameters"]
@@ -67,11 +67,11 @@ def test_a_button_is_varied_and_tried_as_it_is_first(fdvv: Run) -> None:
 
 @pytest.mark.slow
 def test_a_rigs_limits_are_those_of_the_run_wherever_it_goes_on(fdvv: Run, tmp_path: Path) -> None:
-    assert begun(fdvv, "run", "--within", "light").status == 0
+    assert run_optimize(fdvv, "run", "--within", "light").status == 0
     kept = tmp_path / "run" / "rigs" / "light.simulated.rig.json"
     assert json.loads((tmp_path / "run" / "optimize.json").read_text())["space"]["rig"] == "shipped:light"
     (tmp_path / "mine.rig.json").write_bytes(kept.read_bytes())
-    assert begun(fdvv, "own", "--within", "mine.rig.json").status == 0
+    assert run_optimize(fdvv, "own", "--within", "mine.rig.json").status == 0
     assert (tmp_path / "own" / "rigs" / "mine.rig.json").read_bytes() == kept.read_bytes()
     assert fdvv("optimize", "replay", "own", "--json").json["same"] is True
 
@@ -80,29 +80,29 @@ def test_a_run_begins_from_what_others_did(fdvv: Run, tmp_path: Path) -> None:
     plan = PopulationPlan(kind="grid", people=2, designs=24, rounds=4)
     run_population(tmp_path / "others", plan, Here())
     short = ("--prior", "others", "--engine", "gp", "--trials", "1")
-    first = begun(fdvv, "run", *short, "--json").json["trials"][0]["parameters"]
+    first = run_optimize(fdvv, "run", *short, "--json").json["trials"][0]["parameters"]
     assert len(json.loads((tmp_path / "run" / "optimize.json").read_text())["prior"]) == 24
-    alone = begun(fdvv, "alone", *short[2:], "--json").json["trials"][0]["parameters"]
+    alone = run_optimize(fdvv, "alone", *short[2:], "--json").json["trials"][0]["parameters"]
     assert first != alone
-    ran = begun(fdvv, "other", *short, "--space", "mx-clear")
+    ran = run_optimize(fdvv, "other", *short, "--space", "mx-clear")
     assert ran.status == 2
     assert "others played temporal-pointing with designs of the space paper" in ran.err
 
 
 def test_a_run_is_played_on_a_strip_that_nobody_sees(fdvv: Run) -> None:
-    found = begun(fdvv, "run", "--strip", "host", "--trials", "2", "--presses", "2", "--json").json
+    found = run_optimize(fdvv, "run", "--strip", "host", "--trials", "2", "--presses", "2", "--json").json
     assert (found["simulated"], [trial["state"] for trial in found["trials"]]) == (True, ["done"] * 2)
 
 
 def test_replay_finds_every_suggestion_the_same(fdvv: Run) -> None:
-    begun(fdvv)
+    run_optimize(fdvv)
     ran = fdvv("optimize", "replay", "run")
     assert (ran.status, ran.out) == (0, "sobol suggests 4 trials again, each the same\n")
     assert fdvv("optimize", "replay", "run", "--json").json["same"] is True
 
 
 def test_replay_tells_of_a_seed_that_was_changed_by_hand(fdvv: Run, tmp_path: Path) -> None:
-    begun(fdvv)
+    run_optimize(fdvv)
     setup = tmp_path / "run" / "optimize.json"
     document: dict[str, Any] = json.loads(setup.read_text())
     setup.write_text(json.dumps({**document, "seed": 99}))
@@ -112,7 +112,7 @@ def test_replay_tells_of_a_seed_that_was_changed_by_hand(fdvv: Run, tmp_path: Pa
 
 
 def test_the_report_is_a_page_that_says_simulated(fdvv: Run, tmp_path: Path) -> None:
-    begun(fdvv)
+    run_optimize(fdvv)
     assert fdvv("optimize", "report", "run").out == "written to run/report.html\n"
     page = (tmp_path / "run" / "report.html").read_text()
     assert "<strong>Simulated:</strong>" in page
@@ -180,7 +180,7 @@ def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(
 def test_bad_options_get_one_line_and_leave_no_folder(
     fdvv: Run, tmp_path: Path, arguments: tuple[str, ...], message: str
 ) -> None:
-    ran = begun(fdvv, "run", *arguments)
+    ran = run_optimize(fdvv, "run", *arguments)
     assert ran.status == 2
     assert message in ran.err
     assert ran.err.count("\n") == 1
@@ -190,7 +190,7 @@ def test_bad_options_get_one_line_and_leave_no_folder(
 def test_a_folder_with_something_in_it_is_no_new_run(fdvv: Run, tmp_path: Path) -> None:
     (tmp_path / "run").mkdir()
     (tmp_path / "run" / "notes.txt").write_text("mine")
-    ran = begun(fdvv)
+    ran = run_optimize(fdvv)
     assert ran.status == 2
     assert "is not empty" in ran.err
     assert "optimize.json" in fdvv("optimize", "resume", "run").err

@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 from fdvv.cli.main import cli
 
 
-def asked(*arguments: str) -> Result:
+def invoke(*arguments: str) -> Result:
     return CliRunner().invoke(cli, ["optimize", "population", *arguments])
 
 
@@ -19,13 +19,13 @@ def asked(*arguments: str) -> Result:
 def test_a_grid_is_printed_as_json_that_says_simulated_and_becomes_a_prior(tmp_path: Path) -> None:
     first, second = str(tmp_path / "grid"), str(tmp_path / "people")
     sizes = ["--people", "2", "--processes", "1", "--json"]
-    grid = asked(first, "--grid", "3", "--seed", "1", "--shift", "pace_mm_s=1.2", *sizes)
+    grid = invoke(first, "--grid", "3", "--seed", "1", "--shift", "pace_mm_s=1.2", *sizes)
     assert grid.exit_code == 0, grid.output
     summary = json.loads(grid.stdout)
     assert summary["simulated"]
     assert summary["plan"]["shifts"] == {"pace_mm_s": 1.2}
     assert set(summary["best"]["parameters"]) >= {"actuation_mm", "y3_cN"}
-    people = asked(second, "--engine", "tpe", "--budget", "2", "--prior", first, *sizes)
+    people = invoke(second, "--engine", "tpe", "--budget", "2", "--prior", first, *sizes)
     assert people.exit_code == 0, people.output
     found = json.loads(people.stdout)
     assert 0 < found["judged_ms"]["low"] <= found["judged_ms"]["median"] <= found["judged_ms"]["high"]
@@ -41,7 +41,7 @@ def test_a_grid_is_printed_as_json_that_says_simulated_and_becomes_a_prior(tmp_p
     ],
 )
 def test_what_cannot_be_is_refused_before_any_work(tmp_path: Path, options: list[str], said: str) -> None:
-    result = asked(str(tmp_path / "run"), *options)
+    result = invoke(str(tmp_path / "run"), *options)
     assert result.exit_code == 2
     assert said in result.stderr
     assert not (tmp_path / "run").exists()
@@ -49,7 +49,7 @@ def test_what_cannot_be_is_refused_before_any_work(tmp_path: Path, options: list
 
 @pytest.mark.parametrize("options", [["--engine", "guess"], ["--shift", "charm=2"], ["--rig", "wish"]])
 def test_unknown_names_are_refused_before_any_work(tmp_path: Path, options: list[str]) -> None:
-    result = asked(str(tmp_path / "run"), *options)
+    result = invoke(str(tmp_path / "run"), *options)
     assert result.exception is not None
     assert "use one of" in str(result.exception)
     assert not (tmp_path / "run").exists()

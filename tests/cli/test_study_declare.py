@@ -18,7 +18,7 @@ def inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def asked(*arguments: str) -> Result:
+def invoke(*arguments: str) -> Result:
     return CliRunner().invoke(cli, ["study", *arguments])
 
 
@@ -31,16 +31,16 @@ def change(before: str, after: str) -> None:
 def test_every_kind_can_be_begun_checked_and_previewed() -> None:
     assert set(KINDS) == set(template_names())
     for kind in KINDS:
-        assert asked("new", kind, "--kind", kind).exit_code == 0
-        checked = asked("check", kind)
+        assert invoke("new", kind, "--kind", kind).exit_code == 0
+        checked = invoke("check", kind)
         assert checked.exit_code == 0
         assert checked.stdout.startswith(f"{kind}: can be run")
 
 
 def test_the_papers_study_is_the_default_and_described_in_words() -> None:
-    begun = asked("new", "pilot")
-    assert "written to pilot/study.toml" in begun.stdout
-    preview = asked("preview", "pilot")
+    created = invoke("new", "pilot")
+    assert "written to pilot/study.toml" in created.stdout
+    preview = invoke("preview", "pilot")
     assert preview.exit_code == 0
     for words in ("36 trials (6 buttons, 6 rounds)", "2 fall due", "Kumpi on lähempänä X:ää?", "HP PR1101U",
                   "stands 12 times", "FDVV is chosen above FD"):  # fmt: skip
@@ -49,51 +49,51 @@ def test_the_papers_study_is_the_default_and_described_in_words() -> None:
 
 def test_no_preview_is_wider_than_a_terminal() -> None:
     for kind in KINDS:
-        asked("new", kind, "--kind", kind)
-        assert max(map(len, asked("preview", kind).stdout.splitlines())) <= 100
+        invoke("new", kind, "--kind", kind)
+        assert max(map(len, invoke("preview", kind).stdout.splitlines())) <= 100
 
 
 def test_a_preview_as_a_page_and_as_json() -> None:
-    asked("new", "pilot")
-    found = asked("preview", "pilot/study.toml", "--html", "account.html", "--json")
+    invoke("new", "pilot")
+    found = invoke("preview", "pilot/study.toml", "--html", "account.html", "--json")
     account = json.loads(found.stdout)
     assert (account["trials"], account["breaks"], account["places"]) == (36, 2, [12, 12])
     assert account["plan"]["exclusion"]["error_cN"] == 20
     assert Path("account.html").read_text().startswith("<!DOCTYPE html>")
-    assert "written to account.html" in asked("preview", "pilot", "--html", "account.html").stdout
+    assert "written to account.html" in invoke("preview", "pilot", "--html", "account.html").stdout
 
 
 def test_all_that_is_wrong_is_listed_at_once() -> None:
-    asked("new", "pilot")
+    invoke("new", "pilot")
     change('more = "FDVV"', 'more = "best"')
     change("buttons/mx-red", "buttons/mx-pink")
-    checked = asked("check", "pilot")
+    checked = invoke("check", "pilot")
     assert checked.exit_code == 1
     assert checked.stdout.count("problem: ") == 2
     assert "cannot be run, 2 problems" in checked.stdout
-    assert asked("preview", "pilot").exit_code == 1
-    report = json.loads(asked("check", "pilot", "--json").stdout)
+    assert invoke("preview", "pilot").exit_code == 1
+    report = json.loads(invoke("check", "pilot", "--json").stdout)
     assert report["ok"] is False
     assert len(report["problems"]) == 2
 
 
 def test_warnings_are_printed_and_do_not_stop() -> None:
-    asked("new", "pilot")
+    invoke("new", "pilot")
     change("people = 12", "people = 7")
     change("rounds = 6", "rounds = 5")
-    checked = asked("check", "pilot")
+    checked = invoke("check", "pilot")
     assert checked.exit_code == 0
     assert "note: orders are not balanced exactly" in checked.stdout
-    assert json.loads(asked("check", "pilot", "--json").stdout)["notes"]
+    assert json.loads(invoke("check", "pilot", "--json").stdout)["notes"]
 
 
 def test_nothing_is_written_over_and_a_broken_file_is_one_line() -> None:
-    asked("new", "pilot")
-    again = asked("new", "pilot")
+    invoke("new", "pilot")
+    again = invoke("new", "pilot")
     assert again.exit_code != 0
     assert "is there already" in str(again.exception)
     change("people = 12", "people = twelve")
-    assert "not valid TOML" in str(asked("check", "pilot").exception)
-    assert "line" in str(asked("preview", "pilot").exception)
-    assert asked("new", "pilot2", "--kind", "taste").exit_code == 2
+    assert "not valid TOML" in str(invoke("check", "pilot").exception)
+    assert "line" in str(invoke("preview", "pilot").exception)
+    assert invoke("new", "pilot2", "--kind", "taste").exit_code == 2
     assert not Path("pilot2").exists()

@@ -16,7 +16,7 @@ WORDS = ("--passphrase-file", "words.txt")
 
 
 @pytest.fixture(scope="module")
-def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def started_study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder of a frozen study that one person has completed; to be copied."""
     folder = tmp_path_factory.mktemp("begun")
     with in_haste():
@@ -28,10 +28,10 @@ def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def study(begun: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Study:
+def study(started_study: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Study:
     """Return that study in s, with the passphrase in words.txt."""
     monkeypatch.setattr("os.fsync", lambda _file: None)
-    study = Study.open(shutil.copytree(begun, tmp_path / "s"))
+    study = Study.open(shutil.copytree(started_study, tmp_path / "s"))
     (tmp_path / "words.txt").write_text(PASSPHRASE + "\n")
     (tmp_path / "wrong.txt").write_text("other words of no sense")
     return study

@@ -43,7 +43,7 @@ class Seen:
         return [event.kind for frame in self.frames for event in frame.events]
 
 
-def begun(seen: Seen, silent_s: float = 60.0) -> LiveRun:
+def start_run(seen: Seen, silent_s: float = 60.0) -> LiveRun:
     press = LivePress(model_subject(load_builtin("mx-clear")))
     return LiveRun(press, seen.show, seen.add_line, seen.add_line, silent_s=silent_s)
 
@@ -59,7 +59,7 @@ def test_time_that_cannot_be_kept_up_with_is_dropped_and_counted() -> None:
 
 def test_a_run_goes_on_at_real_pace_and_tells_back_what_led_it() -> None:
     seen, start = Seen(), time.monotonic()
-    run = begun(seen)
+    run = start_run(seen)
     run.ask(lambda press: press.lead(8.0), 17)
     seen.wait_for(lambda: LiveEventKind.ACTUATION in seen.kinds)
     run.ask(LivePress.lift, 18)
@@ -83,7 +83,7 @@ def test_simulated_time_and_what_a_frame_adds_make_the_time_of_the_clock() -> No
         time.sleep(0.3)  # three times what is made up for: 0.2 s are dropped
         press.lead(8.0)
 
-    run = begun(seen)
+    run = start_run(seen)
     seen.wait_for(lambda: seen.frames)
     began_s = time.monotonic()
     run.ask(late)
@@ -101,7 +101,7 @@ def test_simulated_time_and_what_a_frame_adds_make_the_time_of_the_clock() -> No
 
 def test_a_page_that_says_nothing_is_not_simulated_for_and_its_finger_is_lifted() -> None:
     seen = Seen()
-    run = begun(seen, silent_s=0.2)
+    run = start_run(seen, silent_s=0.2)
     run.ask(lambda press: press.lead(8.0))
     seen.wait_for(lambda: LiveEventKind.ACTUATION in seen.kinds)
     last_s = seen.frames[-1].columns.t_s[-1]
@@ -120,7 +120,7 @@ def test_a_page_that_says_nothing_is_not_simulated_for_and_its_finger_is_lifted(
 
 def test_a_pause_lasts_until_the_page_is_seen_again() -> None:
     seen = Seen()
-    run = begun(seen)
+    run = start_run(seen)
     seen.wait_for(lambda: seen.frames)
     run.pause()
     run.here()
@@ -134,7 +134,7 @@ def test_an_impossible_request_is_reported_and_the_rest_goes_on() -> None:
         raise DeviceError("it cannot be done")
 
     seen = Seen()
-    run = begun(seen)
+    run = start_run(seen)
     run.ask(impossible)
     seen.wait_for(lambda: seen.lines)
     count = len(seen.frames)

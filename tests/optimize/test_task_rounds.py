@@ -12,7 +12,7 @@ from fdvv.optimize.run.task_rounds import ClockSource, RoundTiming, TaskRounds
 TIMING = RoundTiming(ClockSource.PAGE, 30.0, 17.0, 10.0, 10.0, 5e6, 0.6, 4.0, 16.7, "key")
 
 
-def kept(folder: Path, trial: int, times_s: tuple[float, ...]) -> TaskRounds:
+def written_rounds(folder: Path, trial: int, times_s: tuple[float, ...]) -> TaskRounds:
     rounds = TaskRounds(folder)
     rounds.begin(trial)
     for at_s in times_s:
@@ -21,7 +21,7 @@ def kept(folder: Path, trial: int, times_s: tuple[float, ...]) -> TaskRounds:
 
 
 def test_rounds_are_read_again_as_they_were(tmp_path: Path) -> None:
-    rounds = kept(tmp_path, 3, (1.0, 2.0))
+    rounds = written_rounds(tmp_path, 3, (1.0, 2.0))
     before = rounds.counting(3)
     assert [one.number for one in before] == [1, 2]
     rounds.close()
@@ -32,7 +32,7 @@ def test_rounds_are_read_again_as_they_were(tmp_path: Path) -> None:
 
 
 def test_a_trial_that_is_begun_again_counts_anew_and_keeps_what_was(tmp_path: Path) -> None:
-    kept(tmp_path, 0, (1.0, 2.0, 3.0)).close()
+    written_rounds(tmp_path, 0, (1.0, 2.0, 3.0)).close()
     rounds = TaskRounds(tmp_path)
     assert rounds.begin(0) == 2
     assert rounds.counting(0) == ()
@@ -44,7 +44,7 @@ def test_a_trial_that_is_begun_again_counts_anew_and_keeps_what_was(tmp_path: Pa
 
 @pytest.mark.parametrize("lost_bytes", [1, 20, 60])
 def test_a_round_that_was_cut_short_is_the_only_one_lost(tmp_path: Path, lost_bytes: int) -> None:
-    rounds = kept(tmp_path, 0, (1.0, 2.0, 3.0))
+    rounds = written_rounds(tmp_path, 0, (1.0, 2.0, 3.0))
     rounds.close()
     whole = rounds.path.read_bytes()
     rounds.path.write_bytes(whole[:-lost_bytes])
@@ -56,7 +56,7 @@ def test_a_round_that_was_cut_short_is_the_only_one_lost(tmp_path: Path, lost_by
 
 
 def test_a_damaged_file_and_one_at_work_elsewhere_are_refused(tmp_path: Path) -> None:
-    rounds = kept(tmp_path, 0, (1.0, 2.0))
+    rounds = written_rounds(tmp_path, 0, (1.0, 2.0))
     with pytest.raises(InputError, match="another fdvv works on it"):
         TaskRounds(tmp_path)
     rounds.close()

@@ -52,9 +52,9 @@ def test_a_slot_changed_while_it_sounds_goes_on_as_it_was() -> None:
     board = Board()
     board.store(SNAP)
     board.play(0)
-    begun = board.render(50)
+    first = board.render(50)
     board.store(Slot(Waveform.SINE, 999, 10, 3))
-    np.testing.assert_array_equal([*begun, *board.render(250)], render(SNAP, 300))
+    np.testing.assert_array_equal([*first, *board.render(250)], render(SNAP, 300))
 
 
 def c_slot(**change: int) -> CSlot:

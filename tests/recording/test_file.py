@@ -67,9 +67,9 @@ def test_raw_samples_keep_their_kind_and_their_gaps(tmp_path: Path) -> None:
 def test_sixty_presses_of_four_streams_load_in_well_under_a_second(tmp_path: Path) -> None:
     path = tmp_path / "a"
     save_recording(replace(ABOUT, takes=tuple(take(n, samples=2000) for n in range(1, 61))), path)
-    begun = time.process_time()
+    start_s = time.process_time()
     assert len(load_recording(path).takes) == 60
-    assert time.process_time() - begun < 0.5
+    assert time.process_time() - start_s < 0.5
 
 
 def test_what_is_there_is_never_written_over(tmp_path: Path) -> None:

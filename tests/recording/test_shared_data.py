@@ -153,9 +153,9 @@ def test_long_stereo_of_one_microphone_is_read_once(shared_data: Path, name: str
 def test_what_was_read_comes_back_from_a_recording_to_the_bit(shared_data: Path, tmp_path: Path) -> None:
     found = read_log(shared_data / MOTIVE / "ha5dzs" / "test_markers_enabled.csv")
     save_recording(found, tmp_path / "a.recording.jsonl")
-    begun = time.process_time()
+    start_s = time.process_time()
     again = load_recording(tmp_path / "a.recording.jsonl")
-    assert time.process_time() - begun < 0.5
+    assert time.process_time() - start_s < 0.5
     for one, other in zip(found.takes[0].streams, again.takes[0].streams, strict=True):
         assert one.raw.tobytes() == other.raw.tobytes()
         assert one.t_s.tobytes() == other.t_s.tobytes()

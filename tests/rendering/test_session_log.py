@@ -27,7 +27,7 @@ def press(seed: int = 0) -> Press:
     return device.press(100.0)
 
 
-def kept(number: int, reason: str = "") -> PressRecord:
+def record(number: int, reason: str = "") -> PressRecord:
     return PressRecord(
         PressEntry(number, 100.0, reason, 98.5, "2026-01-01T10:00:01.000+00:00"), SURFACE, press(number)
     )
@@ -38,7 +38,7 @@ def filled(folder: Path, presses: int = 3) -> PressLog:
     log = PressLog(folder)
     log.begin(RUN)
     for number in range(1, presses + 1):
-        log.add(kept(number, "too fast" if number == 2 else ""))
+        log.add(record(number, "too fast" if number == 2 else ""))
     return log
 
 
@@ -88,7 +88,7 @@ def test_every_column_of_every_press_comes_back_to_the_last_bit(tmp_path: Path) 
 
 def test_a_press_that_the_device_could_not_tell_of_is_kept_without_columns(tmp_path: Path) -> None:
     log = PressLog(tmp_path)
-    log.add(PressRecord(kept(1, "over speed").entry, SURFACE, None))
+    log.add(PressRecord(record(1, "over speed").entry, SURFACE, None))
     assert [k.press for k in log.records()] == [None]
     log.close()
 
@@ -96,7 +96,7 @@ def test_a_press_that_the_device_could_not_tell_of_is_kept_without_columns(tmp_p
 def test_a_log_without_a_folder_keeps_what_became_of_presses(tmp_path: Path) -> None:
     log = PressLog()
     log.begin(RUN)
-    log.add(kept(1))
+    log.add(record(1))
     assert (len(log.entries), list(log.records())) == (1, [])
 
 
@@ -114,7 +114,7 @@ def test_wherever_the_file_is_cut_the_whole_records_before_are_there(tmp_path: P
     assert len(log.runs) + len(log.entries) == whole
     assert bool(log.warnings) == (not data[:end].endswith(b"\n") and end > 0)
     # it goes on behind the last whole record
-    log.add(kept(len(log.entries) + 1))
+    log.add(record(len(log.entries) + 1))
     log.close()
     assert len(PressLog.read(path)[1]) == max(0, whole - 1) + 1
 
@@ -200,11 +200,11 @@ def test_a_full_disk_leaves_no_half_record_and_names_the_file(
 
     monkeypatch.setattr(os, "write", full)
     with pytest.raises(OSError, match="No space left") as caught:
-        log.add(kept(4))
+        log.add(record(4))
     assert caught.value.filename == str(tmp_path / PRESSES)
     assert (tmp_path / PRESSES).stat().st_size == size
     monkeypatch.undo()
-    log.add(kept(4))
+    log.add(record(4))
     log.close()
     assert len(PressLog.read(tmp_path / PRESSES)[1]) == 4
 
@@ -213,6 +213,6 @@ def test_a_record_is_on_the_disk_before_add_returns(tmp_path: Path, monkeypatch:
     log = filled(tmp_path)
     sizes: list[int] = []
     monkeypatch.setattr(os, "fsync", lambda file: sizes.append(os.fstat(file).st_size))
-    log.add(kept(4))
+    log.add(record(4))
     assert sizes == [(tmp_path / PRESSES).stat().st_size]
     log.close()

@@ -29,7 +29,7 @@ TRACES = (b"87.5", b"Oulu")
 
 
 @pytest.fixture(scope="module")
-def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def started_study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder of a study with two people, the first of an age that nothing else says."""
     with in_haste():
         study = small_study(tmp_path_factory.mktemp("begun"))
@@ -40,8 +40,8 @@ def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def study(begun: Path, tmp_path: Path) -> Study:
-    return Study.open(shutil.copytree(begun, tmp_path / "study"))
+def study(started_study: Path, tmp_path: Path) -> Study:
+    return Study.open(shutil.copytree(started_study, tmp_path / "study"))
 
 
 def residue(study: Study, *words: bytes) -> list[Path]:

@@ -98,7 +98,7 @@ def live(study: Study, person: str, code: str, into: int) -> None:
             say("enrolled", person, code)
         one = Participant.resume(study, person, code, StillStage(on_prepare=on_prepare), clock=quick_clock)
         while (step := one.step()).kind not in ENDS:
-            say("met", person, *met(step))
+            say("met", person, *step_name(step))
             if step.left_s:
                 time.sleep(0.01)
                 continue
@@ -110,7 +110,7 @@ def live(study: Study, person: str, code: str, into: int) -> None:
         code = ""
 
 
-def met(step: Step) -> tuple[str, str]:
+def step_name(step: Step) -> tuple[str, str]:
     return step.kind, step.page or str(step.number)
 
 

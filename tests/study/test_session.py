@@ -63,15 +63,15 @@ def faces(count: int = 4, practice: int = 1) -> tuple[TrialFace, ...]:
     )
 
 
-def begun(plan: StudyPlan, trials: tuple[TrialFace, ...] | None = None) -> SessionState:
+def started_session(plan: StudyPlan, trials: tuple[TrialFace, ...] | None = None) -> SessionState:
     return state_of(plan, [SessionStarted(0.0, "P01", "en", faces() if trials is None else trials)])
 
 
 def run(state: SessionState, now_s: float, work_s: float = 1.0) -> tuple[list[Step], SessionState]:
     """Do every requested step until the session is over, each taking a while; return the steps."""
-    met = []
+    steps = []
     while (step := next_step(state, now_s)).kind not in ("done", "declined", "withdrawn"):
-        met.append(step)
+        steps.append(step)
         if step.kind == "break":
             now_s += step.left_s
             state = state.after(BreakEnded(now_s))
@@ -82,12 +82,12 @@ def run(state: SessionState, now_s: float, work_s: float = 1.0) -> tuple[list[St
             state = state.after(TrialShown(now_s, step.number, attempt))
             now_s += work_s
             state = state.after(TrialAnswered(now_s, step.number, attempt, TrialAnswer("A")))
-    return met, state
+    return steps, state
 
 
 def test_pages_come_before_and_after_and_practice_comes_first() -> None:
-    met, state = run(begun(plan_of()), 0.0)
-    assert [(step.kind, step.page or step.number) for step in met] == [
+    steps, state = run(started_session(plan_of()), 0.0)
+    assert [(step.kind, step.page or step.number) for step in steps] == [
         ("page", "consent"),
         ("page", "you"),
         ("practice", 0),
@@ -98,36 +98,36 @@ def test_pages_come_before_and_after_and_practice_comes_first() -> None:
     ]
     assert next_step(state, 9.0).kind == "done"
     assert next_step(state, 9.0).progress == 1.0
-    assert [step.progress for step in met] == sorted(step.progress for step in met)
-    assert [(step.at, step.of) for step in met[2:6]] == [(1, 1), (1, 3), (2, 3), (3, 3)]
+    assert [step.progress for step in steps] == sorted(step.progress for step in steps)
+    assert [(step.at, step.of) for step in steps[2:6]] == [(1, 1), (1, 3), (2, 3), (3, 3)]
 
 
 def test_a_break_begins_at_the_first_boundary_after_the_work_and_lasts_to_its_end() -> None:
     plan = plan_of(break_every_min=1.0, break_min=2.0, pages=())
-    met, _ = run(begun(plan, faces(8, 0)), 100.0, work_s=25.0)
+    steps, _ = run(started_session(plan, faces(8, 0)), 100.0, work_s=25.0)
     # 25, 50 and 75 s of work: the third answer is the first at or after a minute
-    assert [step.kind for step in met] == ["trial"] * 3 + ["break"] + ["trial"] * 3 + ["break"] + [
+    assert [step.kind for step in steps] == ["trial"] * 3 + ["break"] + ["trial"] * 3 + ["break"] + [
         "trial"
     ] * 2
-    assert met[3].left_s == 120.0
+    assert steps[3].left_s == 120.0
 
 
 def test_no_break_follows_the_last_trial() -> None:
     plan = plan_of(break_every_min=1.0, break_min=2.0, pages=PAGES[2:])
-    met, _ = run(begun(plan, faces(3, 0)), 0.0, work_s=25.0)
-    assert [step.kind for step in met] == ["trial"] * 3 + ["page"]
+    steps, _ = run(started_session(plan, faces(3, 0)), 0.0, work_s=25.0)
+    assert [step.kind for step in steps] == ["trial"] * 3 + ["page"]
 
 
 @pytest.mark.parametrize("off", ["break_every_min", "break_min"])
 def test_a_plan_may_have_no_breaks(off: str) -> None:
     plan = plan_of(**{"break_every_min": 1.0, "break_min": 2.0, off: 0.0})
-    met, _ = run(begun(plan), 0.0, work_s=600.0)
-    assert "break" not in [step.kind for step in met]
+    steps, _ = run(started_session(plan), 0.0, work_s=600.0)
+    assert "break" not in [step.kind for step in steps]
 
 
 def resting() -> SessionState:
     plan = plan_of(break_every_min=1.0, break_min=2.0, pages=())
-    state = begun(plan).after(TrialShown(0.0, 0, 1))
+    state = started_session(plan).after(TrialShown(0.0, 0, 1))
     return state.after(TrialAnswered(60.0, 0, 1, TrialAnswer("A")))
 
 
@@ -153,7 +153,9 @@ def test_a_break_goes_on_while_nobody_runs_the_session() -> None:
 def worked(*events: Event) -> SessionState:
     """Work 50 s, let something happen, and work until 10 s after."""
     plan = plan_of(break_every_min=1.0, break_min=2.0, pages=())
-    state = begun(plan).after(TrialShown(0.0, 0, 1)).after(TrialAnswered(50.0, 0, 1, TrialAnswer("A")))
+    state = (
+        started_session(plan).after(TrialShown(0.0, 0, 1)).after(TrialAnswered(50.0, 0, 1, TrialAnswer("A")))
+    )
     for event in events:
         state = state.after(event)
     last_s = events[-1].at_s
@@ -172,7 +174,7 @@ def test_time_after_a_crash_counts_as_work_for_nobody_knows_better() -> None:
 
 
 def test_a_trial_that_was_shown_and_not_answered_is_met_again() -> None:
-    state = begun(plan_of(pages=())).after(TrialShown(1.0, 0, 1))
+    state = started_session(plan_of(pages=())).after(TrialShown(1.0, 0, 1))
     assert not next_step(state, 1.0).again
     for back in (SessionResumed(2.0, "keeper"), TrialInterrupted(2.0, 0)):
         after = state.after(back)
@@ -185,7 +187,7 @@ def test_a_trial_that_was_shown_and_not_answered_is_met_again() -> None:
 
 
 def test_a_trial_is_given_up_only_after_the_device_went_away_in_it_three_times() -> None:
-    state = begun(plan_of(pages=()))
+    state = started_session(plan_of(pages=()))
     for attempt in (1, 2, 3):
         with pytest.raises(ModelError, match="given up"):
             state.after(TrialSkipped(1.0, 0))
@@ -199,7 +201,7 @@ def test_a_trial_is_given_up_only_after_the_device_went_away_in_it_three_times()
 @given(st.lists(st.sampled_from(["go", "crash", "lost", "leave"]), max_size=60))
 def test_whatever_happens_every_trial_is_answered_once_and_in_order(happens: list[str]) -> None:
     plan = plan_of(break_every_min=0.2, break_min=0.1)
-    state, now_s, order = begun(plan, faces(6, 2)), 0.0, list[int]()
+    state, now_s, order = started_session(plan, faces(6, 2)), 0.0, list[int]()
     for what in [*happens, *["go"] * 60]:
         now_s += 3.0
         step = next_step(state, now_s)
@@ -241,7 +243,7 @@ def test_whatever_happens_every_trial_is_answered_once_and_in_order(happens: lis
 )
 def test_what_cannot_come_now_is_refused(event: Event) -> None:
     with pytest.raises(ModelError):
-        begun(plan_of()).after(event)
+        started_session(plan_of()).after(event)
 
 
 def test_a_session_begins_with_its_trials() -> None:
@@ -253,7 +255,9 @@ def test_a_trial_of_a_staircase_that_has_ended_is_not_met() -> None:
     trials = tuple(TrialFace(i, "Clear", i // 3, ("A", "B")) for i in range(6))
     plan = plan_of(kind="staircase", pages=(), break_every_min=1.0, break_min=1.0)
     state = (
-        begun(plan, trials).after(TrialShown(0.0, 0, 1)).after(TrialAnswered(90.0, 0, 1, TrialAnswer("A")))
+        started_session(plan, trials)
+        .after(TrialShown(0.0, 0, 1))
+        .after(TrialAnswered(90.0, 0, 1, TrialAnswer("A")))
     )
     assert next_step(state, 90.0).kind == "break"
     state = state.after(StaircaseConverged(90.0, "Clear", 0))
@@ -265,7 +269,7 @@ def test_a_trial_of_a_staircase_that_has_ended_is_not_met() -> None:
 
 
 def test_who_does_not_consent_is_out_and_so_is_who_withdraws() -> None:
-    state = begun(plan_of())
+    state = started_session(plan_of())
     declined = state.after(PageAnswered(1.0, "consent", agreed=False))
     withdrawn = state.after(ParticipantWithdrew(1.0))
     assert next_step(declined, 1.0).kind == "declined"

@@ -22,9 +22,9 @@ from tests.support.studies import (
     all_files,
     answered,
     chosen,
-    felt,
     in_haste,
     kill_at,
+    rendered,
     small_study,
 )
 
@@ -220,7 +220,7 @@ def test_a_failed_rendering_takes_its_trial_out_and_no_other(tmp_path: Path) -> 
     person, code = study.enrol(cost=CHEAP)
 
     def render(trial: StudyTrial) -> tuple[Rendered, ...]:
-        return felt(trial, error_cN=30.0 if trial.number == 4 else 1.0)
+        return rendered(trial, error_cN=30.0 if trial.number == 4 else 1.0)
 
     answered(study, person, code, chosen("FDVV"), render)
     answers = study.unseal(PASSPHRASE, "me", "done")

@@ -102,7 +102,7 @@ def chosen(name: str, ratings: dict[str, float] | None = None) -> Judge:
     return judge
 
 
-def felt(trial: StudyTrial, error_cN: float = 2.0) -> tuple[Rendered, ...]:
+def rendered(trial: StudyTrial, error_cN: float = 2.0) -> tuple[Rendered, ...]:
     """Return what a sound device tells."""
     return tuple(
         Rendered(label, stimulus, 2, (error_cN, error_cN / 2), (101.0, 99.0), 2)
@@ -115,7 +115,7 @@ def answered(
     person: str,
     code: str,
     judge: Judge,
-    render: Render = felt,
+    render: Render = rendered,
     trials: int | None = None,
     age: float = 33.0,
 ) -> None:

@@ -38,7 +38,7 @@ def plot_fit(
     """Draw raw samples under their fits, with knots and control points, and the residuals below.
 
     axes : for the curves and for the residuals (fit minus raw, at each distinct displacement).
-    Ticks at the foot are the distinct knots of each fit. Gives both axes. Raises ModelError if there
+    Ticks at the foot are the distinct knots of each fit. Returns both axes. Raises ModelError if there
     is no fit.
     """
     if not fits:
@@ -105,7 +105,7 @@ def plot_scan(
 ) -> Axes:
     """Draw BIC* against the number of control points for each method, the best of each marked.
 
-    scores : method ("uniform", "adaptive") to size to BIC*, as scan_sizes gives it. Gives the axes.
+    scores : method ("uniform", "adaptive") to size to BIC*, as scan_sizes gives it. Returns the axes.
     Raises ModelError if no method has a score.
     """
     present = {method: found for method, found in scores.items() if found}

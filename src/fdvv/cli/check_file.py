@@ -148,4 +148,4 @@ KINDS: tuple[tuple[bytes, str, Callable[[Path, str], FileCheck]], ...] = (
     (b'"fdvv-receipt"', A_SESSION, lambda path, _kind: check_session(path.parent)),
     (IMAGE, "a program's image", _image),
 )
-"""What stands within the first bytes of each kind, and who looks at it."""
+"""The first bytes of each kind, and the function that checks it."""

@@ -61,7 +61,7 @@ def read_document(
 ) -> Read:
     """Read a document whose head says that it is one of that kind.
 
-    read : decodes the bytes with msgspec; choices : the words that may stand at a place, None for any.
+    read : decodes the bytes with msgspec; choices : the words allowed at a place, None for any.
     Raises InputError that names source, the place in it and the remedy.
     """
     data = text.encode(errors="surrogatepass") if isinstance(text, str) else text

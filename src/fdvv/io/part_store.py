@@ -99,7 +99,7 @@ class PartStore:
         return len(self._known)
 
     def add(self, table: Table) -> None:
-        """Write rows as a part; rows of a known key stand for the earlier ones. Raises OSError."""
+        """Write rows as a part; rows of a known key replace the earlier ones. Raises OSError."""
         self._parts.mkdir(exist_ok=True)
         self._number += 1
         path = self._parts / f"part-{self._number:08}.parquet"

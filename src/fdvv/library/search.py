@@ -16,7 +16,7 @@ from fdvv.units import FloatArray
 
 Mask = npt.NDArray[np.bool_]
 TYPO_letters = 4
-"""Shorter words are taken as they stand: with a letter changed they would match nearly everything."""
+"""Shorter words must match exactly: with a letter changed they would match nearly everything."""
 
 _WORD = re.compile(r"[^\s/_,;()\-]+")
 
@@ -40,7 +40,7 @@ class TextTable:
     def match(self, text: str) -> tuple[Mask, npt.NDArray[np.float64], tuple[str, ...]]:
         """Find the buttons that match every word.
 
-        Gives the mask (n,), how well each matches (n,): words at the start of the name count most, and the
+        Returns the mask (n,), how well each matches (n,): words at the start of the name count most, and the
         words that were read with a typo.
         """
         mask, score = np.ones(len(self._names), bool), np.zeros(len(self._names))

@@ -77,7 +77,7 @@ class PressSubject:
     name, mode, rig_name : what is pressed, how, on which shipped rig.
     description : one sentence for people: how this button is rendered.
     image, settings, rig, finger : what runs.
-    travel_mm : where the bottom stop stands.
+    travel_mm : displacement at the bottom stop.
     actuation_mm, reset_mm : where a plain button's key goes down and up; None of a program.
     marks : places of the stroke, those two or the places of a program's transitions.
     states : names by the number that the firmware tells.

@@ -136,7 +136,7 @@ def _hold_bump(
 ) -> tuple[FloatArray, FloatArray]:
     """Repeat a fit that lost more than 5 % of its bump, each time with more weight on peak and valley.
 
-    Least squares cares for the sum of errors, a finger for the snap. Gives the first fit that keeps the
+    Least squares cares for the sum of errors, a finger for the snap. Returns the first fit that keeps the
     bump; the plain one if none does before the error has grown by half.
     """
     bump = find_bump(x, y)

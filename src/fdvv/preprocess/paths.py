@@ -133,7 +133,7 @@ class Paths:
     ) -> tuple[list[Judged], list[StrokeTrack], CurveOfForce] | None:
         """Find the paths of one stroke of presses at one velocity, and the button's force behind them.
 
-        known : the button's force as far as it is known; None if nothing is. Gives None if fewer than three
+        known : the button's force as far as it is known; None if nothing is. Returns None if fewer than three
         presses show the stroke, else those that do, their tracks and the force. First between frames, then
         once more with what lies between the stop and a frame.
         """

@@ -32,7 +32,7 @@ def plot_rendering(curves: Sequence[RenderedCurve], title: str = "", simulated: 
     """Draw target and rendered force in a grid: a row per velocity (rising), a column per stroke.
 
     A line is the mean of a method's presses, its band the spread from low to high.
-    Gives the (velocities, strokes) array of axes; a cell without a curve is left blank.
+    Returns the (velocities, strokes) array of axes; a cell without a curve is left blank.
     Raises ModelError if there is no curve, or two for one cell.
     """
     methods = _methods(curves)
@@ -110,7 +110,7 @@ def plot_convergence(
     """Draw the error of each curve from press to press on a logarithmic axis.
 
     paper : also draw the 2.93 cN that the paper reports from its rig. Errors that are not positive have
-    no place on the axis and are left out. Gives the axes. Raises ModelError if there is no history.
+    no place on the axis and are left out. Returns the axes. Raises ModelError if there is no history.
     """
     if not histories:
         raise ModelError("a figure of convergence needs at least one history, got none")
@@ -149,7 +149,7 @@ def plot_feasibility(curves: Sequence[FeasibleCurve], title: str = "") -> Any:
     """Draw intended, achievable and measured force in a grid: a row per velocity, a column per stroke.
 
     The band of a measured curve is its spread over the presses; a shaded range is one where a limit cuts the
-    command. The verdict stands below each title. Gives the (velocities, strokes) array of axes.
+    command. The verdict is below each title. Returns the (velocities, strokes) array of axes.
     Raises ModelError if there is no curve, or two for one cell.
     """
     axes = _draw_grid(curves, (5.0, 2.9, 0.3), _draw_feasible, sharey=False)

@@ -228,7 +228,7 @@ def _runs_of(folder: Path | None) -> int:
         if not path.is_file():
             continue
         with path.open("rb") as stream:
-            # not decoded: a line holds every column of a press, and its key stands at its begin
+            # not decoded: a line holds every column of a press, and its key is at its beginning
             runs += sum(b'"record": {"run": ' in line[:80] for line in stream)
     return runs
 

@@ -141,6 +141,6 @@ def _mark(line: ChartLine, px: FloatArray, py: FloatArray) -> dict[str, Any]:
 
 
 def _sign(line: ChartLine, x: float, y: float) -> dict[str, Any]:
-    """Return what stands beside a line's name."""
+    """Return the text beside a line's name."""
     places = [x + 9] if line.dots else [x, x + 18]
     return _mark(line, np.array(places), np.full(len(places), y))

@@ -29,7 +29,7 @@ def plot_model(model: FDVVModel, ax: Axes | None = None, simulated: bool = False
 
     Colour tells the velocity (light slow, dark fast), solid press from dashed release; a band is the spread
     between presses where the model keeps it. Simulated is written if the model says so or the caller does.
-    Gives the axes.
+    Returns the axes.
     """
     ax = style.axes_or_new(ax, 8.0, 4.6)
     colours = style.velocity_colours(c.velocity_mm_s for c in model.curves)
@@ -50,7 +50,7 @@ def plot_surface(
 ) -> Any:
     """Draw force over displacement and velocity for one stroke, the measured curves as lines on it.
 
-    ax : three-dimensional axes. Gives the axes. Raises ModelError unless the stroke has curves at two
+    ax : three-dimensional axes. Returns the axes. Raises ModelError unless the stroke has curves at two
     velocities or more.
     """
     speeds = model.velocities_mm_s(stroke)
@@ -81,7 +81,7 @@ def plot_surface(
 
 
 def _surface_axes(ax: Any) -> None:
-    """Label three-dimensional axes and turn them so that the slow curves stand in front."""
+    """Label three-dimensional axes and turn them so that the slow curves are in front."""
     from matplotlib.ticker import MaxNLocator
 
     ax.set(xlabel=style.DISPLACEMENT, ylabel=style.VELOCITY, zlabel=style.FORCE)
@@ -102,7 +102,7 @@ def plot_comparison(
     """Draw models over each other, each by its curves nearest to a velocity (its slowest by default).
 
     Circles mark peak and valley of the bump, triangles actuation and reset; a band is the spread between
-    presses where a model keeps it. Gives the axes. Raises ModelError if there is no model.
+    presses where a model keeps it. Returns the axes. Raises ModelError if there is no model.
     """
     if not models:
         raise ModelError("a comparison needs at least one model, got none")
@@ -130,7 +130,7 @@ def plot_vibration(model: FDVVModel, ax: Axes | None = None, simulated: bool = F
     """Draw the acceleration of each vibration of a model on the time after its onset.
 
     Vibrations that are the same at several velocities or on both strokes are drawn once and named
-    together. Gives the axes. Raises ModelError if the model has no vibration.
+    together. Returns the axes. Raises ModelError if the model has no vibration.
     """
     if not model.vibrations:
         raise ModelError(f"model {model.name!r} has no vibration to draw")
@@ -241,7 +241,7 @@ def _vibration_text(group: Sequence[Vibration]) -> str:
 
 
 def _frequencies(group: Sequence[Vibration]) -> list[str]:
-    """Write the frequencies of vibrations that are the same, with the spread of one that stands alone."""
+    """Write the frequencies of vibrations that are the same, with the spread of one that is alone."""
     first = group[0]
     known = first.spread.modes if first.spread and len(group) == 1 else ()
     spreads_Hz = [mode.frequency_Hz for mode in known] or [None] * len(first.modes)

@@ -66,7 +66,7 @@ def plot_score_bars(
 ) -> Any:
     """Draw a panel of bars per level, side by side on one scale; a dot is a person.
 
-    score : name of the axis, with its unit. spread : what the error bars are. Gives the (panels,) array of
+    score : name of the axis, with its unit. spread : what the error bars are. Returns the (panels,) array of
     axes. ModelError without a panel.
     """
     axes = _panels(len(panels), 4.6, 4.3)
@@ -119,7 +119,7 @@ def plot_training(panels: Sequence[TrainingScores], score: str, simulated: bool 
 
     The scale holds nine of ten scores; a triangle tells that there is one beyond it.
     The best so far is the smallest score of each person until then, lucky ones among them; its median stands.
-    Gives the (panels,) array of axes. ModelError without a panel.
+    Returns the (panels,) array of axes. ModelError without a panel.
     """
     axes = _panels(len(panels), 4.6, 3.6)
     for ax, panel in zip(axes, panels, strict=True):

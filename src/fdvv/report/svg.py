@@ -42,7 +42,7 @@ def figure_of(drawn: Any) -> Figure:
 
 
 def figure_svg(drawn: Any, description: str = "") -> str:
-    """Draw a figure as one `<svg>` element that can stand in a page or in a file.
+    """Draw a figure as one `<svg>` element for a page or a file.
 
     drawn : a figure, or what a plot function gave.
     description : what the figure shows, for those who cannot see it; by default its titles.

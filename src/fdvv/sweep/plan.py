@@ -108,7 +108,7 @@ class SweepPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
 
 def read_sweep_plan(path: Path) -> SweepPlan:
-    """Read a plan. Raises InputError that names the place and what may stand there."""
+    """Read a plan. Raises InputError that names the place and what is allowed there."""
     text = read_limited(path, LARGEST_bytes, REMEDY)
     try:
         data = tomllib.loads(text.decode())

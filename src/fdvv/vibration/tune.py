@@ -217,8 +217,8 @@ class SimulatedObserver:
     Attributes
     ----------
     likes : per velocity and template, in units of the noise of a comparison by Thurstone's model.
-    unsure : difference felt below which neither is preferred.
-    seed : of the noise. noise : standard deviation of what is felt of one template.
+    unsure : perceived difference below which neither is preferred.
+    seed : of the noise. noise : standard deviation of the percept of one template.
     """
 
     likes: Sequence[Sequence[float]]

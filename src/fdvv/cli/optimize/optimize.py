@@ -1,4 +1,4 @@
-"""fdvv optimize: run, resume, replay, report; experiment and population stand beside."""
+"""fdvv optimize: run, resume, replay, report; experiment and population have modules of their own."""
 
 from __future__ import annotations
 

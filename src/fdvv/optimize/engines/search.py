@@ -27,7 +27,7 @@ def generator(problem: Problem, trials: Sequence[object], purpose: int = 0) -> n
 
 
 def holds(space: DesignSpace, places: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Tell, (n,), which places (n, d) hold every constraint."""
+    """Return, (n,), which places (n, d) hold every constraint."""
     if not space.constraints:
         return np.ones(len(places), dtype=np.bool_)
     return np.array([not space.broken(design) for design in space.of_unit(places)], dtype=np.bool_)
@@ -198,7 +198,7 @@ def random_places(problem: Problem, trials: Sequence[Trial], count: int) -> Floa
 def sobol_places(problem: Problem, tried: FloatArray, count: int) -> FloatArray:
     """Return the next places (count, d) of the problem's sequence: the first that were not tried."""
     draw = sobol_draw(len(problem.space.names), problem.seed)
-    # those already tried stand at its beginning and are passed over
+    # those already tried are at its beginning and are skipped
     draw_ahead = len(tried) + count
     return draw_feasible(problem, lambda n: draw(max(n, draw_ahead)), tried, count)
 

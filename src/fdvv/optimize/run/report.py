@@ -47,7 +47,7 @@ class DesignPanel:
 def plot_designs(panels: Sequence[DesignPanel], columns: int = 2, simulated: bool = False) -> Any:
     """Draw designs in a grid with common scales: force of the press, actuation and onset of vibration.
 
-    Gives the (rows, columns) array of axes. ModelError without a design.
+    Returns the (rows, columns) array of axes. ModelError without a design.
     """
     if not panels:
         raise ModelError("a figure of designs needs at least one")
