@@ -103,7 +103,9 @@ def press_physics(
         for _ in range(presses):
             gesture = vary(person, physics.curve.travel_m, pace_s, float(m_from_mm(speed)), random)
             noise = draw_button_noise(person, gesture, random, sensor)
-            made.append(_felt(simulate_button(physics, person, gesture, noise, sensor), speed, travel_mm))
+            made.append(
+                _button_press(simulate_button(physics, person, gesture, noise, sensor), speed, travel_mm)
+            )
     return tuple(made)
 
 
@@ -114,7 +116,7 @@ def quasi_static_peak_cN(physics: ButtonPhysics) -> float:
     return float(slow.press_cN[before].max())
 
 
-def _felt(trace: ButtonTrace, asked_mm_s: float, travel_mm: float) -> ButtonPress:
+def _button_press(trace: ButtonTrace, asked_mm_s: float, travel_mm: float) -> ButtonPress:
     x = trace.displacement_mm
     arrived = np.flatnonzero(x >= travel_mm - 0.1)
     down = slice(0, int(arrived[0]) if arrived.size else int(x.argmax()) + 1)

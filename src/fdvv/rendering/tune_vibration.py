@@ -165,7 +165,7 @@ def tune_vibration(
         state = _replayed(method, candidates, log)
         _greet(guide, log, method.done(state))
         plan = _TuningPlan(device, candidates, upload, answer, session, guide, model.travel_mm, answered)
-        state = _asked(plan, method, state, log)
+        state = _ask_questions(plan, method, state, log)
         entries = [given.entry for given in log.entries]
         receipt = write_run_summary(session.folder, manifest, log.runs, entries)
     found = _standing(candidates, method, state)
@@ -250,7 +250,7 @@ def _standing(
     return tuple(TunedVibration(c, s) for c, s in zip(candidates, method.best(state), strict=True))
 
 
-def _asked(plan: _TuningPlan, method: Method, state: TuningState, log: AnswerLog) -> TuningState:
+def _ask_questions(plan: _TuningPlan, method: Method, state: TuningState, log: AnswerLog) -> TuningState:
     clear_latched(plan.device, plan.guide.notice)
     with released(plan.device, lambda: how_to_resume(log, len(log.entries), "answer", "answers")):
         while (question := method.ask(state)) is not None:

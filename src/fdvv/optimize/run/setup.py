@@ -60,9 +60,9 @@ def rig_constraints(
         except ModelError:
             return -1.0, -1.0
         beyond = max(0.0, model.travel_mm - rig.info.travel_limit_mm)
-        felt = min(_felt(curve) for curve in report.curves)
+        slack = min(_slack(curve) for curve in report.curves)
         margin = min(curve.stable.margin for curve in report.curves)
-        return felt - beyond, min(margin - MARGIN, MOST_MARGIN)
+        return slack - beyond, min(margin - MARGIN, MOST_MARGIN)
 
     name = rig.entry.rig_id
     force = f"{name} gives the force and the bump, as its limits and lag let it"
@@ -73,7 +73,7 @@ def rig_constraints(
     )
 
 
-def _felt(curve: CurveFeasibility) -> float:
+def _slack(curve: CurveFeasibility) -> float:
     """Return the slack of one curve: of the mean force that is missed, and of the bump that is left."""
     reached = curve.reached
     missed = reached.missed_cN / max(1.0, float(np.abs(reached.intended_cN).mean()))

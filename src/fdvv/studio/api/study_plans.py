@@ -93,7 +93,7 @@ def create(studies: Studies, ask: StudiesCreate) -> StudiesAsk:
 
 @call("studies.plan")
 def plan(studies: Studies, ask: StudiesAsk) -> StudiesPlan:
-    return _kept(ask.study, studies.study(ask.study))
+    return _reviewed_plan(ask.study, studies.study(ask.study))
 
 
 @call("studies.write")
@@ -103,7 +103,7 @@ def write(studies: Studies, ask: StudiesWrite) -> StudiesPlan:
         return StudiesPlan(ask.study, ask.text, _problems(ask.text), [])
     study.change_plan(ask.text)
     studies.announce(ask.study)
-    return _kept(ask.study, study)
+    return _reviewed_plan(ask.study, study)
 
 
 def _problems(text: str) -> tuple[str, ...]:
@@ -113,7 +113,7 @@ def _problems(text: str) -> tuple[str, ...]:
         return (error_line(error),)
 
 
-def _kept(name: str, study: Study) -> StudiesPlan:
+def _reviewed_plan(name: str, study: Study) -> StudiesPlan:
     """Return a declaration with its preview, read with all files it names."""
     text = (study.folder / STUDY_FILE).read_text(encoding="utf-8", errors="replace")
     try:

@@ -220,10 +220,10 @@ def checked_page(plan: StudyPlan, page: Page, values: Mapping[str, Value]) -> di
     questions = {question.name: question for question in page.questions}
     for name in set(values) - set(questions):
         raise InputError("answer", f"page {page.name}", f"does not ask {name!r:.60}", CHOOSE)
-    return {name: _kept(plan, page, one, values.get(name)) for name, one in questions.items()}
+    return {name: _checked_value(plan, page, one, values.get(name)) for name, one in questions.items()}
 
 
-def _kept(plan: StudyPlan, page: Page, question: Question, value: Value) -> Value:
+def _checked_value(plan: StudyPlan, page: Page, question: Question, value: Value) -> Value:
     place = f"page {page.name}, {question.name}"
     if value is None or value == "":
         if question.required:

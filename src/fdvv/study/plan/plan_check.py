@@ -121,7 +121,7 @@ def plan_problems(plan: StudyPlan) -> tuple[str, ...]:
         *_languages(plan),
         *(problem for item in plan.items for problem in _item(plan, item)),
         *_questions(plan),
-        *_kept(plan),
+        *_colliding_names(plan),
         *_columns(plan),
         *_kind(plan),
         *_claim(plan),
@@ -206,7 +206,7 @@ def _stimulus(place: str, stimulus: Stimulus) -> Iterator[str]:
             yield f"{place}: {name!r:.70} does not end in {suffix}"
 
 
-def _kept(plan: StudyPlan) -> Iterator[str]:
+def _colliding_names(plan: StudyPlan) -> Iterator[str]:
     stimuli = [s for item in plan.items for s in item.rendered]
     names = {n for s in stimuli for n in (s.button if is_file(s.button) else "", s.actuation) if n}
     for bare in sorted(names):

@@ -215,22 +215,22 @@ def power_table(
     def simulated(of: PowerDesign, stream: int, repeats: int, label: str) -> SimulatedScores:
         return simulate_scores(of, counts[-1], repeats, seed, stream, settings, partial(progress, label))
 
-    felt = simulated(design, 0, studies, "people who feel what the proxy says")
+    perceived = simulated(design, 0, studies, "people who feel what the proxy says")
     nothing = simulated(design.of_size(0.0), 1, studies, "people who feel no difference")
-    sides = np.random.default_rng([seed, 2]).choice([-1.0, 1.0], size=felt.scores.shape)
+    sides = np.random.default_rng([seed, 2]).choice([-1.0, 1.0], size=perceived.scores.shape)
     sized = [
         simulated(design.of_size(size), 3 + place, studies // 4, "people and differences of every size")
         for place, size in enumerate(sizes_JND)
     ]
     rows = []
     for done, n in enumerate(counts, start=1):
-        power, wrong_side, _ = _claims(felt.scores[:, :n], design.alpha)
+        power, wrong_side, _ = _claims(perceived.scores[:, :n], design.alpha)
         false_nothing = _claims(nothing.scores[:, :n], design.alpha)[2]
-        false_split = _claims((felt.scores * sides)[:, :n], design.alpha)[2]
+        false_split = _claims((perceived.scores * sides)[:, :n], design.alpha)[2]
         found = _detectable(sizes_JND, sized, n, design.alpha)
         rows.append(PowerRow(n, power, wrong_side, false_nothing, false_split, *found))
         progress("tests", done, len(counts))
-    return PowerTable(tuple(rows), felt.shares, design, studies, seed, settings)
+    return PowerTable(tuple(rows), perceived.shares, design, studies, seed, settings)
 
 
 def _claims(scores: FloatArray, alpha: float) -> tuple[Estimate, Estimate, Estimate]:

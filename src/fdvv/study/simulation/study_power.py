@@ -131,9 +131,9 @@ class StudyPower:
     def _items(self) -> list[dict[str, Any]]:
         found = []
         for effect, shares in zip(self.table.design.effects, self.table.shares.tolist(), strict=True):
-            felt = effect.between
-            parts = {"force_JND": felt.force_JND, "speed_JND": felt.speed_JND}
-            parts |= {"vibration_JND": felt.vibration_JND, "total_JND": felt.total_JND}
+            between = effect.between
+            parts = {"force_JND": between.force_JND, "speed_JND": between.speed_JND}
+            parts |= {"vibration_JND": between.vibration_JND, "total_JND": between.total_JND}
             values = (share if math.isfinite(share) else None for share in shares)
             found.append({"item": effect.item, **parts, **dict(zip(SHARE_NAMES, values, strict=True))})
         return found
