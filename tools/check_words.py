@@ -28,7 +28,7 @@ EVERYWHERE = {
     r'"""(Give|Tell)s? ': "Return ..., or no docstring where the name says it",
 }
 IN_CODE = {
-    r"\w*_told|told_\w+|\w*Told|\w*TOLD": "message, summary, event or telemetry, by what it holds",
+    r"\w*_told(?:_\w+)?|told_\w+|\w*Told|\w*TOLD": "message, summary, event or telemetry, by what it holds",
     r"Standing": "Ranking, VelocityProgress or JobProgress",
     r"Way|way_us16000": "Direction, SynthesisMethod, offset",
     r"Hands|AskedHands": "Operator",

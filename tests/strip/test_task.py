@@ -27,13 +27,13 @@ def test_what_a_person_does_to_the_key_is_what_the_strip_tells(
     strip: LedPointingTask, line: LibraryStrip, task: TemporalPointing
 ) -> None:
     presses = simulate_task(task, BROWN, USER, 3)
-    told = play_on_strip(strip, task, 3, presser=played_presser(line, presses))
-    for there, here in zip(told, presses, strict=True):
+    reported = play_on_strip(strip, task, 3, presser=played_presser(line, presses))
+    for there, here in zip(reported, presses, strict=True):
         assert there.target_s is not None
         assert here.target_s is not None
         relative = [at_s - there.target_s for at_s in there.activations_s]
         assert relative == pytest.approx([at_s - here.target_s for at_s in here.activations_s], abs=2e-6)
-    score, wanted = (task.scores(found)["asynchrony_ms"] for found in (told, presses))
+    score, wanted = (task.scores(found)["asynchrony_ms"] for found in (reported, presses))
     assert score.value == pytest.approx(wanted.value, abs=2e-3)
 
 
@@ -60,7 +60,7 @@ def test_a_round_without_a_press_is_a_miss(strip: LedPointingTask) -> None:
     assert all(press.activations_s == () for press in play_on_strip(strip, SHORT, 0))
 
 
-def test_each_round_is_told_as_it_ends_and_somebody_else_is_fed_meanwhile(
+def test_each_round_is_reported_as_it_ends_and_another_device_is_served_meanwhile(
     strip: LedPointingTask, line: LibraryStrip
 ) -> None:
     order: list[str] = []
