@@ -10,7 +10,7 @@ from fdvv.protocol.tables import Refusal, Settings
 from tests.support.random_presses import random_inputs, random_settings
 from tests.support.random_programs import random_image
 
-from ._core_on_m0 import CoreOnM0, board_flags, compile_core
+from ._core_on_arm import CoreOnM0, board_flags, compile_core
 from ._simavr import say
 
 pytestmark = pytest.mark.firmware

@@ -40,9 +40,9 @@ def compile_core(folder: Path, optimise: str) -> bytes:
     subprocess.run(
         ["arm-none-eabi-gcc", *FLAGS, *LIMITS, "-Os", "-c", BOARD / "memory.c", "-o", memory], check=True
     )
-    sources = [HERE / "_core_on_m0.c", memory, *sorted(CORE.glob("*.c"))]
+    sources = [HERE / "_core_on_arm.c", memory, *sorted(CORE.glob("*.c"))]
     command: list[str | Path] = ["arm-none-eabi-gcc", *FLAGS, *LIMITS, *optimise.split(), f"-I{CORE}"]
-    command += ["-T", HERE / "_core_on_m0.ld", "-Wl,-e0x2000", *sources, "-lgcc", "-o", elf]
+    command += ["-T", HERE / "_core_on_arm.ld", "-Wl,-e0x2000", *sources, "-lgcc", "-o", elf]
     subprocess.run(command, check=True)
     objcopy = shutil.which("arm-none-eabi-objcopy") or "arm-none-eabi-objcopy"
     subprocess.run([objcopy, "-O", "binary", elf, binary], check=True)
