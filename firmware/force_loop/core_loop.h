@@ -8,12 +8,20 @@ static float newtons(int32_t cN64) { return (float)cN64 * (1.0f / 6400.0f); }
 
 static float metres(int32_t um16) { return (float)um16 * (1.0f / 16e6f); }
 
-static int32_t rounded(float value) { return (int32_t)(value < 0.0f ? value - 0.5f : value + 0.5f); }
-
-static int16_t short_cN64(float force_N)
+/* Rounded to nearest, between the limits; 0 for what is not a number. Processors convert a value that the integer
+ * cannot hold each in its own way. */
+static int32_t rounded(float value, float limit)
 {
-    return (int16_t)fdvv_clamp(rounded(6400.0f * force_N), -INT16_MAX, INT16_MAX);
+    if (value != value)
+        return 0;
+    value = value < -limit ? -limit : value > limit ? limit : value;
+    return (int32_t)(value < 0.0f ? value - 0.5f : value + 0.5f);
 }
+
+static int16_t short_cN64(float force_N) { return (int16_t)rounded(6400.0f * force_N, INT16_MAX); }
+
+/* The limit is beyond every displacement that a reading gives (position.h). */
+static int32_t um16(float displacement_m) { return rounded(16e6f * displacement_m, 1048576.0f); }
 
 static float travel_m(const fdvv_core *core)
 {
@@ -38,7 +46,7 @@ static void estimate(fdvv_core *core, uint16_t force_counts, int16_t force_cN64)
     fdvv_force_loop_turn(&core->loop, metres(core->settings.reversal_um16));
 }
 
-static int32_t ahead_um16(const fdvv_core *core) { return rounded(16e6f * fdvv_force_loop_ahead_m(&core->loop)); }
+static int32_t ahead_um16(const fdvv_core *core) { return um16(fdvv_force_loop_ahead_m(&core->loop)); }
 
 /* The program's force at this displacement: of one stroke, or between both after a turn. */
 static float force_N(fdvv_core *core, fdvv_machine_inputs *in, int32_t at_um16)
@@ -58,7 +66,7 @@ static float force_N(fdvv_core *core, fdvv_machine_inputs *in, int32_t at_um16)
 static int32_t close_cN64(fdvv_core *core, fdvv_machine_inputs *in)
 {
     float ahead_N = force_N(core, in, ahead_um16(core));
-    float now_N = force_N(core, in, rounded(16e6f * core->loop.x_m));
+    float now_N = force_N(core, in, um16(core->loop.x_m));
     return short_cN64(fdvv_force_loop_command_N(&core->loop, ahead_N, now_N, travel_m(core)));
 }
 
@@ -80,7 +88,7 @@ static void fill_estimates(const fdvv_core *core, fdvv_tick_record *record)
 {
     if (!is_closed(core))
         return;
-    record->displacement_um16 = rounded(16e6f * core->loop.x_m);
+    record->displacement_um16 = um16(core->loop.x_m);
     record->force_cN64 = short_cN64(core->loop.force_N);
 }
 
