@@ -1,4 +1,4 @@
-/* The core alone on a Cortex-M0+, called function by function from an emulator: no board, no start-up.
+/* The core alone on a Cortex-M, called function by function from an emulator: no board, no start-up.
  *
  * The table at the first address tells where everything is.
  */
@@ -48,14 +48,31 @@ static void run(uint32_t ticks)
     }
 }
 
+#ifdef FDVV_FORCE_LOOP
+static fdvv_force_loop_gains gains;
+
+static void close_loop(void)
+{
+    fdvv_core_close_loop(&core, &gains);
+}
+#endif
+
 typedef void (*function)(void);
 
 __attribute__((section(".table"), used)) static const struct {
     uint32_t ticks;
     void *data[4];
     function functions[5];
+#ifdef FDVV_FORCE_LOOP
+    void *gains;
+    function close_loop;
+#endif
 } table = {
     TICKS,
     {&settings, image, inputs, outputs},
     {(function)begin, (function)check, (function)event, (function)announce, (function)run},
+#ifdef FDVV_FORCE_LOOP
+    &gains,
+    (function)close_loop,
+#endif
 };

@@ -10,7 +10,7 @@ from fdvv.protocol.tables import Refusal, Settings
 from tests.support.random_presses import random_inputs, random_settings
 from tests.support.random_programs import random_image
 
-from ._core_on_arm import CoreOnM0, board_flags, compile_core
+from ._core_on_arm import CoreOnArm, board_flags, compile_core
 from ._simavr import say
 
 pytestmark = pytest.mark.firmware
@@ -26,7 +26,7 @@ def agree(code: bytes, seed: int, ticks: int, pieces: int = 8) -> int:
     rng = np.random.default_rng(seed)
     settings = random_settings(rng)
     image, inputs = random_image(rng, settings), random_inputs(rng, ticks, settings)
-    here, there = Core(settings, image), CoreOnM0(code, settings, image)
+    here, there = Core(settings, image), CoreOnArm(code, settings, image)
     assert there.refusal == Refusal.NONE
     here.arm()
     rendered = 0
@@ -58,4 +58,4 @@ def test_a_corrupted_image_is_refused_there_as_here(code: bytes) -> None:
     rng = np.random.default_rng(7)
     image = bytearray(random_image(rng, Settings()))
     image[100] ^= 1
-    assert CoreOnM0(code, Settings(), bytes(image)).refusal == Refusal.CHECKSUM
+    assert CoreOnArm(code, Settings(), bytes(image)).refusal == Refusal.CHECKSUM
