@@ -103,7 +103,7 @@ class CoreOnArm:
         return int(self._uc.reg_read(self._arm.UC_ARM_REG_R0))
 
     def event(self, event: int) -> None:
-        """Tell the program of host event 0 to 31."""
+        """Send host event 0 to 31 to the program."""
         self._call(self._functions[2], event)
 
     def announce(self, velocity_mm_s16: int) -> None:

@@ -49,7 +49,7 @@ def pressed(cell: str) -> LoopPress:
 
 
 def replay(code: bytes, taken: LoopPress) -> RecordArray:
-    """Give what the emulated core does with the readings of a press."""
+    """Return what the emulated core does with the readings of a press."""
     core = CoreOnArm(code, SETTINGS, taken.image, M4)
     assert core.refusal == Refusal.NONE
     core.close_loop(loop_constants())

@@ -141,7 +141,7 @@ def test_a_file_brings_everything_back(result: CompensationResult, tmp_path: Pat
     ("change", "place"),
     [
         ({"format": "other"}, "format"),
-        ({"version": 3}, "version 3"),
+        ({"version": 4}, "version 4"),
         ({"press_cN": [[1.0]]}, "tables"),
         ({"travel_mm": "deep"}, "travel_mm"),
         ({"surprise": 1}, "surprise"),

@@ -64,13 +64,13 @@ class LoopPress:
 
 
 def clear_image() -> bytes:
-    """Give the program of MX Clear."""
+    """Return the program of MX Clear."""
     surface = ForceSurface.of_model(CLEAR, [100.0])
     return bytes(image_of(surface, CLEAR.travel_mm, paced=True).image)
 
 
 def loop_constants() -> npt.NDArray[np.float32]:
-    """Give the constants of the loop on this rig."""
+    """Return the constants of the loop on this rig."""
     cell = TwinDevice(RIG).load_cell
     assert isinstance(cell, CellSpec)
     return force_loop_gains(KNOWN, cell, 1e-4, CONTROLLER).pack()
