@@ -12,7 +12,7 @@ import { pointsTable } from "./points_table";
 export function pointsPanels(editor: EditorController): HTMLElement[] {
   return [
     panel(
-      "Places",
+      "Positions",
       h(
         "div",
         { class: "edit-pairs" },
