@@ -10,7 +10,10 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 NATIVE, CORE = ROOT / "src" / "fdvv" / "_native", ROOT / "firmware" / "core"
-SOURCES = [f"-I{CORE}", *(str(path) for part in (NATIVE, CORE) for path in sorted(part.glob("*.c")))]
+FORCE_LOOP = ROOT / "firmware" / "force_loop"
+FOLDERS = NATIVE, CORE, FORCE_LOOP
+SOURCES = [f"-I{CORE}", f"-I{FORCE_LOOP}", "-DFDVV_FORCE_LOOP"]
+SOURCES += [str(path) for part in FOLDERS for path in sorted(part.glob("*.c"))]
 
 # run in a process of its own: the sanitiser ends it at the first fault
 EXERCISE = """

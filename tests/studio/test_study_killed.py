@@ -102,10 +102,15 @@ class Project:
             self._begin()
 
 
-def moments(seed: int, kills: int) -> Iterator[tuple[int, float]]:
-    """Draw moments: so long after so many things. Some asks take 0.1 ms and others 0.1 s."""
+def moments(seed: int, project: Project, kinds: int) -> Iterator[tuple[int, float]]:
+    """Draw 32 moments, and up to 64 more until kills fell into so many kinds of work.
+
+    A moment is so long after so many things. Some requests take 0.1 ms and others 0.1 s.
+    """
     draw = random.Random(seed)
-    for _ in range(kills):
+    for kill in range(96):
+        if kill >= 32 and len(project.moments) >= kinds:
+            return
         yield draw.randint(0, MOST_SAID), 10.0 ** draw.uniform(-4.0, -1.0)
 
 
@@ -139,7 +144,7 @@ def test_no_answer_is_lost_when_the_studio_is_killed_at_256_random_moments(
     tmp_path: Path, studios: Hatchery, port: int, seed: int, record_property: Callable[[str, object], None]
 ) -> None:
     project = Project(tmp_path)
-    for moment in moments(seed, 32):
+    for moment in moments(seed, project, kinds=6):
         kill_studio(project, studios, port, *moment)
     record(project, record_property)
     assert len(project.moments) >= 6
@@ -159,7 +164,7 @@ def test_no_answer_is_lost_when_the_page_is_killed_at_256_random_moments(
     """The page is a process that speaks as the real one; half of the time its person is back at once."""
     project, hasty = Project(tmp_path), random.Random(seed)
     _, address = studios.ask(tmp_path, port)
-    for moment in moments(seed, 32):
+    for moment in moments(seed, project, kinds=4):
         leader = Taker(address, project.hear, TEXT)
         leader.prepare(project.name)
         person = (project.witness.person, project.witness.code)
