@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -68,6 +69,30 @@ MAX_SPEED_DEVIATION_ratio = 0.5
 """A press further from its requested speed informs the rig model, but not the tables of that speed."""
 
 
+def identification_trial(job: CompensationJob, made: int) -> Trial:
+    """Return the next press of an identification after so many, at the job's speeds in turn."""
+    speeds = job.target.velocity_mm_s
+    surface = identification_surface(job.target, limit_cN=job.force_limit_cN)
+    return Trial(surface, float(speeds[made % speeds.size]), pace_ratio=ANY_SPEED_ratio)
+
+
+def least_pressed(presses: Sequence[Sequence[object]]) -> int:
+    """Return the index of the speed with the fewest presses; the first of several."""
+    return min(range(len(presses)), key=lambda i: len(presses[i]))
+
+
+def press_count(
+    presses: Sequence[Sequence[object]], rounds: int, identifying: int, needed: int
+) -> PressCount:
+    """Count presses per speed, and those of identification for the speed they are requested at.
+
+    identifying, needed : presses of identification made, and needed.
+    """
+    size = len(presses)
+    wanted = tuple(needed // size + (i < needed % size) + rounds for i in range(size))
+    return PressCount(identifying + sum(map(len, presses)), needed + size * rounds, wanted)
+
+
 @dataclass(frozen=True, eq=False)
 class RigState:
     """State of a job.
@@ -94,11 +119,6 @@ class RigState:
         if self.rig is None or self.tables is None:
             raise ModelError("the rig is not identified yet")
         return self.rig, self.tables
-
-    @property
-    def turn(self) -> int:
-        """Index of the speed with the fewest presses since identification."""
-        return min(range(len(self.errors)), key=lambda i: len(self.errors[i]))
 
 
 @dataclass(frozen=True)
@@ -159,22 +179,20 @@ class RigAware:
 
     def trial(self, state: RigState) -> Trial | None:
         """Return the next press: first identification, then the speed with the fewest; None when finished."""
-        speeds = state.job.target.velocity_mm_s
         if state.rig is None:
-            surface = identification_surface(state.job.target, limit_cN=state.job.force_limit_cN)
-            speed = float(speeds[len(state.identification) % speeds.size])
-            return Trial(surface, speed, pace_ratio=ANY_SPEED_ratio)
-        at = state.turn
+            return identification_trial(state.job, len(state.identification))
+        at = least_pressed(state.errors)
         if len(state.errors[at]) >= self.rounds:
             return None
         surface = self._surface(state, state.identified[1])
-        return Trial(surface, float(speeds[at]), self._tuning(state), LOOSE_SPEED_TOLERANCE_ratio)
+        speed = float(state.job.target.velocity_mm_s[at])
+        return Trial(surface, speed, self._tuning(state), LOOSE_SPEED_TOLERANCE_ratio)
 
     def step(self, press: Press, state: RigState) -> RigState:
         """Identify the rig, or learn from a press on it. Raises ModelError on an uninformative press."""
         if state.rig is None:
             return self._identify_step(press, state)
-        at = state.turn
+        at = least_pressed(state.errors)
         pair, tables = self._learn(self._strokes(press, state), state, at)
         errors = (*state.errors[:at], (*state.errors[at], pair), *state.errors[at + 1 :])
         message = press_summary(state.rig, (state.identified[1], tables), pair, at)
@@ -184,13 +202,9 @@ class RigAware:
         return state.message
 
     def count(self, state: RigState) -> PressCount:
-        """Return the count of presses; identification presses count for the speed they are requested at."""
-        size = state.job.target.velocity_mm_s.size
-        needed = max(self.identification_presses, len(state.identification) + (state.rig is None))
-        needed = 0 if self.learned_rig else needed
-        first = [needed // size + (i < needed % size) for i in range(size)]
-        made = len(state.identification) + sum(map(len, state.errors))
-        return PressCount(made, needed + size * self.rounds, tuple(n + self.rounds for n in first))
+        made = len(state.identification)
+        needed = 0 if self.learned_rig else max(self.identification_presses, made + (state.rig is None))
+        return press_count(state.errors, self.rounds, made, needed)
 
     def done(self, state: RigState) -> Outcome:
         """Return the tables, with the best ones pressed wherever the last press was far worse."""

@@ -13,7 +13,7 @@ import numpy as np
 from fdvv.compensation.force_loop.constants import CellSpec, ForceLoopGains
 from fdvv.compensation.force_loop.gains import force_loop_gains
 from fdvv.compensation.identification.balance import Sensor
-from fdvv.compensation.identification.identify import identification_surface, identify
+from fdvv.compensation.identification.identify import identify
 from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.identification.rig_model import Prior, RigModel
 from fdvv.compensation.method import (
@@ -27,7 +27,13 @@ from fdvv.compensation.method import (
     error_cN,
 )
 from fdvv.compensation.presses import split_strokes
-from fdvv.compensation.rig_aware import ANY_SPEED_ratio, LOOSE_SPEED_TOLERANCE_ratio, explain_rig
+from fdvv.compensation.rig_aware import (
+    LOOSE_SPEED_TOLERANCE_ratio,
+    explain_rig,
+    identification_trial,
+    least_pressed,
+    press_count,
+)
 from fdvv.compensation.rig_learning import tuning_of
 from fdvv.compensation.tables import bin_force, smooth
 from fdvv.errors import FitError, ModelError
@@ -81,11 +87,6 @@ class LoopState:
     identification: tuple[Press, ...] = ()
     message: str = ""
 
-    @property
-    def turn(self) -> int:
-        """Index of the speed with the fewest presses since identification."""
-        return min(range(len(self.pressed)), key=lambda i: len(self.pressed[i]))
-
 
 @dataclass(frozen=True)
 class ForceLoop:
@@ -132,22 +133,20 @@ class ForceLoop:
 
     def trial(self, state: LoopState) -> Trial | None:
         """Return the next press: first identification, then the speed with the fewest; None when finished."""
-        speeds = state.job.target.velocity_mm_s
         if state.gains is None:
-            surface = identification_surface(state.job.target, limit_cN=state.job.force_limit_cN)
-            speed = float(speeds[len(state.identification) % speeds.size])
-            return Trial(surface, speed, pace_ratio=ANY_SPEED_ratio)
-        at = state.turn
+            return identification_trial(state.job, len(state.identification))
+        at = least_pressed(state.pressed)
         if len(state.pressed[at]) >= self.rounds:
             return None
         surface = _surface(state.job, state.corrections)
-        return Trial(surface, float(speeds[at]), self._tuning(state), LOOSE_SPEED_TOLERANCE_ratio)
+        speed = float(state.job.target.velocity_mm_s[at])
+        return Trial(surface, speed, self._tuning(state), LOOSE_SPEED_TOLERANCE_ratio)
 
     def step(self, press: Press, state: LoopState) -> LoopState:
         """Identify the rig, or learn from a press. Raises ModelError on an uninformative press."""
         if state.gains is None:
             return self._identify_step(press, state)
-        at = state.turn
+        at = least_pressed(state.pressed)
         count = len(state.pressed[at])
         learned_ratio = LEARNED_ratios[min(count, len(LEARNED_ratios) - 1)]
         pair, corrections = _learn(press, state, at, learned_ratio)
@@ -160,12 +159,9 @@ class ForceLoop:
         return state.message
 
     def count(self, state: LoopState) -> PressCount:
-        """Return the count of presses; identification presses count for the speed they are requested at."""
-        size = state.job.target.velocity_mm_s.size
         made = len(state.identification)
         needed = 0 if self.learned_rig else max(self.identification_presses, made + (state.gains is None))
-        wanted = tuple(needed // size + (i < needed % size) + self.rounds for i in range(size))
-        return PressCount(made + sum(map(len, state.pressed)), needed + size * self.rounds, wanted)
+        return press_count(state.pressed, self.rounds, made, needed)
 
     def done(self, state: LoopState) -> Outcome:
         """Return the tables, of each curve those that left the least error."""
