@@ -6,6 +6,7 @@ The search begins at gains that are scaled by the plant's mass and age, and move
 from __future__ import annotations
 
 from dataclasses import astuple
+from functools import lru_cache
 
 import numpy as np
 
@@ -32,6 +33,7 @@ def scaled_start(plant: LoopPlant) -> LoopController:
     return LoopController(7.9 * mass / age, 2.8e-3 * mass, 3700.0 / age, 0.4, 16.0 * mass / age, 200.0 / age)
 
 
+@lru_cache(maxsize=8)  # a session that is resumed designs for the same plant again
 def design_controller(plant: LoopPlant) -> LoopController:
     """Return the gains that leave the least error from 10 to 100 Hz, with margins over the bank of fingers.
 
