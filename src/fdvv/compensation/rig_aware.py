@@ -10,7 +10,7 @@ import numpy as np
 from fdvv.compensation.identification.balance import Sensor
 from fdvv.compensation.identification.identify import identification_surface, identify
 from fdvv.compensation.identification.rig_file import LearnedRig
-from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.compensation.identification.rig_model import Prior, RigModel
 from fdvv.compensation.method import UNTUNED, CompensationJob, Outcome, PressCount, Trial, Tuning
 from fdvv.compensation.rig_learning import (
     Learning,
@@ -74,6 +74,24 @@ def identification_trial(job: CompensationJob, made: int) -> Trial:
     speeds = job.target.velocity_mm_s
     surface = identification_surface(job.target, limit_cN=job.force_limit_cN)
     return Trial(surface, float(speeds[made % speeds.size]), pace_ratio=ANY_SPEED_ratio)
+
+
+def try_identification(
+    presses: Sequence[Press], travel_mm: float, limits: tuple[int, int], prior: Prior | None = None
+) -> RigModel | str:
+    """Return the rig, or why another press is needed.
+
+    limits : presses before the first try, and the most. Raises ModelError if the most do not suffice.
+    """
+    fewest, most = limits
+    if len(presses) < fewest:
+        return f"{len(presses)} of {fewest} identification presses"
+    try:
+        return identify(presses, travel_mm, prior)
+    except FitError as error:
+        if len(presses) >= most:
+            raise ModelError(f"the rig cannot be identified: {error}") from error
+        return f"one more press is needed: {error}"
 
 
 def least_pressed(presses: Sequence[Sequence[object]]) -> int:
@@ -232,15 +250,10 @@ class RigAware:
     def _identify_step(self, press: Press, state: RigState) -> RigState:
         """Collect identification presses; once they suffice, identify the rig and learn from them all."""
         presses = (*state.identification, press)
-        if len(presses) < self.identification_presses:
-            message = f"{len(presses)} of {self.identification_presses} identification presses"
-            return replace(state, identification=presses, message=message)
-        try:
-            rig = identify(presses, state.job.travel_mm)
-        except FitError as error:
-            if len(presses) >= self.max_identification_presses:
-                raise ModelError(f"the rig cannot be identified: {error}") from error
-            return replace(state, identification=presses, message=f"one more press is needed: {error}")
+        limits = self.identification_presses, self.max_identification_presses
+        rig = try_identification(presses, state.job.travel_mm, limits)
+        if isinstance(rig, str):
+            return replace(state, identification=presses, message=rig)
         table = prior_table(state.job, rig, self.learning)
         after = replace(state, rig=rig, identification=presses, tables=(table, table))
         speeds = state.job.target.velocity_mm_s

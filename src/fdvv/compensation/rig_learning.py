@@ -270,14 +270,14 @@ def best_rows(tables: Pair, errors: PressErrors) -> Pair:
     for j, table in enumerate(tables):
         rows = table.rows_cN.copy()
         for at, presses in enumerate(errors):
-            if better := _better([pair[j] for pair in presses]):
+            if better := better_press([pair[j] for pair in presses]):
                 rows[at] = better.row_cN
         made.append(replace(table, rows_cN=rows))
     press, release = made
     return press, release
 
 
-def _better(errors: list[PressError]) -> PressError | None:
+def better_press(errors: list[PressError]) -> PressError | None:
     """Return the best press of a speed if the last one was far worse; else None."""
     best = min(errors, key=lambda e: e.error_cN, default=None)
     return best if best is not None and errors[-1].error_cN > WORSE_ratio * best.error_cN else None
@@ -301,7 +301,7 @@ def _curve(stroke: Stroke, speed_mm_s: float, errors: list[PressError], expected
         left = f"{expected_cN:.1f} cN expected: the error left on the button that the rig was identified on"
         sentence = left if np.isfinite(expected_cN) else "not pressed"
         return CurveOutcome(stroke, speed_mm_s, (), expected_cN, float("nan"), sentence)
-    better = _better(errors)
+    better = better_press(errors)
     used = better or errors[-1]
     first_cN, last_cN = errors[0].error_cN, errors[-1].error_cN
     sentence = f"error_k {first_cN:.1f} cN at press 1, {last_cN:.1f} at press {len(errors)}"

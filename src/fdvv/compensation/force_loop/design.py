@@ -5,7 +5,7 @@ The search begins at gains that are scaled by the plant's mass and age, and move
 
 from __future__ import annotations
 
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from functools import lru_cache
 
 import numpy as np
@@ -72,14 +72,8 @@ def _within_margins(bank: FingerBank, controller: LoopController) -> LoopControl
     for _ in range(ROUNDS):
         if np.isfinite(bank.peaks(controller)).all() and _excess(bank, controller) <= 0:
             return controller
-        controller = LoopController(
-            BACK_OFF_ratio * controller.proportional,
-            BACK_OFF_ratio * controller.derivative_s,
-            controller.lowpass_Hz,
-            BACK_OFF_ratio * controller.integral_1_s,
-            BACK_OFF_ratio * controller.damping_N_s_m,
-            controller.highpass_Hz,
-        )
+        lowered = ("proportional", "derivative_s", "integral_1_s", "damping_N_s_m")
+        controller = replace(controller, **{n: BACK_OFF_ratio * getattr(controller, n) for n in lowered})
     raise ModelError(
         f"no gain of the force loop is stable on a rig with {1e3 * bank.plant.age_s:.2g} ms of delay; "
         "render by tables"

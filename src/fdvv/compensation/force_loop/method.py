@@ -13,13 +13,11 @@ import numpy as np
 from fdvv.compensation.force_loop.constants import CellSpec, ForceLoopGains
 from fdvv.compensation.force_loop.gains import force_loop_gains
 from fdvv.compensation.identification.balance import Sensor
-from fdvv.compensation.identification.identify import identify
 from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.identification.rig_model import Prior, RigModel
 from fdvv.compensation.method import (
     UNTUNED,
     CompensationJob,
-    CurveOutcome,
     Outcome,
     PressCount,
     Trial,
@@ -33,11 +31,17 @@ from fdvv.compensation.rig_aware import (
     identification_trial,
     least_pressed,
     press_count,
+    try_identification,
 )
-from fdvv.compensation.rig_learning import tuning_of
+from fdvv.compensation.rig_learning import (
+    PressError,
+    PressErrors,
+    better_press,
+    curves_of,
+    tuning_of,
+)
 from fdvv.compensation.tables import bin_force, smooth
-from fdvv.errors import FitError, ModelError
-from fdvv.model.curve import Stroke
+from fdvv.errors import ModelError
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray
@@ -58,16 +62,6 @@ Rows = tuple[FloatArray, FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
-class PressedRow:
-    """A press of one stroke: correction of its row of the table, and the error it left."""
-
-    correction_cN: FloatArray
-    error_cN: float
-    mean_cN: float
-    max_cN: float
-
-
-@dataclass(frozen=True, eq=False)
 class LoopState:
     """State of a job.
 
@@ -81,7 +75,7 @@ class LoopState:
 
     job: CompensationJob
     corrections: Rows
-    pressed: tuple[tuple[tuple[PressedRow, PressedRow], ...], ...]
+    pressed: PressErrors
     rig: RigModel | None = None
     gains: ForceLoopGains | None = None
     identification: tuple[Press, ...] = ()
@@ -171,7 +165,8 @@ class ForceLoop:
             return Outcome(surface, (), made, False, f"{made} presses, the rig is not identified yet")
         complete = self.trial(state) is None
         sentence = explain_rig(state.rig, 0.5 * state.job.travel_mm)
-        return Outcome(surface, self._curves(state), made, complete, sentence, self._tuning(state))
+        curves = curves_of(state.job, state.pressed, self.learned_rig)
+        return Outcome(surface, curves, made, complete, sentence, self._tuning(state))
 
     def learned(self, state: LoopState) -> LearnedRig:
         """Return the rig and what the loop alone leaves. ModelError before identification."""
@@ -188,32 +183,15 @@ class ForceLoop:
 
     def _identify_step(self, press: Press, state: LoopState) -> LoopState:
         presses = (*state.identification, press)
-        if len(presses) < self.identification_presses:
-            message = f"{len(presses)} of {self.identification_presses} identification presses"
-            return replace(state, identification=presses, message=message)
         sensor = Sensor(filter_s=self.cell.filter_s, cone_g=1e3 * self.cell.plate_kg)
-        try:
-            rig = identify(presses, state.job.travel_mm, Prior(sensor=sensor))
-        except FitError as error:
-            if len(presses) >= self.max_identification_presses:
-                raise ModelError(f"the rig cannot be identified: {error}") from error
-            return replace(state, identification=presses, message=f"one more press is needed: {error}")
-        return self._closed(replace(state, identification=presses), rig)
+        limits = self.identification_presses, self.max_identification_presses
+        found = try_identification(presses, state.job.travel_mm, limits, Prior(sensor=sensor))
+        after = replace(state, identification=presses)
+        return replace(after, message=found) if isinstance(found, str) else self._closed(after, found)
 
     def _closed(self, state: LoopState, rig: RigModel) -> LoopState:
         gains = force_loop_gains(rig, self.cell, self.tick_s)
         return replace(state, rig=rig, gains=gains, message=explain_rig(rig, 0.5 * state.job.travel_mm))
-
-    def _curves(self, state: LoopState) -> tuple[CurveOutcome, ...]:
-        speeds = state.job.target.velocity_mm_s
-        expected = np.full((2, speeds.size), np.nan)
-        if self.learned_rig:
-            expected = self.learned_rig.expected_cN(speeds)
-        return tuple(
-            _curve(stroke, float(speeds[i]), [pair[j] for pair in pairs], float(expected[j, i]))
-            for j, stroke in enumerate(Stroke)
-            for i, pairs in enumerate(state.pressed)
-        )
 
     def _tuning(self, state: LoopState) -> Tuning:
         if state.rig is None:
@@ -236,7 +214,7 @@ def _surface(job: CompensationJob, corrections: Rows) -> ForceSurface:
 
 def _learn(
     press: Press, state: LoopState, at: int, learned_ratio: float
-) -> tuple[tuple[PressedRow, PressedRow], Rows]:
+) -> tuple[tuple[PressError, PressError], Rows]:
     """Return what a press of speed number ``at`` left, and the corrections after it."""
     job = state.job
     x, speed = job.target.displacement_mm, float(job.target.velocity_mm_s[at])
@@ -247,19 +225,12 @@ def _learn(
     pressed, corrections = [], []
     targets = (job.target.press_cN[at], job.target.release_cN[at])
     for span, target, rows in zip(spans, targets, state.corrections, strict=True):
-        felt = bin_force(press.sensed_mm[span], press.sensed_cN[span], x)
-        left = np.where(held & np.isfinite(felt), target - felt, 0.0)
-        if not (held & np.isfinite(felt)).any():
+        rendered = bin_force(press.sensed_mm[span], press.sensed_cN[span], x)
+        left = np.where(held & np.isfinite(rendered), target - rendered, 0.0)
+        if not (held & np.isfinite(rendered)).any():
             raise ModelError("a stroke was not recorded")
-        judged = np.abs(left[held])
-        pressed.append(
-            PressedRow(
-                rows[at],
-                error_cN(target[held], felt[held]),
-                float(judged.mean()),
-                float(judged.max()),
-            )
-        )
+        off, whole = np.abs(left[held]), error_cN(target[held], rendered[held])
+        pressed.append(PressError(whole, float(off.mean()), float(off.max()), rows[at]))
         step = np.clip(smooth(left, SMOOTHED_mm, float(x[1] - x[0])), -LARGEST_STEP_cN, LARGEST_STEP_cN)
         after = rows.copy()
         after[at] += learned_ratio * step
@@ -267,27 +238,12 @@ def _learn(
     return (pressed[0], pressed[1]), (corrections[0], corrections[1])
 
 
-FAR_WORSE_ratio = 1.5
-"""The last corrections are kept unless an earlier press was better by this: presses alone differ so much."""
-
-
 def _best(state: LoopState) -> Rows:
     """Return the corrections, with those of the best press where the last press was far worse."""
     press, release = (rows.copy() for rows in state.corrections)
     for at, pairs in enumerate(state.pressed):
         for j, rows in enumerate((press, release)):
-            if not pairs:
-                continue
-            best = min((pair[j] for pair in pairs), key=lambda one: one.error_cN)
-            if pairs[-1][j].error_cN > FAR_WORSE_ratio * best.error_cN:
-                rows[at] = best.correction_cN
+            better = better_press([pair[j] for pair in pairs])
+            if better:
+                rows[at] = better.row_cN
     return press, release
-
-
-def _curve(stroke: Stroke, speed: float, rows: list[PressedRow], expected_cN: float) -> CurveOutcome:
-    if not rows:
-        sentence = f"{expected_cN:.1f} cN expected: what the loop alone left where the rig was identified"
-        return CurveOutcome(stroke, speed, (), expected_cN, float("nan"), sentence)
-    last = rows[-1]
-    sentence = f"{last.mean_cN:.1f} cN left by the last of {len(rows)} presses"
-    return CurveOutcome(stroke, speed, tuple(r.error_cN for r in rows), last.mean_cN, last.max_cN, sentence)
