@@ -1,17 +1,20 @@
 """Compensation on a rig with a load cell: identify it, close the force loop, learn what the loop leaves.
 
-The table is the loop's target. What repeats from press to press is added to it: the loop follows its target
-nearly at once, so the error of a press is the correction (iterative learning control on the reference).
+The table is the loop's target. What repeats from press to press is added to it (iterative learning control on
+the reference): the error of a press over time, through the inverse of the loop's response.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fdvv.compensation.force_loop.constants import CellSpec, ForceLoopGains
-from fdvv.compensation.force_loop.gains import force_loop_gains
+from fdvv.compensation.force_loop.design import design_controller
+from fdvv.compensation.force_loop.gains import force_loop_gains, plant_of_rig
+from fdvv.compensation.force_loop.response import LoopResponse
 from fdvv.compensation.identification.balance import Sensor
 from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.identification.rig_model import Prior, RigModel
@@ -29,7 +32,6 @@ from fdvv.compensation.rig_aware import (
     LOOSE_SPEED_TOLERANCE_ratio,
     explain_rig,
     identification_trial,
-    least_pressed,
     press_count,
     try_identification,
 )
@@ -46,15 +48,18 @@ from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray
 
-LEARNED_ratios = (0.7, 0.5, 0.4)
+LEARNED_ratios = (0.9, 0.7, 0.5)
 """Part of a press's error that is learned in each round; later rounds as the last."""
-SMOOTHED_mm = 0.06
+SMOOTHED_mm = 0.04
 LARGEST_STEP_cN = 15.0
-ENTRY_mm, ENTRY_s = 0.15, 1.2e-3
-"""After contact the loop needs this way, and this long, to hold the force: nothing is learned there."""
+ENTRY_mm, ENTRY_s, FADE_mm = 0.1, 6e-4, 0.1
+"""After contact the loop needs this way, and this long, to hold the force: nothing is learned there, and what
+is seen fades in over FADE_mm before."""
 STOP_mm = 0.08
 LIFT_cN, LIFT_mm, LIFTED_mm = 40.0, 0.2, 0.03
 """Just under the top stop the target rises to LIFT_cN, so that the cap follows a finger that leaves."""
+SETTLED_cN, SETTLED_MAX_cN = 0.5, 1.5
+"""A press that leaves less, on average and at most, has nothing left to learn: its speed is finished."""
 BANDWIDTH_Hz, RUB_mm_s = 120.0, 10.0
 """Of the tables' look-ahead and friction, which render if the cell fails."""
 
@@ -67,7 +72,7 @@ class LoopState:
 
     Attributes
     ----------
-    rig, gains : once identified. identification : presses before that.
+    rig, gains, response : once identified. identification : presses before that.
     corrections : of the target, press and release, (speeds, bins) each.
     pressed : per speed, of each press with the loop closed: press and release.
     message : what the last press changed.
@@ -78,6 +83,7 @@ class LoopState:
     pressed: PressErrors
     rig: RigModel | None = None
     gains: ForceLoopGains | None = None
+    response: LoopResponse | None = None
     identification: tuple[Press, ...] = ()
     message: str = ""
 
@@ -129,8 +135,7 @@ class ForceLoop:
         """Return the next press: first identification, then the speed with the fewest; None when finished."""
         if state.gains is None:
             return identification_trial(state.job, len(state.identification))
-        at = least_pressed(state.pressed)
-        if len(state.pressed[at]) >= self.rounds:
+        if (at := self._at(state)) is None:
             return None
         surface = _surface(state.job, state.corrections)
         speed = float(state.job.target.velocity_mm_s[at])
@@ -138,12 +143,13 @@ class ForceLoop:
 
     def step(self, press: Press, state: LoopState) -> LoopState:
         """Identify the rig, or learn from a press. Raises ModelError on an uninformative press."""
-        if state.gains is None:
+        if state.response is None:
             return self._identify_step(press, state)
-        at = least_pressed(state.pressed)
+        if (at := self._at(state)) is None:
+            raise ModelError("the method is finished; no press was asked for")
         count = len(state.pressed[at])
         learned_ratio = LEARNED_ratios[min(count, len(LEARNED_ratios) - 1)]
-        pair, corrections = _learn(press, state, at, learned_ratio)
+        pair, corrections = _learn(press, state, state.response, at, learned_ratio)
         pressed = (*state.pressed[:at], (*state.pressed[at], pair), *state.pressed[at + 1 :])
         message = f"mean error {pair[0].mean_cN:.1f} cN on the press, {pair[1].mean_cN:.1f} on the release"
         return replace(state, corrections=corrections, pressed=pressed, message=message)
@@ -155,12 +161,15 @@ class ForceLoop:
     def count(self, state: LoopState) -> PressCount:
         made = len(state.identification)
         needed = 0 if self.learned_rig else max(self.identification_presses, made + (state.gains is None))
-        return press_count(state.pressed, self.rounds, made, needed)
+        found = press_count(state.pressed, self.rounds, made, needed)
+        spared = [max(0, self.rounds - len(pairs)) * _is_settled(pairs) for pairs in state.pressed]
+        wanted = tuple(w - s for w, s in zip(found.wanted, spared, strict=True))
+        return replace(found, total=found.total - sum(spared), wanted=wanted)
 
     def done(self, state: LoopState) -> Outcome:
-        """Return the tables, of each curve those that left the least error."""
+        """Return the tables, each as it was pressed: no table is kept that no press has judged."""
         made = self.count(state).made
-        surface = _surface(state.job, _best(state))
+        surface = _surface(state.job, _kept(state))
         if state.rig is None:
             return Outcome(surface, (), made, False, f"{made} presses, the rig is not identified yet")
         complete = self.trial(state) is None
@@ -181,6 +190,13 @@ class ForceLoop:
             state.rig, residual, state.job.travel_mm, np.nan_to_num(errors, nan=state.rig.residual_cN)
         )
 
+    def _at(self, state: LoopState) -> int | None:
+        """Return which speed is pressed next: the one with the fewest presses that has something to learn."""
+        open_ = [
+            i for i, pairs in enumerate(state.pressed) if len(pairs) < self.rounds and not _is_settled(pairs)
+        ]
+        return min(open_, key=lambda i: len(state.pressed[i]), default=None)
+
     def _identify_step(self, press: Press, state: LoopState) -> LoopState:
         presses = (*state.identification, press)
         sensor = Sensor(filter_s=self.cell.filter_s, cone_g=1e3 * self.cell.plate_kg)
@@ -190,8 +206,16 @@ class ForceLoop:
         return replace(after, message=found) if isinstance(found, str) else self._closed(after, found)
 
     def _closed(self, state: LoopState, rig: RigModel) -> LoopState:
-        gains = force_loop_gains(rig, self.cell, self.tick_s)
-        return replace(state, rig=rig, gains=gains, message=explain_rig(rig, 0.5 * state.job.travel_mm))
+        plant = plant_of_rig(rig, self.cell)
+        response = LoopResponse(plant, design_controller(plant))
+        gains = force_loop_gains(rig, self.cell, self.tick_s, response.controller)
+        return replace(
+            state,
+            rig=rig,
+            gains=gains,
+            response=response,
+            message=explain_rig(rig, 0.5 * state.job.travel_mm),
+        )
 
     def _tuning(self, state: LoopState) -> Tuning:
         if state.rig is None:
@@ -213,37 +237,82 @@ def _surface(job: CompensationJob, corrections: Rows) -> ForceSurface:
 
 
 def _learn(
-    press: Press, state: LoopState, at: int, learned_ratio: float
+    press: Press, state: LoopState, response: LoopResponse, at: int, learned_ratio: float
 ) -> tuple[tuple[PressError, PressError], Rows]:
     """Return what a press of speed number ``at`` left, and the corrections after it."""
     job = state.job
-    x, speed = job.target.displacement_mm, float(job.target.velocity_mm_s[at])
-    held = (x >= ENTRY_mm + ENTRY_s * speed) & (x <= job.travel_mm - STOP_mm)
     if press.sensed_mm is None or press.sensed_cN is None:
         raise ModelError("the press holds no force and displacement of the rig's own")
-    spans = split_strokes(press.sensed_mm, job.travel_mm)
-    pressed, corrections = [], []
+    ticks = slice(None) if press.tick is None else press.tick
+    x_mm, force_cN = press.sensed_mm[ticks], press.sensed_cN[ticks]
+    tick_s = float(np.median(np.diff(press.t_s[ticks])))
     targets = (job.target.press_cN[at], job.target.release_cN[at])
-    for span, target, rows in zip(spans, targets, state.corrections, strict=True):
-        rendered = bin_force(press.sensed_mm[span], press.sensed_cN[span], x)
-        left = np.where(held & np.isfinite(rendered), target - rendered, 0.0)
-        if not (held & np.isfinite(rendered)).any():
-            raise ModelError("a stroke was not recorded")
-        off, whole = np.abs(left[held]), error_cN(target[held], rendered[held])
-        pressed.append(PressError(whole, float(off.mean()), float(off.max()), rows[at]))
-        step = np.clip(smooth(left, SMOOTHED_mm, float(x[1] - x[0])), -LARGEST_STEP_cN, LARGEST_STEP_cN)
+    pressed, corrections = [], []
+    for span, target, rows in zip(
+        split_strokes(x_mm, job.travel_mm), targets, state.corrections, strict=True
+    ):
+        stroke = x_mm[span], force_cN[span]
+        pressed.append(_press_error(stroke, job, at, target, rows[at]))
+        step = _step_cN(stroke, job, at, target, response, tick_s)
         after = rows.copy()
         after[at] += learned_ratio * step
         corrections.append(after)
     return (pressed[0], pressed[1]), (corrections[0], corrections[1])
 
 
-def _best(state: LoopState) -> Rows:
-    """Return the corrections, with those of the best press where the last press was far worse."""
+def _held_mm(job: CompensationJob, at: int) -> tuple[float, float]:
+    """Return between which displacements the loop holds the force at a speed."""
+    return ENTRY_mm + ENTRY_s * float(job.target.velocity_mm_s[at]), job.travel_mm - STOP_mm
+
+
+def _press_error(
+    stroke: tuple[FloatArray, FloatArray],
+    job: CompensationJob,
+    at: int,
+    target_cN: FloatArray,
+    row_cN: FloatArray,
+) -> PressError:
+    """Return the error of a stroke, (displacement, force). Raises ModelError if it was not recorded."""
+    grid, (low_mm, high_mm) = job.target.displacement_mm, _held_mm(job, at)
+    rendered = bin_force(*stroke, grid)
+    judged = (grid >= low_mm) & (grid <= high_mm) & np.isfinite(rendered)
+    if not judged.any():
+        raise ModelError("a stroke was not recorded")
+    off = np.abs(target_cN - rendered)[judged]
+    return PressError(
+        error_cN(target_cN[judged], rendered[judged]), float(off.mean()), float(off.max()), row_cN
+    )
+
+
+def _step_cN(
+    stroke: tuple[FloatArray, FloatArray],
+    job: CompensationJob,
+    at: int,
+    target_cN: FloatArray,
+    response: LoopResponse,
+    tick_s: float,
+) -> FloatArray:
+    """Return the change of the target in every bin that would take the error of a stroke away."""
+    (x_mm, force_cN), (low_mm, high_mm) = stroke, _held_mm(job, at)
+    grid = job.target.displacement_mm
+    held = np.clip((x_mm - low_mm) / FADE_mm + 1.0, 0.0, 1.0)
+    held *= np.clip((high_mm - x_mm) / STOP_mm + 1.0, 0.0, 1.0)
+    error = held * (np.interp(x_mm, grid, target_cN) - force_cN)
+    needed = bin_force(x_mm, response.correction(error, tick_s), grid)
+    inside = (grid >= low_mm) & (grid <= high_mm) & np.isfinite(needed)
+    step = smooth(np.where(inside, needed, 0.0), SMOOTHED_mm, float(grid[1] - grid[0]))
+    return np.clip(step, -LARGEST_STEP_cN, LARGEST_STEP_cN)
+
+
+def _is_settled(pairs: Sequence[tuple[PressError, PressError]]) -> bool:
+    return bool(pairs) and all(e.mean_cN <= SETTLED_cN and e.max_cN <= SETTLED_MAX_cN for e in pairs[-1])
+
+
+def _kept(state: LoopState) -> Rows:
+    """Return the corrections of the last press at each speed, or of the best where the last was far worse."""
     press, release = (rows.copy() for rows in state.corrections)
     for at, pairs in enumerate(state.pressed):
         for j, rows in enumerate((press, release)):
-            better = better_press([pair[j] for pair in pairs])
-            if better:
-                rows[at] = better.row_cN
+            if errors := [pair[j] for pair in pairs]:
+                rows[at] = (better_press(errors) or errors[-1]).row_cN
     return press, release
