@@ -1,7 +1,8 @@
 """Compensation on a rig with a load cell: identify it, close the force loop, learn what the loop leaves.
 
-The table is the loop's target. What repeats from press to press is added to it (iterative learning control on
-the reference): the error of a press over time, through the inverse of the loop's response.
+The table is the loop's target. Added to it are what the loop's response foresees, and then what repeats from
+press to press (iterative learning control on the reference): the error of a press over time, through the
+inverse of that response.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.compensation.force_loop.constants import CellSpec, ForceLoopGains
+from fdvv.compensation.force_loop.corrections import StrokeCorrection
 from fdvv.compensation.force_loop.design import design_controller
 from fdvv.compensation.force_loop.gains import force_loop_gains, plant_of_rig
 from fdvv.compensation.force_loop.response import LoopResponse
@@ -25,7 +27,6 @@ from fdvv.compensation.method import (
     PressCount,
     Trial,
     Tuning,
-    error_cN,
 )
 from fdvv.compensation.presses import split_strokes
 from fdvv.compensation.rig_aware import (
@@ -42,7 +43,6 @@ from fdvv.compensation.rig_learning import (
     curves_of,
     tuning_of,
 )
-from fdvv.compensation.tables import bin_force, smooth
 from fdvv.errors import ModelError
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
@@ -50,12 +50,6 @@ from fdvv.units import FloatArray
 
 LEARNED_ratios = (0.9, 0.7, 0.5)
 """Part of a press's error that is learned in each round; later rounds as the last."""
-SMOOTHED_mm = 0.04
-LARGEST_STEP_cN = 15.0
-ENTRY_mm, ENTRY_s, FADE_mm = 0.1, 6e-4, 0.1
-"""After contact the loop needs this way, and this long, to hold the force: nothing is learned there, and what
-is seen fades in over FADE_mm before."""
-STOP_mm = 0.08
 LIFT_cN, LIFT_mm, LIFTED_mm = 40.0, 0.2, 0.03
 """Just under the top stop the target rises to LIFT_cN, so that the cap follows a finger that leaves."""
 SETTLED_cN, SETTLED_MAX_cN = 0.5, 1.5
@@ -147,9 +141,8 @@ class ForceLoop:
             return self._identify_step(press, state)
         if (at := self._at(state)) is None:
             raise ModelError("the method is finished; no press was asked for")
-        count = len(state.pressed[at])
-        learned_ratio = LEARNED_ratios[min(count, len(LEARNED_ratios) - 1)]
-        pair, corrections = _learn(press, state, state.response, at, learned_ratio)
+        strokes = _strokes(state.job, state.response, self.tick_s, at)
+        pair, corrections = _learn(press, state, strokes, at)
         pressed = (*state.pressed[:at], (*state.pressed[at], pair), *state.pressed[at + 1 :])
         message = f"mean error {pair[0].mean_cN:.1f} cN on the press, {pair[1].mean_cN:.1f} on the release"
         return replace(state, corrections=corrections, pressed=pressed, message=message)
@@ -214,6 +207,7 @@ class ForceLoop:
             rig=rig,
             gains=gains,
             response=response,
+            corrections=_foreseen(state.job, response, self.tick_s),
             message=explain_rig(rig, 0.5 * state.job.travel_mm),
         )
 
@@ -236,72 +230,42 @@ def _surface(job: CompensationJob, corrections: Rows) -> ForceSurface:
     return ForceSurface(x, target.velocity_mm_s, *rows)
 
 
+def _strokes(
+    job: CompensationJob, response: LoopResponse, tick_s: float, at: int
+) -> tuple[StrokeCorrection, StrokeCorrection]:
+    """Return press and release of speed number ``at``."""
+    grid, speed = job.target.displacement_mm, float(job.target.velocity_mm_s[at])
+    press, release = (
+        StrokeCorrection(grid, rows[at], speed, downward, job.travel_mm, response, tick_s)
+        for rows, downward in ((job.target.press_cN, True), (job.target.release_cN, False))
+    )
+    return press, release
+
+
+def _foreseen(job: CompensationJob, response: LoopResponse, tick_s: float) -> Rows:
+    """Return the corrections before any press."""
+    pairs = [_strokes(job, response, tick_s, at) for at in range(job.target.velocity_mm_s.size)]
+    press, release = (np.stack([pair[j].foreseen_cN() for pair in pairs]) for j in (0, 1))
+    return press, release
+
+
 def _learn(
-    press: Press, state: LoopState, response: LoopResponse, at: int, learned_ratio: float
+    press: Press, state: LoopState, strokes: tuple[StrokeCorrection, StrokeCorrection], at: int
 ) -> tuple[tuple[PressError, PressError], Rows]:
     """Return what a press of speed number ``at`` left, and the corrections after it."""
-    job = state.job
     if press.sensed_mm is None or press.sensed_cN is None:
         raise ModelError("the press holds no force and displacement of the rig's own")
+    learned_ratio = LEARNED_ratios[min(len(state.pressed[at]), len(LEARNED_ratios) - 1)]
     ticks = slice(None) if press.tick is None else press.tick
     x_mm, force_cN = press.sensed_mm[ticks], press.sensed_cN[ticks]
-    tick_s = float(np.median(np.diff(press.t_s[ticks])))
-    targets = (job.target.press_cN[at], job.target.release_cN[at])
+    spans = split_strokes(x_mm, state.job.travel_mm)
     pressed, corrections = [], []
-    for span, target, rows in zip(
-        split_strokes(x_mm, job.travel_mm), targets, state.corrections, strict=True
-    ):
-        stroke = x_mm[span], force_cN[span]
-        pressed.append(_press_error(stroke, job, at, target, rows[at]))
-        step = _step_cN(stroke, job, at, target, response, tick_s)
+    for span, stroke, rows in zip(spans, strokes, state.corrections, strict=True):
+        pressed.append(stroke.press_error(x_mm[span], force_cN[span], rows[at]))
         after = rows.copy()
-        after[at] += learned_ratio * step
+        after[at] += learned_ratio * stroke.step_cN(x_mm[span], force_cN[span])
         corrections.append(after)
     return (pressed[0], pressed[1]), (corrections[0], corrections[1])
-
-
-def _held_mm(job: CompensationJob, at: int) -> tuple[float, float]:
-    """Return between which displacements the loop holds the force at a speed."""
-    return ENTRY_mm + ENTRY_s * float(job.target.velocity_mm_s[at]), job.travel_mm - STOP_mm
-
-
-def _press_error(
-    stroke: tuple[FloatArray, FloatArray],
-    job: CompensationJob,
-    at: int,
-    target_cN: FloatArray,
-    row_cN: FloatArray,
-) -> PressError:
-    """Return the error of a stroke, (displacement, force). Raises ModelError if it was not recorded."""
-    grid, (low_mm, high_mm) = job.target.displacement_mm, _held_mm(job, at)
-    rendered = bin_force(*stroke, grid)
-    judged = (grid >= low_mm) & (grid <= high_mm) & np.isfinite(rendered)
-    if not judged.any():
-        raise ModelError("a stroke was not recorded")
-    off = np.abs(target_cN - rendered)[judged]
-    return PressError(
-        error_cN(target_cN[judged], rendered[judged]), float(off.mean()), float(off.max()), row_cN
-    )
-
-
-def _step_cN(
-    stroke: tuple[FloatArray, FloatArray],
-    job: CompensationJob,
-    at: int,
-    target_cN: FloatArray,
-    response: LoopResponse,
-    tick_s: float,
-) -> FloatArray:
-    """Return the change of the target in every bin that would take the error of a stroke away."""
-    (x_mm, force_cN), (low_mm, high_mm) = stroke, _held_mm(job, at)
-    grid = job.target.displacement_mm
-    held = np.clip((x_mm - low_mm) / FADE_mm + 1.0, 0.0, 1.0)
-    held *= np.clip((high_mm - x_mm) / STOP_mm + 1.0, 0.0, 1.0)
-    error = held * (np.interp(x_mm, grid, target_cN) - force_cN)
-    needed = bin_force(x_mm, response.correction(error, tick_s), grid)
-    inside = (grid >= low_mm) & (grid <= high_mm) & np.isfinite(needed)
-    step = smooth(np.where(inside, needed, 0.0), SMOOTHED_mm, float(grid[1] - grid[0]))
-    return np.clip(step, -LARGEST_STEP_cN, LARGEST_STEP_cN)
 
 
 def _is_settled(pairs: Sequence[tuple[PressError, PressError]]) -> bool:
