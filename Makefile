@@ -24,7 +24,7 @@ $(VENV)/.ready: pyproject.toml $(wildcard extras/*/pyproject.toml) constraints.t
 	@touch $@
 
 # the library, and the Python tables of the protocol
-src/fdvv/_native/$(LIBRARY): $(VENV)/.ready $(NATIVE) protocol/fdvv.toml tools/make_protocol.py hatch_build.py
+src/fdvv/_native/$(LIBRARY): $(VENV)/.ready $(NATIVE) protocol/fdvv.toml protocol/force_loop.toml tools/make_protocol.py hatch_build.py
 	$(BIN)/python hatch_build.py
 
 demo: setup ## Fit, compensate on the simulated rig and write demo/report.html

@@ -1,8 +1,9 @@
-"""Turn protocol/*.toml into the C headers of firmware/core and the Python tables of fdvv and fdvv-strip.
+"""Turn protocol/*.toml into the C headers of the firmware and the Python tables of fdvv and fdvv-strip.
 
-fdvv.toml becomes protocol.h and fdvv.protocol.tables; strip.toml, whose `stem` is part of every name made
-from it, strip_protocol.h and fdvv_strip.tables. All but fdvv.protocol.tables are committed; hatch_build.py
-writes that. It loads this file by its path, so only the standard library is imported.
+fdvv.toml becomes protocol.h and fdvv.protocol.tables; force_loop.toml, which extends it, a header of its own
+and part of the same tables; strip.toml, whose `stem` is part of every name made from it, strip_protocol.h and
+fdvv_strip.tables. All but fdvv.protocol.tables are committed; hatch_build.py writes that. It loads this file
+by its path, so only the standard library is imported.
 """
 
 from __future__ import annotations
@@ -19,31 +20,36 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "protocol" / "fdvv.toml"
 HEADER = ROOT / "firmware" / "core" / "protocol.h"
 TABLES = ROOT / "src" / "fdvv" / "protocol" / "tables.py"
+LOOP_SOURCE = ROOT / "protocol" / "force_loop.toml"
+LOOP_HEADER = ROOT / "firmware" / "force_loop" / "loop_protocol.h"
 STRIP_SOURCE = ROOT / "protocol" / "strip.toml"
 STRIP_HEADER = ROOT / "firmware" / "core" / "strip_protocol.h"
 STRIP_TABLES = ROOT / "extras" / "fdvv-strip" / "src" / "fdvv_strip" / "tables.py"
-SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4}
-C_TYPES = {kind: f"{'u' if kind[0] == 'u' else ''}int{kind[1:]}_t" for kind in SIZES}
+SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4, "f32": 4}
+C_TYPES = {kind: f"{'u' if kind[0] == 'u' else ''}int{kind[1:]}_t" for kind in SIZES} | {"f32": "float"}
 NOTES = ("about", "class")
 """Keys of a definition that carry no meaning for the other side."""
-FORMATS = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i"}
+FORMATS = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i", "f32": "f"}
+MEANING = 5
+"""Of a field's row, so many elements carry meaning: not the prose, nor the value in older files."""
 
 
 @dataclass(frozen=True)
 class Field:
-    """One number, or a run of bytes, of a structure."""
+    """One number, or a run of bytes or numbers, of a structure; default: in files from before it."""
 
     name: str
     kind: str
     count: int
     unit: str
-    low: int
-    high: int
+    low: float
+    high: float
     about: str
+    default: float | list[float] | None = None
 
     @classmethod
     def of(cls, row: list[Any]) -> Field:
-        """Read [name, type, unit, low, high, about]."""
+        """Read [name, type, unit, low, high, about] and, where there is one, the default."""
         name, kind, *rest = row
         kind, _, count = kind.partition("[")
         return cls(name, kind, int(count.rstrip("]") or 0), *rest)
@@ -52,6 +58,16 @@ class Field:
     def size(self) -> int:
         """Bytes."""
         return SIZES[self.kind] * max(1, self.count)
+
+    @property
+    def is_bytes(self) -> bool:
+        """Whether it is a run of bytes, which no range is checked for."""
+        return self.count > 0 and self.kind != "f32"
+
+    @property
+    def members(self) -> list[str]:
+        """Names of its numbers in C."""
+        return [f"{self.name}[{i}]" for i in range(self.count)] if self.count else [self.name]
 
     @property
     def text(self) -> str:
@@ -83,13 +99,32 @@ def structures(source: dict[str, Any]) -> dict[str, list[Field]]:
     return by_name
 
 
+def extended(source: dict[str, Any], *extensions: dict[str, Any]) -> dict[str, Any]:
+    """Return a definition with its extensions in it, for tables; the hash is that of the definition alone."""
+    whole = {**source, "hash": meaning_hash(source)}
+    for more in extensions:
+        for key in ("constants", "structs", "messages", "defaults"):
+            whole[key] = {**whole[key], **more[key]}
+        for key in ("enums", "flags"):
+            whole[key] = {**whole[key]}
+            for name, body in more[key].items():
+                known = whole[key].get(name)
+                whole[key][name] = {**known, **_values(body)} if known else body
+        whole["extensions"] = {**whole.get("extensions", {}), more["name"]: meaning_hash(more)}
+    return whole
+
+
+def _values(body: dict[str, Any]) -> dict[str, int]:
+    return {key: value for key, value in body.items() if key not in NOTES}
+
+
 def stem_of(source: dict[str, Any]) -> str:
     """Return the prefix of every name of a definition: "" or "strip_"."""
     return f"{source['stem']}_" if "stem" in source else ""
 
 
 def file_of(source: dict[str, Any]) -> str:
-    return f"protocol/{source.get('stem', 'fdvv')}.toml"
+    return f"protocol/{source.get('stem', source.get('name', 'fdvv'))}.toml"
 
 
 def about(source: dict[str, Any], name: str) -> str:
@@ -101,13 +136,15 @@ def about(source: dict[str, Any], name: str) -> str:
 
 def meaning_hash(source: dict[str, Any]) -> int:
     """Return 32 bits of the SHA-256 of names, types, order, ranges and numbers; prose does not count."""
+    if "hash" in source:
+        return int(source["hash"])
     plain = {key: value for key, value in source.items() if key not in ("version", "defaults")}
 
     def strip(node: Any) -> Any:
         if isinstance(node, dict):
             return {key: strip(value) for key, value in node.items() if key not in NOTES}
-        if isinstance(node, list) and len(node) == 6 and isinstance(node[0], str):
-            return node[:5]
+        if isinstance(node, list) and len(node) > MEANING and isinstance(node[0], str):
+            return node[:MEANING]
         return [strip(item) for item in node] if isinstance(node, list) else node
 
     digest = hashlib.sha256(json.dumps(strip(plain), sort_keys=True).encode()).digest()
@@ -131,6 +168,7 @@ def _part(key: str) -> str:
 def header(source: dict[str, Any]) -> str:
     """Write the C header."""
     structs, stem = structures(source), _c_stem(source)
+    stem += f"{source['name']}_".upper() if "extends" in source else ""
     lines = [
         f"/* Made by tools/make_protocol.py from {file_of(source)}; do not edit. */",
         f"#ifndef {stem}PROTOCOL_H",
@@ -138,6 +176,7 @@ def header(source: dict[str, Any]) -> str:
         "",
         "#include <stdint.h>",
         "",
+        *(['#include "protocol.h"', ""] if "extends" in source else []),
         f"#define {stem}PROTOCOL_VERSION {source['version']}",
         f"#define {stem}PROTOCOL_HASH 0x{meaning_hash(source):08x}u",
         "",
@@ -159,11 +198,12 @@ def _c_stem(source: dict[str, Any]) -> str:
 
 
 def _c_members(source: dict[str, Any], kind: str, name: str) -> list[str]:
-    values = {k: v for k, v in source[kind][name].items() if k not in NOTES}
-    stem = f"{_c_stem(source)}{name.upper()}"
+    values, stem = _values(source[kind][name]), f"{_c_stem(source)}{name.upper()}"
     if kind == "flags":
         return [f"    {stem}_FLAG_{k.upper()} = 1 << {v}," for k, v in values.items()]
-    return [*(f"    {stem}_{k.upper()} = {v}," for k, v in values.items()), f"    {stem}S = {len(values)},"]
+    # of an enumeration that begins elsewhere the count would be wrong
+    count = [f"    {stem}S = {len(values)},"] if min(values.values()) == 0 else []
+    return [*(f"    {stem}_{k.upper()} = {v}," for k, v in values.items()), *count]
 
 
 def _c_struct(source: dict[str, Any], name: str, fields: list[Field]) -> list[str]:
@@ -177,24 +217,31 @@ def _c_struct(source: dict[str, Any], name: str, fields: list[Field]) -> list[st
         f"}} {c_name};",
         f"typedef char {c_name}_has_{total}_bytes[sizeof({c_name}) == {total} ? 1 : -1];",
     ]
-    ranged = [f for f in fields if not f.count and not _full(f)]
+    ranged = [f for f in fields if not f.is_bytes and not _full(f)]
     lines.append(f"#define {macro}_RANGES(X) \\")
-    lines += [f"    X({f.name}, {f.low}, {f.high}) \\" for f in ranged]
+    lines += [f"    X({name}, {_c(f, f.low)}, {_c(f, f.high)}) \\" for f in ranged for name in f.members]
     if name in source["defaults"]:  # a refusal names the field by its number
         members = (f"    {macro}_FIELD_{f.name}," for f in fields)
         lines += ["", "enum {", *members, f"    {macro}_FIELDS,", "};"]
     return [*lines, ""]
 
 
+def _c(field: Field, number: float) -> str:
+    return f"{float(number)!r}f" if field.kind == "f32" else str(number)
+
+
 def _full(field: Field) -> bool:
+    if field.kind == "f32":
+        return False
     bits = 8 * SIZES[field.kind]
     low, high = (0, 2**bits - 1) if field.kind[0] == "u" else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
     return field.low <= low and field.high >= high
 
 
 def _c_messages(source: dict[str, Any], structs: dict[str, list[Field]]) -> list[str]:
+    name = f"{source['name']}_".upper() if "extends" in source else ""
     lines = ["/* name, id, bytes of the request (or of what is sent unasked), bytes of the reply */"]
-    lines.append(f"#define {_c_stem(source)}MESSAGES(X) \\")
+    lines.append(f"#define {_c_stem(source)}{name}MESSAGES(X) \\")
     for name, body in source["messages"].items():
         counts = (sizes(source, structs, name, key) for key in ("fields", "reply"))
         lines.append(f"    X({name.upper()}, 0x{body['id']:02x}, {', '.join(map(str, counts))}) \\")
@@ -231,14 +278,16 @@ def tables(source: dict[str, Any]) -> str:
         "from enum import IntEnum, IntFlag",
         "from typing import ClassVar",
         "",
-        "from fdvv.protocol.record import Limits, Record",
+        f"from fdvv.protocol.record import Limits, {'Reals, ' if 'extensions' in source else ''}Record",
         "",
         f"{stem}VERSION = {source['version']}",
         '"""Of the definition."""',
         f"{stem}HASH = 0x{meaning_hash(source):08X}",
         '"""Of what the definition means; host and firmware compare it on connecting."""',
-        "",
     ]
+    for name, value in source.get("extensions", {}).items():
+        lines += [f"{name.upper()}_HASH = 0x{value:08X}", f'"""The same of protocol/{name}.toml."""']
+    lines += [""]
     for name, body in source["constants"].items():
         lines += [f"{stem}{name.upper()} = {body['value']}", f'"""{_sentence(body["about"])}"""']
     for kind in ("enums", "flags"):
@@ -260,7 +309,7 @@ def _sentence(text: str) -> str:
 
 
 def _py_enum(kind: str, name: str, body: dict[str, Any]) -> list[str]:
-    values = {k: v for k, v in body.items() if k not in NOTES}
+    values = _values(body)
     title = body.get("class", camel(name) + ("Flag" if kind == "flags" else ""))
     lines = [
         "",
@@ -287,24 +336,29 @@ def _py_messages(source: dict[str, Any], structs: dict[str, list[Field]]) -> lis
 
 
 def _py_record(source: dict[str, Any], name: str, fields: list[Field]) -> list[str]:
-    form = "<" + "".join(f"{f.count}s" if f.count else FORMATS[f.kind] for f in fields)
-    lines = [
-        "",
-        "",
-        "@dataclass(frozen=True, kw_only=True)",
-        f"class {camel(stem_of(source) + name)}(Record):",
-    ]
+    form = "<" + "".join(f"{f.count}s" if f.is_bytes else (f.count or 1) * FORMATS[f.kind] for f in fields)
+    title = source["structs"].get(name, {}).get("class", camel(stem_of(source) + name))
+    lines = ["", "", "@dataclass(frozen=True, kw_only=True)", f"class {title}(Record):"]
     lines += [f'    """{_sentence(about(source, name))}', "", "    Attributes", "    ----------"]
     lines += [f"    {f.name} : {f.text or 'zero'}" for f in fields]
     lines += ['    """', "", f'    FORMAT: ClassVar[str] = "{form}"', "    LIMITS: ClassVar[Limits] = {"]
-    lines += [f'        "{f.name}": ({f.low}, {f.high}),' for f in fields if not f.count]
-    lines += ["    }", ""]
+    lines += [f'        "{f.name}": ({f.low}, {f.high}),' for f in fields if not f.count and f.kind != "f32"]
+    lines += ["    }"]
+    reals = [f'        "{f.name}": ({f.low}, {f.high}),' for f in fields if f.kind == "f32"]
+    lines += ["    REALS: ClassVar[Reals] = {", *reals, "    }"] if reals else []
+    runs = ", ".join(f'"{f.name}": {f.count}' for f in fields if f.count and not f.is_bytes)
+    lines += [f"    RUNS: ClassVar[dict[str, int]] = {{{runs}}}"] if runs else []
+    lines += [""]
     defaults = source["defaults"].get(name, {})
     return lines + [_py_field(field, defaults) for field in fields]
 
 
 def _py_field(field: Field, defaults: dict[str, int]) -> str:
-    kind = "bytes" if field.count else "int"
+    kind = "float" if field.kind == "f32" else "int"
+    kind = "bytes" if field.is_bytes else "tuple[float, ...]" if field.count else kind
+    if field.default is not None:
+        value = tuple(field.default) if isinstance(field.default, list) else field.default
+        return f"    {field.name}: {kind} = {value}"
     if field.name in defaults:
         return f"    {field.name}: {kind} = {defaults[field.name]}"
     return f"    {field.name}: {kind}" + (" = 0" if field.name.startswith("spare") else "")
@@ -312,17 +366,18 @@ def _py_field(field: Field, defaults: dict[str, int]) -> str:
 
 def write_tables() -> Path:
     """Write the Python tables that the build makes; return their path."""
-    _write(TABLES, tables(_load(SOURCE)))
+    _write(TABLES, tables(extended(_load(SOURCE), _load(LOOP_SOURCE))))
     return TABLES
 
 
 def write_committed() -> list[Path]:
-    """Write the C headers of both definitions and the strip's Python tables; return their paths."""
+    """Write the C headers of all definitions and the strip's Python tables; return their paths."""
     strip = _load(STRIP_SOURCE)
     _write(HEADER, header(_load(SOURCE)))
+    _write(LOOP_HEADER, header(_load(LOOP_SOURCE)))
     _write(STRIP_HEADER, header(strip))
     _write(STRIP_TABLES, tables(strip))
-    return [HEADER, STRIP_HEADER, STRIP_TABLES]
+    return [HEADER, LOOP_HEADER, STRIP_HEADER, STRIP_TABLES]
 
 
 def _load(path: Path) -> dict[str, Any]:

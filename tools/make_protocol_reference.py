@@ -8,8 +8,9 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "protocol" / "fdvv.toml"
+LOOP_SOURCE = ROOT / "protocol" / "force_loop.toml"
 STRIP_SOURCE = ROOT / "protocol" / "strip.toml"
-SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4}
+SIZES = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4, "f32": 4}
 
 
 def size_of(kind: str) -> int:
@@ -21,7 +22,7 @@ def size_of(kind: str) -> int:
 def fields(rows: list[list[Any]]) -> list[str]:
     """Write a structure as a table."""
     lines, place = ["| at | field | type | unit | range | meaning |", "|---|---|---|---|---|---|"], 0
-    for name, kind, unit, low, high, about in rows:
+    for name, kind, unit, low, high, about, *_default in rows:
         span = "0" if low == high == 0 else f"{low} to {high}"
         lines.append(f"| {place} | `{name}` | {kind} | {unit} | {span} | {about} |")
         place += size_of(kind)
@@ -61,8 +62,9 @@ def numbers(name: str, body: dict[str, Any], bits: bool) -> list[str]:
 
 
 def rig_tables() -> str:
-    """Return the tables of the rig's protocol."""
-    return tables(SOURCE)
+    """Return the tables of the rig's protocol, and of what the force loop adds to it."""
+    loop = f"\n{tables(LOOP_SOURCE)}".replace("\n### ", "\n#### ").replace("\n## ", "\n### ")
+    return f"{tables(SOURCE)}\n## The force loop\n{loop}"
 
 
 def strip_tables() -> str:
@@ -83,6 +85,8 @@ def tables(place: Path) -> str:
     for kind in ("enums", "flags"):
         for name, body in source[kind].items():
             lines += numbers(name, body, kind == "flags")
+    if not source["constants"]:
+        return "\n".join(lines) + "\n"
     lines += ["## Limits", "", "| name | value | meaning |", "|---|---|---|"]
     lines += [f"| {name} | {body['value']} | {body['about']} |" for name, body in source["constants"].items()]
     return "\n".join(lines) + "\n"

@@ -51,7 +51,7 @@ void fdvv_core_announce(fdvv_core *core, uint16_t velocity_mm_s16);
 /* Close the force loop with these gains from the next tick on; 0: render by tables. Only while idle. */
 void fdvv_core_close_loop(fdvv_core *core, const fdvv_force_loop_gains *gains);
 
-/* Why the loop was opened by itself: FDVV_LOOP_… */
+/* Why the loop was opened by itself: FDVV_LOOP_FAULT_… */
 uint8_t fdvv_core_loop_fault(const fdvv_core *core);
 #endif
 

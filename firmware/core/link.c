@@ -1,5 +1,12 @@
 #include "link_state.h"
 
+#ifdef FDVV_FORCE_LOOP
+#include "link_loop.h"
+#else
+#define forget_loop(link) ((void)0)
+#define fit_cell(link) ((void)0)
+#endif
+
 static uint8_t equal(const uint8_t *a, const uint8_t *b, uint16_t count)
 {
     uint16_t i;
@@ -21,6 +28,7 @@ static void reset_connection(fdvv_link *link)
     link->every = 0;
     link->batch.count = 0;
     link->key_waits = link->fault_waits = 0;
+    forget_loop(link);
 }
 
 void fdvv_link_init(fdvv_link *link, fdvv_core *core, const fdvv_board *board)
@@ -34,6 +42,7 @@ void fdvv_link_init(fdvv_link *link, fdvv_core *core, const fdvv_board *board)
     link->active = 0;
     fdvv_link_forget_programs(link);
     reset_connection(link);
+    fit_cell(link);
 }
 
 void fdvv_link_reset(fdvv_link *link)

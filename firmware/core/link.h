@@ -17,6 +17,9 @@ typedef struct {
     void (*play)(uint8_t slot);
     uint32_t (*now_us)(void);
     fdvv_read_counters_reply *counters;  /* the board updates ticks, late and worst_tick_us, the link the others */
+#ifdef FDVV_FORCE_LOOP
+    const fdvv_load_cell *cell;          /* fitted until the host writes another; 0: none */
+#endif
 } fdvv_board;
 
 typedef struct fdvv_link fdvv_link; /* defined in link_state.h */

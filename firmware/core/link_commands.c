@@ -1,6 +1,13 @@
 /* The handlers of the requests. Payloads are aligned and have the correct length. */
 #include "link_state.h"
 
+#ifdef FDVV_FORCE_LOOP
+#include "link_loop.h"
+#else
+#define forget_loop(link) ((void)0)
+#define LOOP_COMMANDS
+#endif
+
 #define FIRMWARE_VERSION 0x000200u /* 0.2.0 */
 
 static uint8_t hello(fdvv_link *link, const void *request)
@@ -9,6 +16,7 @@ static uint8_t hello(fdvv_link *link, const void *request)
     fdvv_hello_reply *reply = (fdvv_hello_reply *)link->reply;
     uint8_t i, same = hello->version == FDVV_PROTOCOL_VERSION && hello->hash == FDVV_PROTOCOL_HASH;
     link->host = same ? FDVV_HOST_KNOWN : FDVV_HOST_OTHER_HASH;
+    forget_loop(link);
     reply->hash = FDVV_PROTOCOL_HASH;
     reply->firmware = FIRMWARE_VERSION;
     reply->serial = link->board->serial;
@@ -198,6 +206,7 @@ static const fdvv_command commands[] = {
     {FDVV_MSG_READ_COUNTERS, 0, sizeof(fdvv_read_counters_reply), read_counters},
     {FDVV_MSG_ANNOUNCE, sizeof(fdvv_announce_request), 0, announce},
     {FDVV_MSG_VIBRATE, sizeof(fdvv_vibrate_request), 0, vibrate},
+    LOOP_COMMANDS
 };
 
 const fdvv_command *fdvv_link_command(uint8_t id)

@@ -71,6 +71,11 @@ struct fdvv_link {
     fdvv_records_request batch;  /* followed by the records */
     fdvv_tick_record records[FDVV_BATCH_RECORDS];
 
+#ifdef FDVV_FORCE_LOOP
+    fdvv_load_cell cell;         /* all 0: none */
+    uint8_t knows_loop;          /* the host has the same definition of the loop */
+#endif
+
     uint32_t banks[2][FDVV_IMAGE_BYTES / 4];
 };
 typedef char fdvv_link_stays_small[sizeof(struct fdvv_link) <= 2 * FDVV_IMAGE_BYTES + 1536 ? 1 : -1];

@@ -37,9 +37,23 @@ void fdvv_core_close_loop(fdvv_core *core, const fdvv_force_loop_gains *gains)
 
 uint8_t fdvv_core_loop_fault(const fdvv_core *core) { return fdvv_force_loop_fault(&core->loop); }
 
+/* A fault opens the loop for good, the loss of the host among them. While nothing is rendered the cap lies where its
+ * weight holds it, which the estimator does not know. */
+static uint8_t may_estimate(fdvv_core *core)
+{
+    uint8_t mode = core->supervisor.mode;
+    if (mode == FDVV_MODE_FAULT)
+        fdvv_force_loop_open(&core->loop);
+    if (!core->loop.enabled)
+        return 0;
+    if (mode != FDVV_MODE_ARMED && mode != FDVV_MODE_DERATED)
+        fdvv_force_loop_rest(&core->loop);
+    return mode == FDVV_MODE_ARMED || mode == FDVV_MODE_DERATED;
+}
+
 static void estimate(fdvv_core *core, uint16_t force_counts, int16_t force_cN64)
 {
-    if (!core->loop.enabled)
+    if (!may_estimate(core))
         return;
     fdvv_force_loop_watch(&core->loop, force_counts, core->settings.force_offset_counts);
     fdvv_force_loop_estimate(&core->loop, metres(core->position.um16), newtons(force_cN64), travel_m(core));
@@ -79,14 +93,14 @@ static int32_t open_cN64(const fdvv_core *core, int16_t force_cN64)
 
 static void advance(fdvv_core *core)
 {
-    if (core->loop.enabled)
+    if (core->loop.enabled && core->loop.started)
         fdvv_force_loop_predict(&core->loop, newtons(core->command_cN64));
 }
 
 /* The estimates have no lag, and their force is the finger's, without the inertia of the plate. */
 static void fill_estimates(const fdvv_core *core, fdvv_tick_record *record)
 {
-    if (!is_closed(core))
+    if (!is_closed(core) || !core->loop.started)
         return;
     record->displacement_um16 = um16(core->loop.x_m);
     record->force_cN64 = short_cN64(core->loop.force_N);

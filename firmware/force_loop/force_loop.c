@@ -95,14 +95,53 @@ void fdvv_force_loop_watch(fdvv_force_loop *loop, uint16_t counts, uint16_t midd
     loop->unexplained_ticks = (uint16_t)(is_unexplained(loop) ? loop->unexplained_ticks + 1 : 0);
     loop->counts = counts;
     if (counts < 2 || (uint32_t)counts + 2 > 2u * middle)
-        loop->fault = FDVV_LOOP_CELL_SATURATED;
+        loop->fault = FDVV_LOOP_FAULT_CELL_SATURATED;
     else if (loop->same_ticks > DEAD_ticks)
-        loop->fault = FDVV_LOOP_CELL_DEAD;
+        loop->fault = FDVV_LOOP_FAULT_CELL_DEAD;
     else if ((float)loop->unexplained_ticks * loop->gains.tick_s > UNEXPLAINED_s)
-        loop->fault = FDVV_LOOP_CELL_WRONG;
+        loop->fault = FDVV_LOOP_FAULT_CELL_WRONG;
 }
 
 uint8_t fdvv_force_loop_fault(const fdvv_force_loop *loop) { return loop->fault; }
+
+void fdvv_force_loop_rest(fdvv_force_loop *loop)
+{
+    fdvv_force_loop_gains gains = loop->gains;
+    uint8_t enabled = loop->enabled, fault = loop->fault;
+    float scale = loop->scale;
+    if (!loop->started)
+        return;
+    fdvv_force_loop_init(loop, &gains);
+    loop->enabled = enabled;
+    loop->fault = fault;
+    loop->scale = scale;
+}
+
+void fdvv_force_loop_open(fdvv_force_loop *loop)
+{
+    loop->enabled = 0;
+}
+
+/* A comparison with what is not a number is false. */
+#define CHECK(field, low, high)                                                                             \
+    place++;                                                                                                \
+    if (!(record->field >= (low) && record->field <= (high)))                                               \
+        return place;
+
+uint8_t fdvv_force_loop_check(const fdvv_force_loop_gains *record)
+{
+    uint8_t place = 0;
+    FDVV_FORCE_LOOP_GAINS_RANGES(CHECK)
+    return 0;
+}
+
+uint8_t fdvv_load_cell_check(const fdvv_load_cell *record)
+{
+    uint8_t place = 0;
+    FDVV_LOAD_CELL_RANGES(CHECK)
+    return 0;
+}
+#undef CHECK
 
 void fdvv_force_loop_estimate(fdvv_force_loop *loop, float position_m, float cell_N, float travel_m)
 {

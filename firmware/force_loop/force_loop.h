@@ -4,39 +4,8 @@
 #ifndef FDVV_FORCE_LOOP_H
 #define FDVV_FORCE_LOOP_H
 
-#include <stdint.h>
-
-/* Constants of one rig and one set of gains. A rate is the part of its input that a first-order lag takes over in a
- * tick, 1 - exp(-tick / tau). */
-typedef struct {
-    float tick_s;
-    float compute_ratio;      /* from the readings to the new drive, in ticks */
-    float mass_kg;            /* of what moves, without the plate of the cell */
-    float plate_kg;           /* between finger and cell */
-    float drag_N_s_m;         /* of the bushing */
-    float brake_N_s_m;        /* of a coil driven by a voltage */
-    float friction_N;
-    float friction_m_s;       /* speed above which it is whole */
-    float weight_N;
-    float gain;               /* force per commanded force, a parabola over the displacement */
-    float gain_1_m;
-    float gain_1_m2;
-    float coil_rate;          /* lag of the coil's force */
-    float cell_rate;          /* of the cell's filter */
-    float position_rate;      /* of the position, less that of the cell */
-    float free_gains[4];      /* of the estimator: position, velocity, unknown force, lagging position */
-    float stop_gains[4];      /* the same at a stop */
-    float lead_s;             /* from the state to the coil's force */
-    float velocity_lead_s;
-    float proportional;       /* force per error of force */
-    float derivative_s;
-    float lowpass_rate;       /* twice in series behind both */
-    float integral_1_s;
-    float leak;               /* of the integral, per tick */
-    float damping_N_s_m;      /* against the cap's fast motion */
-    float highpass_rate;
-    float contact_rate;       /* of the contact's weight */
-} fdvv_force_loop_gains;
+/* fdvv_force_loop_gains, the constants of one rig, and why the loop was opened; made from protocol/force_loop.toml */
+#include "loop_protocol.h"
 
 typedef struct {
     fdvv_force_loop_gains gains;
@@ -54,14 +23,6 @@ typedef struct {
     uint8_t enabled, started, at_stop, fault;
 } fdvv_force_loop;
 
-/* why the loop was opened, until the next fdvv_force_loop_init */
-enum {
-    FDVV_LOOP_SOUND,
-    FDVV_LOOP_CELL_SATURATED,
-    FDVV_LOOP_CELL_DEAD,      /* it does not change */
-    FDVV_LOOP_CELL_WRONG      /* the cap does not move as its force says: reversed, unplugged, drifted */
-};
-
 void fdvv_force_loop_init(fdvv_force_loop *loop, const fdvv_force_loop_gains *gains);
 
 /* Estimate the state from the readings of a tick: position of the cap and force of the cell. */
@@ -70,8 +31,18 @@ void fdvv_force_loop_estimate(fdvv_force_loop *loop, float position_m, float cel
 /* Watch the cell, before the estimate of a tick: counts from 0 to 2 * middle. Sets fault. */
 void fdvv_force_loop_watch(fdvv_force_loop *loop, uint16_t counts, uint16_t middle);
 
-/* Why the loop was opened, FDVV_LOOP_SOUND if it was not. */
+/* Why the loop was opened, FDVV_LOOP_FAULT_SOUND if it was not. */
 uint8_t fdvv_force_loop_fault(const fdvv_force_loop *loop);
+
+/* Nothing is rendered: forget the estimates, keep gains and fault. */
+void fdvv_force_loop_rest(fdvv_force_loop *loop);
+
+/* Open the loop until the next fdvv_force_loop_init; the fault stays. */
+void fdvv_force_loop_open(fdvv_force_loop *loop);
+
+/* Return 0 if the constants are valid, else 1 + the number of the first that is not a number or out of its range. */
+uint8_t fdvv_force_loop_check(const fdvv_force_loop_gains *gains);
+uint8_t fdvv_load_cell_check(const fdvv_load_cell *cell);
 
 /* Command for a target without the cell, after a fault: what the rig adds at rest is compensated. */
 float fdvv_force_loop_open_N(const fdvv_force_loop *loop, float target_N, float x_m);

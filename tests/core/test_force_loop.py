@@ -14,7 +14,7 @@ from fdvv._native import library
 from fdvv.compensation.force_loop.constants import ForceLoopGains
 from fdvv.compensation.force_loop.gains import estimator_gains, rate
 
-HEADER = Path(__file__).parents[2] / "firmware" / "force_loop" / "force_loop.h"
+HEADER = Path(__file__).parents[2] / "firmware" / "force_loop" / "loop_protocol.h"
 TRAVEL_m, MIDDLE = 4e-3, 2048
 TICK_s = 1e-4
 SOUND, SATURATED, DEAD, WRONG = range(4)
@@ -57,8 +57,7 @@ class Loop:
         self._lib, self._memory = library(), ctypes.create_string_buffer(1024)
         for name in ("ahead_m", "command_N", "open_N"):
             getattr(self._lib, f"fdvv_force_loop_{name}").restype = ctypes.c_float
-        packed = gains.pack()
-        self._lib.fdvv_force_loop_init(self._memory, packed.ctypes.data_as(ctypes.c_void_p))
+        self._lib.fdvv_force_loop_init(self._memory, gains.pack())
 
     def tick(self, position_m: float, cell_N: float, target_N: float) -> tuple[float, float]:
         """Return displacement ahead and command of a tick with the same target ahead and now."""
@@ -141,10 +140,11 @@ class Oracle:
 
 def test_the_gains_are_the_header_s_in_name_and_order() -> None:
     text = re.sub(r"/\*.*?\*/", "", HEADER.read_text(encoding="utf-8"), flags=re.DOTALL)
-    body = text[text.index("typedef struct {") : text.index("} fdvv_force_loop_gains;")]
+    end = text.index("} fdvv_force_loop_gains;")
+    body = text[text.rindex("typedef struct {", 0, end) : end]
     declared = re.findall(r"float (\w+)(?:\[(\d)\])?;", body)
     assert [name for name, _ in declared] == [f.name for f in fields(ForceLoopGains)]
-    assert sum(int(count or 1) for _, count in declared) == GAINS.pack().size
+    assert sum(int(count or 1) for _, count in declared) == len(GAINS.pack()) // 4
 
 
 def test_the_loop_follows_its_equations_between_the_stops() -> None:

@@ -10,8 +10,8 @@ import numpy.typing as npt
 import pytest
 from benchmarks.force_loop_cost import CountingCore, cycles_of, dear_costs, press_costs
 
-from fdvv.firmware.core import Core, LoopFault, RecordArray
-from fdvv.protocol.tables import Refusal
+from fdvv.firmware.core import Core, RecordArray
+from fdvv.protocol.tables import LoopFault, Refusal
 from tests.support.force_loop_press import (
     CELLS,
     SETTINGS,

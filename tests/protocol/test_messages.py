@@ -26,7 +26,14 @@ def body_of(kind: type[Record] | None, fields: dict[str, Any] | None) -> Record 
         assert fields is None
         return None
     assert fields is not None
-    return kind(**{k: bytes.fromhex(v) if isinstance(v, str) else v for k, v in fields.items()})
+    return kind(**{k: value_of(v) for k, v in fields.items()})
+
+
+def value_of(value: Any) -> Any:
+    """Turn hexadecimal digits into bytes and a list into the tuple that a record has."""
+    if isinstance(value, str):
+        return bytes.fromhex(value)
+    return tuple(value) if isinstance(value, list) else value
 
 
 def frame_of(example: dict[str, Any]) -> Frame:

@@ -9,7 +9,9 @@ import pytest
 
 from fdvv.compensation.force_loop.method import ForceLoop
 from fdvv.compensation.rig_aware import RigAware
-from fdvv.device.twin import TwinDevice
+from fdvv.device.boards import LibraryBoard
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.twin import SimulatedPerson, TwinDevice
 from fdvv.errors import DeviceError
 from fdvv.model.file import load_builtin
 from fdvv.model.press import Press
@@ -56,6 +58,22 @@ def test_the_loop_beats_the_tables_on_the_same_rig(learned: CompensationResult) 
     opened = TwinDevice(RIG, seed=91)
     tables = probe(opened, CLEAR, learned.surface, SPEEDS, 4)
     assert max(means(judged(learned))) < 0.5 * min(means(tables))
+
+
+def test_the_firmware_over_the_wire_learns_what_the_twin_learns(learned: CompensationResult) -> None:
+    def linked(seed: int) -> LinkedDevice:
+        return LinkedDevice(LibraryBoard(), SimulatedPerson(RIG, seed=seed))
+
+    found = compensate(linked(1), CLEAR, SPEEDS, RigAware())
+    gains, wanted = found.outcome.tuning.loop, learned.outcome.tuning.loop
+    assert gains is not None
+    assert wanted is not None
+    assert gains.mass_kg == pytest.approx(wanted.mass_kg, rel=0.03)
+    assert gains.weight_N == pytest.approx(wanted.weight_N, rel=0.03)
+    # the search for the gains is not smooth: two draws of one rig differ by a tenth
+    assert gains.proportional == pytest.approx(wanted.proportional, rel=0.2)
+    result = probe(linked(91), CLEAR, found.surface, SPEEDS, 4, tuning=found.outcome.tuning)
+    assert max(means(result)) < 2.0
 
 
 def test_a_known_rig_needs_no_press(learned: CompensationResult) -> None:

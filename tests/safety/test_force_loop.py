@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.firmware.core import Core, LoopFault
-from fdvv.protocol.tables import Mode
+from fdvv.firmware.core import Core
+from fdvv.protocol.tables import LoopFault, Mode
 from tests.support.force_loop_press import SETTINGS, clear_image, loop_constants, press
 
 FAULTS = {

@@ -73,7 +73,7 @@ def loop_constants() -> npt.NDArray[np.float32]:
     """Return the constants of the loop on this rig."""
     cell = TwinDevice(RIG).load_cell
     assert isinstance(cell, CellSpec)
-    return force_loop_gains(KNOWN, cell, 1e-4, CONTROLLER).pack()
+    return np.frombuffer(force_loop_gains(KNOWN, cell, 1e-4, CONTROLLER).pack(), np.float32)
 
 
 def press(

@@ -55,6 +55,9 @@ static void describe(fdvv_board *board, fdvv_read_counters_reply *counters)
     static const char name[] = "host";
     uint8_t i;
     board->flags = FDVV_BOARD_FLAG_SIMULATED | FDVV_BOARD_FLAG_VIBRATION | FDVV_BOARD_FLAG_SERVO;
+#ifdef FDVV_FORCE_LOOP
+    board->flags |= FDVV_BOARD_FLAG_FORCE_LOOP;
+#endif
     board->travel_limit_um16_256 = (TRAVEL_LIMIT_UM16 + 255) / 256;
     for (i = 0; i < sizeof name; i++)
         board->name[i] = name[i];

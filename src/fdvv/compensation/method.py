@@ -62,7 +62,7 @@ class Tuning:
     def numbers(self) -> FloatArray:
         """Return all numbers in order, (7,), and those of the loop behind them."""
         own = [float(getattr(self, f.name)) for f in fields(self) if f.name != "loop"]
-        return np.hstack([own, [] if self.loop is None else self.loop.pack()])
+        return np.hstack([own, [] if self.loop is None else np.frombuffer(self.loop.pack(), "<f4")])
 
 
 UNTUNED = Tuning()

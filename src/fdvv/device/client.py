@@ -13,14 +13,17 @@ from fdvv.protocol.messages import data_request, head_of
 from fdvv.protocol.record import Record
 from fdvv.protocol.tables import (
     DATA_BYTES,
+    FORCE_LOOP_HASH,
     HASH,
     VERSION,
     AnnounceRequest,
     BeginRequest,
+    CellSpec,
     ClearFaultRequest,
     EventRequest,
     Fault,
     FaultedRequest,
+    ForceLoopGains,
     HelloReply,
     HelloRequest,
     KeyRequest,
@@ -29,6 +32,8 @@ from fdvv.protocol.tables import (
     PingRequest,
     ReadCountersReply,
     ReadFaultReply,
+    ReadForceLoopReply,
+    ReadForceLoopRequest,
     RecordsRequest,
     SelftestReply,
     Settings,
@@ -47,7 +52,7 @@ class Client:
 
     Attributes
     ----------
-    hello : name, version and limits of the device.
+    hello : name, version and limits of the device. connections : how often it was greeted.
     telemetry : records received so far.
     on_key, on_fault : called with notices as they come; may be set later.
     """
@@ -64,6 +69,7 @@ class Client:
         self.on_key, self.on_fault = on_key, on_fault
         self._exchanges: deque[Exchange] = deque(maxlen=EXCHANGES)
         self._heard_s = port.now_s()
+        self.connections = 0
         self.hello = self.connect()
 
     def connect(self) -> HelloReply:
@@ -76,6 +82,7 @@ class Client:
                 "update the firmware or fdvv, so that both are of one version"
             )
         self.hello = hello
+        self.connections += 1
         return hello
 
     def reconnect(self) -> HelloReply:
@@ -150,6 +157,22 @@ class Client:
 
     def vibrate(self, slot: int) -> None:
         self._command(Message.VIBRATE, VibrateRequest(slot=slot))
+
+    def read_force_loop(self) -> ReadForceLoopReply:
+        """Return load cell and state of the force loop; RefusedError by a board with another one, or none."""
+        request = ReadForceLoopRequest(hash=FORCE_LOOP_HASH)
+        return self._request(Message.READ_FORCE_LOOP, ReadForceLoopReply, request)
+
+    def write_load_cell(self, cell: CellSpec) -> None:
+        """Say which load cell is fitted; opens the loop, and the device forgets its programs."""
+        self._command(Message.WRITE_LOAD_CELL, cell)
+
+    def close_force_loop(self, gains: ForceLoopGains) -> None:
+        """Close the loop while idle; the device forgets its programs."""
+        self._command(Message.CLOSE_FORCE_LOOP, gains)
+
+    def open_force_loop(self) -> None:
+        self._command(Message.OPEN_FORCE_LOOP)
 
     def read_fault(self) -> ReadFaultReply:
         return self._request(Message.READ_FAULT, ReadFaultReply)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import Protocol
 
@@ -9,12 +10,12 @@ import numpy as np
 
 from fdvv.device.client import Client
 from fdvv.device.contract import DeviceInfo
-from fdvv.device.plant import Inputs, Outputs, Person, Plant, Truth
+from fdvv.device.plant import CellPerson, Inputs, Outputs, Person, Plant, Truth
 from fdvv.device.remote import Remote
 from fdvv.device.telemetry import IntArray, TickColumns
 from fdvv.errors import DeviceError
 from fdvv.model.press import Press
-from fdvv.protocol.tables import Settings, TickFlag
+from fdvv.protocol.tables import CellSpec, Fault, Settings, TickFlag
 
 
 class Board(Protocol):
@@ -128,9 +129,19 @@ class LinkedDevice(Remote):
             # to configure a board makes it forget its program
             if self.settings() != person.settings:
                 self.configure(person.settings)
+                self._clear_first_fault()
+            if self.has_loop and _cell_of(person) is not None:
+                self.fit_cell(_cell_of(person))
         except BaseException:
             self.port.close()
             raise
+
+    def _clear_first_fault(self) -> None:
+        """Clear what only the settings that a board starts with found wrong, such as the rig's supply."""
+        self.port.step()
+        if self.fault().fault is not Fault.NONE:
+            with suppress(DeviceError):  # it is wrong with the rig's settings too
+                self.clear_fault()
 
     def info(self) -> DeviceInfo:
         """Return who this is; an emulated board does not know that nothing about it is real."""
@@ -172,6 +183,8 @@ class LinkedDevice(Remote):
                 self.client.arm()
             # the cap comes up before anyone presses
             self.client.listen(self.port.now_s() + self._person.settle_s)
+            if isinstance(self._person, CellPerson):
+                self._person.loop = self.loop
             plant = self._person.press(self.image, velocity_mm_s, self._settings)
             self.port.connect(plant)
             self.client.listen(self.port.now_s() + plant.ticks * self._settings.tick_us * 1e-6)
@@ -181,6 +194,7 @@ class LinkedDevice(Remote):
                 self.stop()
             self.port.connect(self._person.rest(self._settings))
         self._fail_on_fault()
+        self._fail_on_open_loop()
         return self._joined(truth, ticks, velocity_mm_s)
 
     def _joined(self, truth: Truth, ticks: IntArray, velocity_mm_s: float) -> Press:
@@ -193,6 +207,10 @@ class LinkedDevice(Remote):
         if not inside.any():
             raise DeviceError(f"{self.client.port.name}: no telemetry arrived during the press")
         return join(truth, rows[places[inside]], telemetry.part(inside), velocity_mm_s)
+
+
+def _cell_of(person: Person) -> CellSpec | None:
+    return person.load_cell if isinstance(person, CellPerson) else None
 
 
 def join(truth: Truth, rows: IntArray, telemetry: TickColumns, velocity_mm_s: float) -> Press:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import struct
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from fdvv.model.press import Press
-from fdvv.protocol.tables import NONE, Settings
+from fdvv.protocol.tables import NONE, CellSpec, ForceLoopGains, Settings
 from fdvv.twin.trace import Trace
 
 _INPUTS = struct.Struct("<IIHHHHHBx")
@@ -88,3 +88,19 @@ class Person(Protocol):
 
     def rest(self, settings: Settings) -> Plant:
         """Leave the button alone."""
+
+
+@runtime_checkable
+class CellPerson(Person, Protocol):
+    """A person at a rig that may have a load cell.
+
+    Attributes
+    ----------
+    loop : the gains with which the board's force loop is closed: who presses has got used to it.
+    """
+
+    loop: ForceLoopGains | None
+
+    @property
+    def load_cell(self) -> CellSpec | None:
+        """The cell, from its data sheet; None if this rig has none."""

@@ -16,7 +16,17 @@ from fdvv.errors import DeviceError, ModelError
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm, travel_mm_of
-from fdvv.protocol.tables import BoardFlag, Fault, Mode, Refusal, Settings, TickFlag
+from fdvv.protocol.tables import (
+    BoardFlag,
+    CellSpec,
+    Fault,
+    ForceLoopGains,
+    LoopFault,
+    Mode,
+    Refusal,
+    Settings,
+    TickFlag,
+)
 from fdvv.twin.image import image_of
 
 BATCH_s = 0.05
@@ -38,7 +48,7 @@ def surface_image(surface: ForceSurface, travel_mm: float, paced: bool = False) 
 
 
 class Remote:
-    """What every device behind the link has in common: limits, uploads, faults.
+    """What every device behind the link has in common: limits, uploads, faults, the force loop.
 
     Attributes
     ----------
@@ -52,6 +62,9 @@ class Remote:
         self.travel_mm: float | None = None
         self.image = b""
         self._closed = False
+        self._load_cell: CellSpec | None = None
+        self._loop: tuple[ForceLoopGains, int] | None = None
+        self._read_cell()
 
     def info(self) -> DeviceInfo:
         hello, settings = self.client.hello, self._settings
@@ -72,7 +85,70 @@ class Remote:
         Raises DeviceError with the device's reason, one of which is that it is rendering.
         """
         self.client.write_settings(settings)
-        self._settings, self.travel_mm = settings, None
+        self._settings, self.travel_mm, self._loop = settings, None, None
+        self._read_cell()
+
+    @property
+    def has_loop(self) -> bool:
+        """Whether the firmware can close a force loop."""
+        return bool(self.client.hello.board_flags & BoardFlag.FORCE_LOOP)
+
+    @property
+    def load_cell(self) -> CellSpec | None:
+        return self._load_cell
+
+    @property
+    def loop(self) -> ForceLoopGains | None:
+        """The gains that were sent in this connection; a new one, a fault or other settings open the loop."""
+        if self._loop is None or self._loop[1] != self.client.connections:
+            return None
+        return self._loop[0]
+
+    def fit_cell(self, cell: CellSpec | None) -> None:
+        """Say which load cell is fitted; opens the loop. DeviceError on a board without a force loop."""
+        self._loop = self.travel_mm = None
+        none = CellSpec(plate_kg=0.0, stiffness_N_m=0.0, damping_N_s_m=0.0, filter_s=0.0)
+        self.client.write_load_cell(cell or none)
+        self._read_cell()
+
+    def close_loop(self, gains: ForceLoopGains | None) -> None:
+        """Close the loop, or open it; upload again afterwards. DeviceError without a cell, or with the
+        device's reason, one of which is that it is rendering.
+        """
+        if gains is not None and self.load_cell is None:
+            lacks = "this rig has no load cell" if self.has_loop else "this board has no force loop"
+            raise DeviceError(f"{self.client.port.name}: {lacks}; it renders by tables only")
+        if gains is not None:
+            self._greet_loop()
+            self.client.close_force_loop(gains)
+        elif self.has_loop:
+            self._greet_loop()
+            self.client.open_force_loop()
+        self.travel_mm = None
+        self._loop = None if gains is None else (gains, self.client.connections)
+
+    def _read_cell(self) -> None:
+        if not self.has_loop:
+            return
+        found = self.client.read_force_loop()
+        cell = CellSpec(**{name: getattr(found, name) for name in CellSpec.REALS})
+        self._load_cell = cell if cell.stiffness_N_m > 0 else None
+
+    def _greet_loop(self) -> None:
+        """Compare definitions again: after a new connection the board knows nothing of the last one."""
+        self.client.read_force_loop()
+
+    def _fail_on_open_loop(self) -> None:
+        """Raise DeviceError if the loop was opened by itself in a press."""
+        if self.loop is None:
+            return
+        fault = LoopFault(self.client.read_force_loop().fault)
+        if fault is not LoopFault.SOUND:
+            self._loop = None
+            raise DeviceError(
+                f"{self.client.port.name}: the force loop opened, {fault.name.lower()}; "
+                "check the load cell and its cable, then close the loop again"
+            )
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         check_table(self.info(), surface, travel_mm)
@@ -98,6 +174,7 @@ class Remote:
         return FaultReport(*found, reply.time_us * 1e-6, *at, reply.count)
 
     def clear_fault(self) -> None:
+        self._loop = None  # a fault opens it
         self.client.clear_fault(self.fault().fault)
 
     def close(self) -> None:
@@ -128,6 +205,7 @@ class Remote:
         """Raise DeviceError if the device fell to zero force."""
         report = self.fault()
         if report.fault is not Fault.NONE:
+            self._loop = None
             raise DeviceError(f"{self.client.port.name}: fell to zero force, {report}; clear the fault")
 
 
@@ -174,6 +252,7 @@ class PressedDevice(Remote):
             found = self._wait(travel_mm)
         finally:
             self.stop()
+        self._fail_on_open_loop()
         return self._record(found, velocity_mm_s)
 
     def _wait(self, travel_mm: float) -> TickColumns:

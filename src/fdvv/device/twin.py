@@ -23,7 +23,7 @@ from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.plant import RigPlant
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_kernel import LoopConstants
-from fdvv.twin.settings import settings_of
+from fdvv.twin.settings import cell_of, settings_of
 from fdvv.twin.simulate import simulate_program
 from fdvv.twin.trace import Trace
 from fdvv.units import m_from_mm, mm_from_m
@@ -86,12 +86,7 @@ class TwinDevice:
 
     @property
     def load_cell(self) -> CellSpec | None:
-        cell = self._rig.load_cell
-        if not self._rig.has_cell:
-            return None
-        return CellSpec(
-            cell.plate_kg, cell.stiffness_N_m, cell.damping_N_s_m, 1 / (2 * math.pi * cell.bandwidth_Hz)
-        )
+        return cell_of(self._rig)
 
     def close_loop(self, gains: ForceLoopGains | None) -> None:
         if gains is not None and not self._rig.has_cell:
@@ -163,12 +158,18 @@ class SimulatedPerson:
     """Presses the twin's rig as the person of `TwinDevice` does, but on any board; all simulated."""
 
     def __init__(self, rig: Rig | None = None, finger: Finger | None = None, seed: int = 0) -> None:
-        self._plant = RigPlant(rig, finger, seed)
+        rig, finger = rig or Rig(), finger or Finger()
+        self._plant = RigPlant(rig, bare(finger) if rig.has_cell else finger, seed)
+        self.loop: ForceLoopGains | None = None
         self._random = np.random.default_rng(seed)
-        self._paces: dict[tuple[bytes, float, Settings], float] = {}
+        self._paces: dict[tuple[bytes, float, Settings, ForceLoopGains | None], float] = {}
         self._ticks = 0
         self.settle_s = SETTLE_s
         self.settings: Settings = settings_of(self._plant.rig)
+
+    @property
+    def load_cell(self) -> CellSpec | None:
+        return cell_of(self._plant.rig)
 
     @property
     def ticks(self) -> int:
@@ -188,10 +189,15 @@ class SimulatedPerson:
         return self
 
     def _pace_s(self, image: bytes, velocity_mm_s: float, settings: Settings) -> float:
-        key = image, velocity_mm_s, settings
+        key = image, velocity_mm_s, settings, self.loop
         if key not in self._paces:
             self._paces[key] = solve_program_pace(
-                self._plant.rig, self._plant.finger, image, velocity_mm_s, settings=settings
+                self._plant.rig,
+                self._plant.finger,
+                image,
+                velocity_mm_s,
+                settings=settings,
+                loop=None if self.loop is None else self.loop.pack(),
             )
         return self._paces[key]
 

@@ -35,6 +35,7 @@ REASONS = {
     Refusal.NO_IMAGE: "it has no program; upload one first",
     Refusal.FAULT_LATCHED: "a fault is latched; read and clear it first",
     Refusal.BUSY: "it is still at an earlier request",
+    Refusal.NO_LOAD_CELL: "it has no load cell",
     Refusal.HASH_MISMATCH: "its firmware speaks another version of the protocol; update one of the two",
 }
 WRAP_us = 2**32

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from fdvv._native import address, library, words
 from fdvv.errors import BuildError, DeviceError, ModelError
-from fdvv.protocol.tables import IMAGE_BYTES, Evidence, Fault, Mode, Refusal, Settings
+from fdvv.protocol.tables import IMAGE_BYTES, Evidence, Fault, LoopFault, Mode, Refusal, Settings
 
 RecordArray = np.ndarray[Any, np.dtype[np.void]]
 """Records of one kind, one for each tick (n,)."""
@@ -57,15 +57,6 @@ class CoreRequest(IntEnum):
     ARM = 3
     DISARM = 4
     CLEAR = 5
-
-
-class LoopFault(IntEnum):
-    """Why the force loop was opened (firmware/force_loop/force_loop.h)."""
-
-    SOUND = 0
-    CELL_SATURATED = 1
-    CELL_DEAD = 2
-    CELL_WRONG = 3
 
 
 @cache
@@ -120,10 +111,10 @@ class Core:
         self._lib.fdvv_core_activate(self._core, None if fresh is None else address(fresh))
         self._image = fresh  # the core goes on reading it
 
-    def close_loop(self, constants: npt.NDArray[np.float32] | None) -> None:
-        """Close the force loop with ForceLoopGains.pack(); None opens it, and so does set()."""
-        held = None if constants is None else address(np.ascontiguousarray(constants, np.float32))
-        self._lib.fdvv_core_close_loop(self._core, held)
+    def close_loop(self, constants: bytes | npt.NDArray[np.float32] | None) -> None:
+        """Close the force loop with ForceLoopGains.pack(), unchecked; None opens it, and so does set()."""
+        held = None if constants is None else np.frombuffer(constants, np.float32).copy()
+        self._lib.fdvv_core_close_loop(self._core, None if held is None else address(held))
 
     @property
     def loop_fault(self) -> LoopFault:

@@ -23,7 +23,7 @@ from fdvv.twin.noise import Noise, lsb_of
 from fdvv.twin.rig import ForceSensor, Rig
 from fdvv.units import FloatArray
 
-LoopConstants = npt.NDArray[np.float32]
+LoopConstants = bytes | npt.NDArray[np.float32]
 """fdvv_force_loop_gains, flat: ForceLoopGains.pack()."""
 
 RIG_COLUMNS, TICK_COLUMNS = 10, 3
@@ -133,12 +133,13 @@ def run(
     rows = Rows(physics, sensed, np.zeros(n, OUTPUTS))
     arrays = noise.arrays()
     settings_words, image_words = words(settings.pack()), words(image)
+    held_loop = None if loop is None else np.frombuffer(loop, np.float32).copy()
     failed = rig_library().fdvv_twin_press(
         ctypes.byref(plant),
         ctypes.byref(grid.counts()),
         ctypes.byref(fill("fdvv_twin_press_plan", plan)),
         address(settings_words),
-        None if loop is None else address(loop),
+        None if held_loop is None else address(held_loop),
         address(image_words),
         ctypes.byref(noise_pointers(arrays)),
         *(address(array) for array in rows),

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 from fdvv.errors import ModelError
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
-from fdvv.protocol.tables import Settings
+from fdvv.protocol.tables import CellSpec, Settings
 from fdvv.twin.rig import Rig
 
 UM16_m = 1000 * UM16_PER_mm
@@ -27,6 +29,19 @@ def settings_of(rig: Rig) -> Settings:
         return Settings(**_position(rig), **_loop(rig), **_output(rig), **_extras(rig))
     except ModelError as error:
         raise ModelError(f"the firmware cannot hold the settings of this rig: {error}") from error
+
+
+def cell_of(rig: Rig) -> CellSpec | None:
+    """Return the data sheet of a rig's load cell, None if it has none."""
+    cell = rig.load_cell
+    if not rig.has_cell:
+        return None
+    return CellSpec(
+        plate_kg=cell.plate_kg,
+        stiffness_N_m=cell.stiffness_N_m,
+        damping_N_s_m=cell.damping_N_s_m,
+        filter_s=1 / (2 * math.pi * cell.bandwidth_Hz),
+    )
 
 
 def _position(rig: Rig) -> dict[str, int]:
