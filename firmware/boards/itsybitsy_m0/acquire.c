@@ -6,7 +6,7 @@
  * timer 4 counts it. */
 #include "board.h"
 #include "pins.h"
-#include "samd21.h"
+#include "chip.h"
 
 enum {
     CLOCK_MHZ = 48,

@@ -1,6 +1,6 @@
 /* 48 MHz clock without a crystal, and the routing of clocks and pins to peripherals. */
 #include "board.h"
-#include "samd21.h"
+#include "chip.h"
 
 enum { DFLL_MULTIPLIER = 48000 /* of USB's 1 kHz start of frame */, COARSE_FALLBACK = 0x1F };
 

@@ -1,7 +1,7 @@
 /* The bridge, the servo and the key line. */
 #include "board.h"
 #include "pins.h"
-#include "samd21.h"
+#include "chip.h"
 
 /* Dual slope: 48 MHz / (2 * 1024) = 23.4 kHz, which is inaudible; 1024 steps in each direction. */
 enum { PWM_STEPS = 1024, PWM_SHIFT = 5 /* Q15 to steps */, IN1 = 2, IN2 = 3 };

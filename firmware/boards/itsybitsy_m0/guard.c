@@ -1,6 +1,6 @@
 /* Watchdog, brown-out detector and cause of the last reset. */
 #include "board.h"
-#include "samd21.h"
+#include "chip.h"
 
 enum { BROWN_OUT_2_8_V = 39 };
 

@@ -2,6 +2,8 @@
 #ifndef ITSYBITSY_M0_PINS_H
 #define ITSYBITSY_M0_PINS_H
 
+#define BOARD_NAME "itsybitsy-m0"
+
 enum {
     PIN_POSITION = 2,   /* (A0) AIN0 */
     PIN_SUPPLY = 4,     /* (A3) AIN4, supply through 100 kOhm over 22 kOhm */

@@ -1,6 +1,6 @@
 /* From reset to main: first switch off the bridge and release the key, then initialize the memory. */
 #include "pins.h"
-#include "samd21.h"
+#include "chip.h"
 
 extern uint32_t ld_stack_top, ld_data_from, ld_data_start, ld_data_end, ld_bss_start, ld_bss_end;
 

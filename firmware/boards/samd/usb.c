@@ -1,7 +1,7 @@
 /* Serial port over USB: descriptors for TinyUSB. Its driver is polled instead of using interrupts. */
 #include "board.h"
 #include "pins.h"
-#include "samd21.h"
+#include "chip.h"
 #include "tusb.h"
 
 enum { INTERFACE_CONTROL, INTERFACE_DATA, INTERFACES };
@@ -81,9 +81,9 @@ uint32_t tusb_time_millis_api(void)
 
 void board_usb_start(void)
 {
-    board_clock(GCLK_ID_USB, 0);
-    board_pin(PIN_USB_MINUS, PORT_MUX_G);
-    board_pin(PIN_USB_PLUS, PORT_MUX_G);
+    board_clock(GCLK_ID_USB, USB_GENERATOR);
+    board_pin(PIN_USB_MINUS, USB_MUX);
+    board_pin(PIN_USB_PLUS, USB_MUX);
     const tusb_rhport_init_t port = {.role = TUSB_ROLE_DEVICE, .speed = TUSB_SPEED_FULL};
     tusb_init(0, &port);
 }

@@ -1,6 +1,6 @@
 /* Commands to the vibration board over I2C, in the format of vibration_wire.h. */
-#ifndef ITSYBITSY_M0_VIBRATION_H
-#define ITSYBITSY_M0_VIBRATION_H
+#ifndef SAMD_VIBRATION_H
+#define SAMD_VIBRATION_H
 
 #include <stdint.h>
 

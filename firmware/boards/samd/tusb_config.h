@@ -1,8 +1,12 @@
 /* TinyUSB as this board uses it: one CDC port, polled. */
-#ifndef ITSYBITSY_M0_TUSB_CONFIG_H
-#define ITSYBITSY_M0_TUSB_CONFIG_H
+#ifndef SAMD_TUSB_CONFIG_H
+#define SAMD_TUSB_CONFIG_H
 
+#ifdef __ARM_ARCH_7EM__
+#define CFG_TUSB_MCU OPT_MCU_SAMD51
+#else
 #define CFG_TUSB_MCU OPT_MCU_SAMD21
+#endif
 #define CFG_TUSB_OS OPT_OS_NONE
 #define CFG_TUSB_RHPORT0_MODE OPT_MODE_DEVICE
 #define CFG_TUSB_DEBUG 0

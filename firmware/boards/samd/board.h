@@ -1,6 +1,6 @@
-/* Board support of the ItsyBitsy M0. No function waits for external events. */
-#ifndef ITSYBITSY_M0_BOARD_H
-#define ITSYBITSY_M0_BOARD_H
+/* Board support of the ItsyBitsy M0 and M4. No function waits for external events. */
+#ifndef SAMD_BOARD_H
+#define SAMD_BOARD_H
 
 #include <stdint.h>
 
@@ -20,14 +20,14 @@ typedef struct {
     uint16_t force_counts;
 } board_readings;
 
-/* clocks.c: 48 MHz from the DFLL, which is locked to USB's start of frame. */
+/* clocks.c: from the DFLL of 48 MHz, which is locked to USB's start of frame. */
 void board_clocks_start(void);
 
-/* Route generic clock generator 0 (48 MHz), 1 (32.768 kHz) or 2 (8 MHz) to a peripheral. */
+/* Route a generic clock generator to a peripheral; clocks.c says which there are. */
 void board_clock(uint8_t peripheral, uint8_t generator);
 void board_pin(uint8_t pin, uint8_t function);
 
-/* acquire.c: a tick every tick_us (100 to 1000) starts `reads` conversions of 4 us. May be called again with other
+/* acquire.c: a tick every tick_us (100 to 1000) starts `reads` conversions. May be called again with other
  * values; the device clock continues. */
 void board_acquire_start(uint16_t tick_us, uint8_t reads);
 
@@ -38,10 +38,11 @@ uint32_t board_now_us(void);
 /* drive.c */
 void board_drive_start(void);
 
-/* Set the mean coil voltage, in Q15 of the supply. If not enabled, both bridge inputs are low. */
+/* Set the drive in Q15: the mean voltage of the coil in parts of the supply, or its current in parts of what the supply
+ * would drive through it. If not enabled, there is no current. */
 void board_drive(int16_t duty_q15, uint8_t enable);
 
-/* 1 if the bridge reports a fault, or its inputs are not low while it is disabled. */
+/* 1 if the drive reports a fault, or its pins are not off while it is disabled. */
 uint8_t board_drive_fault(void);
 
 /* The key line: high while the key is down. */
@@ -64,7 +65,7 @@ void board_wire_step(uint32_t now_us);
 uint8_t board_reset_cause(void);
 void board_brown_out_start(void);
 
-/* After this, about 2 ms without board_watchdog_clear cause a reset. */
+/* After this, 2 ms (M4: 8 ms) without board_watchdog_clear cause a reset. */
 void board_watchdog_start(void);
 void board_watchdog_clear(void);
 

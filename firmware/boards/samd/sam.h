@@ -1,13 +1,15 @@
-/* The part of the vendor's header that TinyUSB's SAMD driver needs: the registers of the USB device, and stubs for the
+/* The part of the vendor's header that TinyUSB's driver for SAMD21 and SAMD51 needs: the registers of the USB device, and stubs for the
  * interrupt controller, because the driver is polled. Offsets as in the data sheet, chapter USB. */
-#ifndef ITSYBITSY_M0_SAM_H
-#define ITSYBITSY_M0_SAM_H
+#ifndef SAMD_SAM_H
+#define SAMD_SAM_H
 
 #include <stddef.h>
 #include <stdint.h>
 
+#include "chip.h"
+
 #define USB_EPT_NUM 8
-enum { USB_IRQn = 7 };
+enum { USB_IRQn = 7, USB_0_IRQn = 80, USB_1_IRQn, USB_2_IRQn, USB_3_IRQn };
 static inline void NVIC_EnableIRQ(int number) { (void)number; }
 static inline void NVIC_DisableIRQ(int number) { (void)number; }
 
@@ -71,7 +73,7 @@ typedef struct {
 } UsbDevice;
 
 typedef union { UsbDevice DEVICE; } Usb;
-#define USB ((Usb *)0x41005000u)
+#define USB ((Usb *)USB_BASE)
 
 /* in RAM, one per endpoint and direction */
 SAM_REGISTER(SAM_USB_ADDR, uint32_t, uint32_t all : 32;);
@@ -145,15 +147,8 @@ _Static_assert(sizeof(SAM_USB_PCKSIZE) == 4 && sizeof(SAM_USB_CTRLB) == 2 && siz
 #define USB_DEVICE_EPINTENSET_TRCPT1 (1u << 1)
 #define USB_DEVICE_EPINTENSET_RXSTP (1u << 4)
 
-/* calibration of the pads, written at production */
-#define USB_FUSES_TRANSN_ADDR 0x00806024u
-#define USB_FUSES_TRANSN_Pos 13
 #define USB_FUSES_TRANSN_Msk (0x1Fu << USB_FUSES_TRANSN_Pos)
-#define USB_FUSES_TRANSP_ADDR 0x00806024u
-#define USB_FUSES_TRANSP_Pos 18
 #define USB_FUSES_TRANSP_Msk (0x1Fu << USB_FUSES_TRANSP_Pos)
-#define USB_FUSES_TRIM_ADDR 0x00806024u
-#define USB_FUSES_TRIM_Pos 23
 #define USB_FUSES_TRIM_Msk (0x7u << USB_FUSES_TRIM_Pos)
 
 #endif

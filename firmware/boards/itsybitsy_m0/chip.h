@@ -1,7 +1,7 @@
 /* The registers of the SAMD21G18A that are used here. Names, addresses and bits as in the data sheet (SAM D21/DA1
  * Family, DS40001882). */
-#ifndef ITSYBITSY_M0_SAMD21_H
-#define ITSYBITSY_M0_SAMD21_H
+#ifndef ITSYBITSY_M0_CHIP_H
+#define ITSYBITSY_M0_CHIP_H
 
 #include <stdint.h>
 
@@ -141,29 +141,22 @@ enum {
 };
 #define EVSYS_USER_OF(channel) (uint16_t)(((channel) + 1u) << 8) /* 0 means no channel */
 
-/* I2C master on SERCOM3 */
-#define I2C_CTRLA REG32(0x42001400)
-#define I2C_CTRLB REG32(0x42001404)
-#define I2C_BAUD REG32(0x4200140C)
-#define I2C_INTFLAG REG8(0x42001418)
-#define I2C_STATUS REG16(0x4200141A)
-#define I2C_SYNCBUSY REG32(0x4200141C)
-#define I2C_ADDR REG32(0x42001424)
-#define I2C_DATA REG8(0x42001428)
-enum {
-    I2C_CTRLA_SWRST = 1 << 0,
-    I2C_CTRLA_ENABLE = 1 << 1,
-    I2C_CTRLA_MASTER = 5 << 2,
-    I2C_CTRLA_SDAHOLD_300_NS = 2 << 20,
-    I2C_CTRLB_CMD_STOP = 3 << 16,
-    I2C_CTRLB_NACK = 1 << 18,
-    I2C_INTFLAG_MB = 1 << 0,
-    I2C_INTFLAG_SB = 1 << 1,
-    I2C_STATUS_BUSERR = 1 << 0,
-    I2C_STATUS_ARBLOST = 1 << 1,
-    I2C_STATUS_RXNACK = 1 << 2,
-    I2C_STATUS_IDLE = 1 << 4
-};
+/* I2C master on SERCOM3 (samd/i2c.h) */
+#define I2C_BASE 0x42001400u
+#define I2C_GCLK_ID GCLK_ID_SERCOM3_CORE
+#define I2C_GENERATOR 0
+#define I2C_POWER() (PM_APBCMASK |= PM_APBCMASK_SERCOM3)
+
+/* USB device (samd/sam.h); the calibration of the pads, written at production */
+#define USB_BASE 0x41005000u
+#define USB_GENERATOR 0
+#define USB_MUX PORT_MUX_G
+#define USB_FUSES_TRANSN_ADDR 0x00806024u
+#define USB_FUSES_TRANSN_Pos 13
+#define USB_FUSES_TRANSP_ADDR 0x00806024u
+#define USB_FUSES_TRANSP_Pos 18
+#define USB_FUSES_TRIM_ADDR 0x00806024u
+#define USB_FUSES_TRIM_Pos 23
 
 /* Timers 3 and 4 in 16-bit mode */
 #define TC3_BASE 0x42002C00u

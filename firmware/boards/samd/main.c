@@ -2,6 +2,7 @@
  * between ticks. */
 #include "board.h"
 #include "link_state.h"
+#include "pins.h"
 #include "vibration.h"
 
 enum {
@@ -52,9 +53,14 @@ static uint8_t selftest(fdvv_selftest_reply *reply)
 
 static void describe(void)
 {
-    static const char name[] = "itsybitsy-m0";
+    static const char name[] = BOARD_NAME;
     board.serial = board_serial();
     board.flags = FDVV_BOARD_FLAG_FORCE_SENSOR | FDVV_BOARD_FLAG_VIBRATION | FDVV_BOARD_FLAG_SERVO;
+#ifdef FDVV_FORCE_LOOP
+    static const fdvv_load_cell cell = BOARD_CELL;
+    board.flags |= FDVV_BOARD_FLAG_FORCE_LOOP;
+    board.cell = &cell;
+#endif
     board.travel_limit_um16_256 = (TRAVEL_LIMIT_UM16 + 255) / 256;
     for (unsigned i = 0; i < sizeof name; i++) board.name[i] = name[i];
     board.selftest = selftest;

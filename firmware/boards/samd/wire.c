@@ -1,7 +1,7 @@
 /* Non-blocking I2C master: each step transfers one byte, or makes one edge of the bus recovery. */
 #include "board.h"
+#include "i2c.h"
 #include "pins.h"
-#include "samd21.h"
 
 enum {
     BAUD_400_KHZ = 48,        /* 48 MHz / (10 + 2 * 48 + 14), the 14 for 300 ns of rise */
@@ -51,8 +51,8 @@ static void open_bus(void)
 
 void board_wire_start(void)
 {
-    PM_APBCMASK |= PM_APBCMASK_SERCOM3;
-    board_clock(GCLK_ID_SERCOM3_CORE, 0);
+    I2C_POWER();
+    board_clock(I2C_GCLK_ID, I2C_GENERATOR);
     PORT_OUTCLR = PIN_BIT(PIN_SDA) | PIN_BIT(PIN_SCL); /* open drain: low as output, released as input */
     bus.answers = 1;
     open_bus();
