@@ -16,7 +16,7 @@ import numpy.typing as npt
 from fdvv.firmware.core import INPUTS, OUTPUTS, RecordArray
 from fdvv.protocol.tables import Settings
 
-from ._m0 import BOARD, REPOSITORY, require_tools
+from ._m0 import BOARD, REPOSITORY, SHARED, require_tools
 
 HERE = Path(__file__).resolve().parent
 CORE = REPOSITORY / "firmware" / "core"
@@ -63,7 +63,7 @@ def compile_core(folder: Path, optimise: str, processor: Processor = M0) -> byte
     gcc = ["arm-none-eabi-gcc", *FLAGS, *processor.flags, *LIMITS]
     # apart, as on the board: link-time optimisation loses functions that the compiler itself calls
     memory = folder / "memory.o"
-    subprocess.run([*gcc, "-Os", "-c", BOARD / "memory.c", "-o", memory], check=True)
+    subprocess.run([*gcc, "-Os", "-c", SHARED / "memory.c", "-o", memory], check=True)
     found = [path for place in processor.folders for path in sorted(place.glob("*.c"))]
     command: list[str | Path] = [*gcc, *optimise.split(), *(f"-I{place}" for place in processor.folders)]
     command += ["-T", HERE / "_core_on_arm.ld", "-Wl,-e0x2000", HERE / "_core_on_arm.c", memory, *found]

@@ -1,4 +1,4 @@
-"""Build the ItsyBitsy M0's programs, read what its check program tells. All figures here are emulated."""
+"""Build the programs of the ItsyBitsy M0 and M4, read what the check tells. All figures here are emulated."""
 
 from __future__ import annotations
 
@@ -14,10 +14,12 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-BOARD = REPOSITORY / "firmware" / "boards" / "itsybitsy_m0"
+BOARDS = REPOSITORY / "firmware" / "boards"
+BOARD, SHARED = BOARDS / "itsybitsy_m0", BOARDS / "samd"
 BUILD = REPOSITORY / "build" / "firmware"
 TINYUSB = REPOSITORY / "build" / "tinyusb" / ".ready"
 CHECK, CONTROLLER = BUILD / "itsybitsy_m0_check.elf", BUILD / "itsybitsy_m0.elf"
+M4_CHECK, M4_CONTROLLER = BUILD / "itsybitsy_m4_check.elf", BUILD / "itsybitsy_m4.elf"
 
 
 def require_tools() -> None:
@@ -37,7 +39,8 @@ def build(program: Path) -> Path:
     BUILD.mkdir(parents=True, exist_ok=True)
     with (BUILD / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        command = ["make", "-s", "-C", str(BOARD), f"BUILD={BUILD}", str(program)]
+        board = BOARDS / program.stem.removesuffix("_check")
+        command = ["make", "-s", "-C", str(board), f"BUILD={BUILD}", str(program)]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return program

@@ -1,9 +1,10 @@
-/* Timing of an emulated SAMD21: the cycles of each block of Thumb code, and its peripheral registers.
+/* Timing of an emulated SAMD21, or SAMD51: the cycles of each block of Thumb code, and its peripheral registers.
  *
  * An instruction-set emulator calls fdvv_m0_block before each block of code, and fdvv_m0_read and fdvv_m0_write for
  * each access to a register. Cycle counts are those of the Cortex-M0+ (technical reference manual r0p1, table 3-1, with the
  * single-cycle multiplier), plus one wait state of the flash for each miss of a cache with eight lines of eight bytes,
- * or, pessimistically, for each fetched word. Wait states of other data in flash, and of a bus occupied by DMA or USB,
+ * or, pessimistically, for each fetched word. Instructions of 32 bits, which the Cortex-M4 alone has but for BL, MRS, MSR and
+ * barriers, count as its manual (r0p1, tables 3-1 and 7-1) has them, divisions at their longest. Wait states of other data in flash, and of a bus occupied by DMA or USB,
  * are not modelled. */
 #include <stdint.h>
 #include <string.h>
@@ -48,6 +49,7 @@ typedef struct {
     uint32_t is_cached;           /* SLOW, CACHED or NO_WAIT */
     uint32_t unclocked;           /* address of the first access to a peripheral without bus clock; 0: none */
     uint32_t clocks;              /* bus clocks: a bit per kilobyte of the window with `gated` set */
+    uint32_t is_m4;               /* the processor is a Cortex-M4 */
 } fdvv_m0;
 
 typedef struct {
@@ -86,6 +88,23 @@ static uint32_t cost_16(uint32_t op)
     return 1;
 }
 
+/* Cycles of one 32-bit instruction of a Cortex-M4. */
+static uint32_t cost_32(uint32_t op, uint32_t next)
+{
+    if ((op & 0xFE40) == 0xE800) return 1 + bits_set(next);                  /* LDM, STM */
+    if ((op & 0xFE40) == 0xE840) return 3;                                   /* LDRD, STRD, TBB */
+    if ((op & 0xFE20) == 0xEC20) return 1 + (next & 0xFF);                   /* VLDM, VSTM, VPUSH, VPOP */
+    if ((op & 0xFE00) == 0xEC00) return 2;                                   /* VLDR, VSTR */
+    if ((op & 0xFFB0) == 0xEE80) return 14;                                  /* VDIV */
+    if ((op & 0xFFBF) == 0xEEB1 && (next & 0xFC0) == 0xAC0) return 14;       /* VSQRT */
+    if ((op & 0xFFA0) == 0xEE00 || (op & 0xFFB0) == 0xEEA0) return 3;        /* VMLA, VFMA and the like */
+    if ((op & 0xFF00) == 0xEE00) return 1;                                   /* other arithmetic of the FPU */
+    if ((op & 0xF800) == 0xF000 && (next & 0x8000)) return 3;                /* branches, MRS, MSR, barriers */
+    if ((op & 0xFE00) == 0xF800) return 2;                                   /* loads and stores */
+    if ((op & 0xFFD0) == 0xFB90) return 12;                                  /* SDIV, UDIV */
+    return 1;
+}
+
 static void need_line(fdvv_m0_code *code, uint32_t address)
 {
     if (code->lines < BLOCK_LINES) {
@@ -108,7 +127,8 @@ static void decode(const fdvv_m0 *m0, fdvv_m0_code *code, uint32_t address, uint
         uint32_t op = halfword(m0, at);
         code->is_conditional = op >= 0xD000 && op < 0xDE00;
         if (op >= 0xE800) {
-            code->cycles += 3; /* BL, MRS, MSR and barriers: all of the 32-bit ones */
+            /* BL, MRS, MSR and barriers: all of the Cortex-M0+ */
+            code->cycles += (uint16_t)(m0->is_m4 ? cost_32(op, halfword(m0, at + 2)) : 3);
             at += 2;
             if (at >> LINE_SHIFT != line) need_line(code, at);
             if (at >> 2 != word) code->fetches++;

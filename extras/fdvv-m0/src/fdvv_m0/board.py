@@ -8,12 +8,13 @@ from fdvv.device.open import BUILT_ELF
 from fdvv.device.plant import Inputs, Outputs
 from fdvv.errors import DeviceError, InputError
 from fdvv.protocol.tables import NONE, Settings
+from fdvv_m0.elf import read_elf
 from fdvv_m0.emulator import M0Emulator
+from fdvv_m0.m4 import FLASH_START, M4Emulator
 from fdvv_m0.records import COUNTS_MAX, TickInputs
 
 BOOT_TICKS = 400
 SHARE_OF_TICK = 0.95  # after which what a tick brought is on the pins
-SUPPLY_mV_counts = 3300 * 122 / 22 / 4096
 PLAY_HEADER = 0x22
 
 
@@ -27,11 +28,11 @@ def open_board(where: str) -> EmulatedBoard:
 
 
 class EmulatedBoard:
-    """The program that is flashed onto the ItsyBitsy M0, run instruction by instruction.
+    """The program that is flashed onto the ItsyBitsy M0 or M4, run instruction by instruction.
 
-    elf : build/firmware/itsybitsy_m0.elf of `make firmware`. Of the outputs, the pins show duty, enable,
-    stop pulse, slot and whether the key is down; mode and command go over the link alone. Raises DeviceError
-    if the port does not open.
+    elf : build/firmware/itsybitsy_m0.elf or _m4.elf of `make firmware`. Of the outputs, the pins show duty,
+    enable, stop pulse, slot and whether the key is down; mode and command go over the link alone. Raises
+    DeviceError if the port does not open.
     """
 
     name = "emulated"
@@ -39,7 +40,10 @@ class EmulatedBoard:
     def __init__(self, elf: Path) -> None:
         middle = (Settings().reading_low + Settings().reading_high) // 2
         self._inputs = TickInputs(middle)
-        self.emulator = M0Emulator(elf, lambda _outputs: self._inputs)
+        # behind the bootloader of either chip
+        is_m4 = min((load for load, _data in read_elf(elf).parts), default=0) == FLASH_START
+        kind = M4Emulator if is_m4 else M0Emulator
+        self.emulator: M0Emulator = kind(elf, lambda _outputs: self._inputs)
         while not self.emulator.usb.is_open:
             self.emulator.run_ticks(1)
             if self.emulator.tick > BOOT_TICKS:
@@ -49,7 +53,7 @@ class EmulatedBoard:
     def tick(self, inputs: Inputs) -> Outputs:
         """Run from one tick nearly to the next."""
         others = {
-            "supply_counts": min(round(inputs.supply_mV / SUPPLY_mV_counts), COUNTS_MAX),
+            "supply_counts": min(round(inputs.supply_mV / self.emulator.supply_mV_counts), COUNTS_MAX),
             "force_counts": inputs.force_counts,
         }
         burst = (inputs.sum, inputs.lowest, inputs.highest, self.emulator.reads)

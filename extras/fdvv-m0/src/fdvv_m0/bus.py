@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
+from dataclasses import dataclass
 from heapq import heappop, heappush
 
 from fdvv._native import library
 
+NO_WAIT = 2  # of is_cached
 CALL_WRITE, CALL_READ, WRITE_ONE_CLEARS, COUNTER, POLLED = 1, 2, 4, 8, 16
 NEVER = 2**64 - 1
-WINDOWS = {0x40000000: 0x2000, 0x41000000: 0x6000, 0x42000000: 0x5000, 0xE0000000: 0xF000}
 BASE_BITS = 0xFFFF0000  # of an address, which name its window
-GATED = 0x42000000  # the bridge whose peripherals all start without a clock
-FLASH_BYTES, RAM_START, RAM_BYTES = 0x40000, 0x20000000, 0x8000
+RAM_START = 0x20000000
 
 EVENT = ctypes.CFUNCTYPE(None)
 READ = ctypes.CFUNCTYPE(ctypes.c_uint64, ctypes.c_uint32, ctypes.c_uint32)
@@ -23,6 +23,49 @@ WRITE = ctypes.CFUNCTYPE(None, ctypes.c_uint32, ctypes.c_uint32, ctypes.c_uint32
 def address_of(memory: bytearray) -> int:
     """Return where a memory lies; it must not be resized and must be kept."""
     return ctypes.addressof((ctypes.c_char * len(memory)).from_buffer(memory))
+
+
+@dataclass(frozen=True)
+class Chip:
+    """What differs between the emulated chips.
+
+    Attributes
+    ----------
+    model : of the processor, as unicorn names it. cpu_mhz : its clock.
+    windows : of registers, sizes by address. gated : the one whose peripherals all start without a clock; 0:
+        clocks are not watched.
+    flash_bytes, ram_bytes : of memory. factory : words written at production, by address.
+    """
+
+    model: str
+    cpu_mhz: int
+    windows: dict[int, int]
+    gated: int
+    flash_bytes: int
+    ram_bytes: int
+    factory: dict[int, int]
+
+    @property
+    def is_m4(self) -> bool:
+        """Whether its flash has a cache of its own, whose misses are not counted."""
+        return self.model.endswith("M4")
+
+
+SAMD21 = Chip(
+    model="UC_CPU_ARM_CORTEX_M0",
+    cpu_mhz=48,
+    windows={0x40000000: 0x2000, 0x41000000: 0x6000, 0x42000000: 0x5000, 0xE0000000: 0xF000},
+    gated=0x42000000,
+    flash_bytes=0x40000,
+    ram_bytes=0x8000,
+    # DFLL coarse and fine, USB pads; and the serial number
+    factory={
+        0x806020: 0xF8000000,
+        0x806024: 0x7C000000 | 0x1F << 13 | 0x1F << 18,
+        0x806028: 0x1FF,
+        0x80A00C: 0x0FD00001,
+    },
+)
 
 
 class Clockwork(ctypes.Structure):
@@ -37,7 +80,7 @@ class Clockwork(ctypes.Structure):
         *(("line_used", ctypes.c_uint64 * 8), ("line", ctypes.c_uint32 * 8)),
         *((name, ctypes.c_uint32) for name in ("flash_bytes", "bus_wait", "waited", "start", "after")),
         *((name, ctypes.c_uint32) for name in ("is_stopped", "is_conditional", "is_cached")),
-        *((name, ctypes.c_uint32) for name in ("unclocked", "clocks")),
+        *((name, ctypes.c_uint32) for name in ("unclocked", "clocks", "is_m4")),
     )
 
 
@@ -60,19 +103,20 @@ class Bus:
     where they can, and put what happens later in the queue with `after`.
     """
 
-    def __init__(self, is_cached: bool, bus_wait_cycles: int) -> None:
-        self.flash = bytearray(b"\xff" * FLASH_BYTES)
-        self.ram = bytearray(RAM_BYTES)
-        self.clockwork = Clockwork(
-            is_cached=is_cached, bus_wait=bus_wait_cycles, next_event=NEVER, shortest_pass=NEVER
-        )
-        self._code = bytearray(library().fdvv_m0_bytes(2) * (FLASH_BYTES // 2))
+    def __init__(self, is_cached: bool, bus_wait_cycles: int, chip: Chip = SAMD21) -> None:
+        self.chip = chip
+        self.flash = bytearray(b"\xff" * chip.flash_bytes)
+        self.ram = bytearray(chip.ram_bytes)
+        self.clockwork = Clockwork(bus_wait=bus_wait_cycles, next_event=NEVER, shortest_pass=NEVER)
+        self.clockwork.is_cached = NO_WAIT if chip.is_m4 else is_cached
+        self.clockwork.is_m4 = chip.is_m4
+        self._code = bytearray(library().fdvv_m0_bytes(2) * (chip.flash_bytes // 2))
         self.clockwork.flash = address_of(self.flash)
         self.clockwork.code = address_of(self._code)
-        self.clockwork.flash_bytes = FLASH_BYTES
-        self.memories = {base: bytearray(size) for base, size in WINDOWS.items()}
-        self.kinds = {base: bytearray(size) for base, size in WINDOWS.items()}
-        self.windows = {base: self._window(base) for base in WINDOWS}
+        self.clockwork.flash_bytes = chip.flash_bytes
+        self.memories = {base: bytearray(size) for base, size in chip.windows.items()}
+        self.kinds = {base: bytearray(size) for base, size in chip.windows.items()}
+        self.windows = {base: self._window(base) for base in chip.windows}
         self._writes: dict[int, Callable[[int, int], None]] = {}
         self._reads: dict[int, Callable[[int], int]] = {}
         self._queue: list[tuple[int, int, Callable[[], None]]] = []
@@ -90,7 +134,7 @@ class Bus:
             address_of(self.memories[base]),
             address_of(self.kinds[base]),
             base,
-            base == GATED,
+            base == self.chip.gated,
         )
 
     # -- registers -------------------------------------------------------------------------------------------
@@ -132,11 +176,15 @@ class Bus:
     def ram_write(self, address: int, data: bytes) -> None:
         """Put bytes into RAM, as DMA and USB do."""
         at = address - RAM_START
-        if not 0 <= at <= RAM_BYTES - len(data):
+        if not 0 <= at <= len(self.ram) - len(data):
             raise ValueError(f"a peripheral writes {len(data)} bytes to {address:#x}, which is not RAM")
         self.ram[at : at + len(data)] = data
 
     # -- time ------------------------------------------------------------------------------------------------
+
+    @property
+    def cpu_mhz(self) -> int:
+        return self.chip.cpu_mhz
 
     @property
     def cycles(self) -> int:

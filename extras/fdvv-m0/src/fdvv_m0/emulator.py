@@ -7,17 +7,17 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fdvv.errors import DeviceError, InputError
-from fdvv_m0.bus import FLASH_BYTES, NEVER, Bus
+from fdvv_m0.bus import NEVER, SAMD21, Bus, Chip
 from fdvv_m0.converter import Converter
 from fdvv_m0.elf import read_elf
 from fdvv_m0.processor import Processor
-from fdvv_m0.records import CPU_MHZ, KeyChange, PwmChange, TickCost, TickInputs, TickOutputs, WireMessage
+from fdvv_m0.records import KeyChange, PwmChange, TickCost, TickInputs, TickOutputs, WireMessage
 from fdvv_m0.system import AIRCR, AIRCR_RESET, PIN_KEY, RCAUSE, RESETS, Clocks, Port, Watchdog, mark_plain
 from fdvv_m0.timers import USER_ADC_START, Pwm, Tick
 from fdvv_m0.usb_host import UsbHost
 from fdvv_m0.wire import Wire
 
-BOOT_LIMIT_CYCLES = 48_000 * 200  # 200 ms without a tick: the program does not get there
+BOOT_LIMIT_us = 200_000  # without a tick: the program does not get there
 BUS_WAIT_CYCLES = 2  # assumed for each register access over the peripheral bridges
 
 
@@ -33,17 +33,21 @@ class M0Emulator:
     on, emulated.
     """
 
+    chip: Chip = SAMD21
+    pin_key = PIN_KEY
+    supply_mV_counts = 3300 * 122 / 22 / 4096
+
     def __init__(
         self, elf: Path, tick_inputs: Callable[[TickOutputs], TickInputs], *, is_cached: bool = True
     ) -> None:
         self._program = read_elf(elf)
         self._vectors = min((load for load, _data in self._program.parts), default=0)
-        if not self._program.parts or self._vectors >= FLASH_BYTES:
+        if not self._program.parts or self._vectors >= self.chip.flash_bytes:
             reason = "nothing to load into flash"
             raise InputError(elf, "program headers", reason, "build it with make firmware")
         self._tick_inputs = tick_inputs
         self._inputs = TickInputs(0)
-        self._bus = Bus(is_cached, BUS_WAIT_CYCLES)
+        self._bus = Bus(is_cached, BUS_WAIT_CYCLES, self.chip)
         for load, data in self._program.parts:
             self._bus.flash[load : load + len(data)] = data
         self.processor = Processor(self._bus)
@@ -65,26 +69,14 @@ class M0Emulator:
         bus.forget_events()
         for memory in bus.memories.values():
             memory[:] = bytes(len(memory))
-        bus.put(RCAUSE, 1, RESETS[cause])
-        bus.put(0x40000420, 4, 1 << 16)
         clockwork = bus.clockwork
         clockwork.counter_period = clockwork.waited = clockwork.is_conditional = clockwork.is_stopped = 0
         clockwork.polled_at, clockwork.longest_pass, clockwork.shortest_pass = bus.cycles, 0, NEVER
-        mark_plain(bus)
-        self.clocks = Clocks(bus)
-        self.port = Port(bus, lambda: self.pwm.changed())
-        self.port.key_log = self.key_log
+        self._make_chip(cause)
         if self.key_log and self.key_log[-1].is_down:  # the pin floats, and its resistor pulls it down
             self.key_log.append(KeyChange(self.time_us, False))
-        self.pwm = Pwm(bus, self.clocks, lambda: self.port)
-        self.pwm.changes = self.pwm_log
-        self.wire = Wire(bus, self.clocks)
-        self.wire.messages = self.wire_log
-        self.converter = Converter(bus, self.clocks, lambda: self._inputs)
-        self._timer = Tick(bus, self.clocks, self._ticked)
-        self._watchdog = Watchdog(bus, self.clocks, lambda: self._request_reset("watchdog"))
         bus.on_write(AIRCR, self._software_reset)
-        host = UsbHost(bus)
+        host = self._make_host()
         if self._host is not None:  # the same computer as before
             host.is_plugged, host.incoming = self._host.is_plugged, self._host.incoming
         self.usb = self._host = host
@@ -98,12 +90,31 @@ class M0Emulator:
         self.processor.set_stack(stack)
         self._pc = entry & ~1
 
+    def _make_chip(self, cause: str) -> None:
+        bus = self._bus
+        bus.put(RCAUSE, 1, RESETS[cause])
+        bus.put(0x40000420, 4, 1 << 16)
+        mark_plain(bus)
+        self.clocks = Clocks(bus)
+        self.port = Port(bus, lambda: self.pwm.changed())
+        self.port.key_log = self.key_log
+        self.pwm = Pwm(bus, self.clocks, lambda: self.port)
+        self.pwm.changes = self.pwm_log
+        self.wire = Wire(bus, self.clocks)
+        self.wire.messages = self.wire_log
+        self.converter = Converter(bus, self.clocks, lambda: self._inputs)
+        self._timer = Tick(bus, self.clocks, self._ticked)
+        self._watchdog = Watchdog(bus, self.clocks, lambda: self._request_reset("watchdog"))
+
+    def _make_host(self) -> UsbHost:
+        return UsbHost(self._bus)
+
     # -- running ---------------------------------------------------------------------------------------------
 
     def run_ticks(self, count: int) -> None:
         """Run until so many more ticks have come; DeviceError if the program fails or none comes."""
         self._target = self.tick + count
-        self._limit = self._bus.cycles + BOOT_LIMIT_CYCLES
+        self._limit = self._bus.cycles + BOOT_LIMIT_us * self._bus.cpu_mhz
         while self.tick < self._target:
             if not self._is_watching:
                 self._watch()
@@ -111,7 +122,7 @@ class M0Emulator:
 
     def run_us(self, duration_us: float) -> None:
         """Run for a time, ticks or not."""
-        end = self._bus.cycles + round(duration_us * CPU_MHZ)
+        end = self._bus.cycles + round(duration_us * self._bus.cpu_mhz)
         self._target = self._limit = NEVER
         while self._bus.cycles < end:
             self._bus.at(end, self.processor.stop)
@@ -144,7 +155,7 @@ class M0Emulator:
         self._tick_cycle = self._bus.cycles
         self.converter.burst_ready_cycle = self.pwm.written_cycle = None
         self.tick += 1
-        self._limit = self._bus.cycles + BOOT_LIMIT_CYCLES
+        self._limit = self._bus.cycles + BOOT_LIMIT_us * self._bus.cpu_mhz
         self._inputs = self._tick_inputs(self.outputs())
         self._messages_reported = len(self.wire_log)
         if USER_ADC_START in self._timer.users:
@@ -161,9 +172,9 @@ class M0Emulator:
             ready, written = self.converter.burst_ready_cycle, self.pwm.written_cycle
             cost = TickCost(
                 self.tick,
-                None if ready is None else (ready - start) / CPU_MHZ,
-                None if written is None else (written - start) / CPU_MHZ,
-                clockwork.longest_pass / CPU_MHZ,
+                None if ready is None else (ready - start) / self._bus.cpu_mhz,
+                None if written is None else (written - start) / self._bus.cpu_mhz,
+                clockwork.longest_pass / self._bus.cpu_mhz,
                 max(self._bus.cycles - start - idle, 0),
             )
             self.costs.append(cost)
@@ -174,12 +185,12 @@ class M0Emulator:
     @property
     def time_us(self) -> float:
         """Emulated time since power on."""
-        return self._bus.cycles / CPU_MHZ
+        return self._bus.cycles / self._bus.cpu_mhz
 
     @property
     def tick_us(self) -> float:
         """Period that the program has set."""
-        return self._timer.period_cycles / CPU_MHZ
+        return self._timer.period_cycles / self._bus.cpu_mhz
 
     @property
     def reads(self) -> int:
@@ -196,7 +207,7 @@ class M0Emulator:
             drive.enable,
             self.pwm.stop_us(),
             tuple(self.wire_log[self._messages_reported :]),
-            self.port.level(PIN_KEY),
+            self.port.level(self.pin_key),
         )
 
     def write(self, data: bytes) -> None:
@@ -228,7 +239,7 @@ class M0Emulator:
 
     def stall(self, duration_us: float) -> None:
         """Keep the processor from working for a time, as a fault to inject; the peripherals go on."""
-        self._bus.clockwork.waited += round(duration_us * CPU_MHZ)
+        self._bus.clockwork.waited += round(duration_us * self._bus.cpu_mhz)
 
     def name_of(self, address: int) -> str:
         """Return the function that an address lies in, for messages."""

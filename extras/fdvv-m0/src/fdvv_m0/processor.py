@@ -1,4 +1,4 @@
-"""The Cortex-M0+ itself: unicorn, with the bus and the cycle hook of m0_cycles.c behind it."""
+"""The processor itself: unicorn, with the bus and the cycle hook of m0_cycles.c behind it."""
 
 from __future__ import annotations
 
@@ -8,12 +8,9 @@ from typing import Any
 
 from fdvv._native import library
 from fdvv.errors import DeviceError
-from fdvv_m0.bus import FLASH_BYTES, RAM_BYTES, RAM_START, WINDOWS, Bus, address_of
+from fdvv_m0.bus import RAM_START, Bus, address_of
 
 CALIBRATION_START, CALIBRATION_BYTES = 0x00800000, 0x10000
-# DFLL coarse and fine, USB pads; and the serial number
-CALIBRATION = {0x806020: 0xF8000000, 0x806024: 0x7C000000 | 0x1F << 13 | 0x1F << 18, 0x806028: 0x1FF}
-SERIAL = {0x80A00C: 0x0FD00001}
 FOREVER = 0xFFFFFFFE
 LOOP = b"\xfe\xe7"  # b .
 
@@ -32,16 +29,17 @@ class Processor:
         self._uc: Any = self._unicorn.Uc(
             self._unicorn.UC_ARCH_ARM, self._unicorn.UC_MODE_THUMB | self._unicorn.UC_MODE_MCLASS
         )
-        self._uc.ctl_set_cpu_model(self._arm.UC_CPU_ARM_CORTEX_M0)
+        self._uc.ctl_set_cpu_model(getattr(self._arm, bus.chip.model))
         self._map_memory()
         self._attach()
 
     def _map_memory(self) -> None:
         code = self._unicorn.UC_PROT_READ | self._unicorn.UC_PROT_EXEC
-        self._uc.mem_map_ptr(0, FLASH_BYTES, code, address_of(self._bus.flash))
-        self._uc.mem_map_ptr(RAM_START, RAM_BYTES, self._unicorn.UC_PROT_ALL, address_of(self._bus.ram))
+        chip = self._bus.chip
+        self._uc.mem_map_ptr(0, chip.flash_bytes, code, address_of(self._bus.flash))
+        self._uc.mem_map_ptr(RAM_START, chip.ram_bytes, self._unicorn.UC_PROT_ALL, address_of(self._bus.ram))
         self._uc.mem_map(CALIBRATION_START, CALIBRATION_BYTES, self._unicorn.UC_PROT_READ)
-        for address, word in (CALIBRATION | SERIAL).items():
+        for address, word in chip.factory.items():
             self._uc.mem_write(address, word.to_bytes(4, "little"))
 
     def _attach(self) -> None:
@@ -51,7 +49,7 @@ class Processor:
             for name in ("read", "write", "block")
         )
         engine = self._uc._uch
-        for base, size in WINDOWS.items():
+        for base, size in self._bus.chip.windows.items():
             window = ctypes.byref(self._bus.windows[base])
             self._accept(self._low.uc_mmio_map(engine, base, size, read, window, write, window))
         clockwork = ctypes.byref(self._bus.clockwork)

@@ -8,7 +8,6 @@ from typing import TypeVar
 
 from fdvv.errors import DeviceError
 from fdvv_m0.bus import Bus
-from fdvv_m0.records import CPU_MHZ
 from fdvv_m0.usb_device import RESUME, SUSPEND, Answer, UsbDevice
 
 # shorter than a real computer's 100, 10 and 10 ms
@@ -63,7 +62,7 @@ class UsbHost:
         """Pull the cable: what was on its way is lost, and the device sees the bus fall silent."""
         self.forget()
         self.is_plugged = False
-        self._bus.after(SUSPEND_US * CPU_MHZ, lambda: self.device.raise_flag(SUSPEND))
+        self._bus.after(SUSPEND_US * self._bus.cpu_mhz, lambda: self.device.raise_flag(SUSPEND))
 
     def forget(self) -> None:
         """Lose the device: pulled out or reset."""
@@ -84,7 +83,7 @@ class UsbHost:
             return
         wait_us = next(self._steps, None)
         if wait_us is not None:
-            self._bus.after(round(wait_us * CPU_MHZ), lambda: self._step(this))
+            self._bus.after(round(wait_us * self._bus.cpu_mhz), lambda: self._step(this))
 
     def _enumerate(self) -> Steps:
         try:
@@ -178,7 +177,7 @@ class UsbHost:
         if self.is_open and not self._is_pumping:
             self._is_pumping = True
             this = self._round
-            self._bus.after(round(_packet_us(0) * CPU_MHZ), lambda: self._carry(this))
+            self._bus.after(round(_packet_us(0) * self._bus.cpu_mhz), lambda: self._carry(this))
 
     def _carry(self, this: int) -> None:
         if this != self._round:
@@ -193,7 +192,7 @@ class UsbHost:
             del self.outgoing[:PACKET_BYTES]
         self._is_pumping = moved > 0
         if moved:
-            self._bus.after(round(moved * CPU_MHZ), lambda: self._carry(this))
+            self._bus.after(round(moved * self._bus.cpu_mhz), lambda: self._carry(this))
 
 
 def _packet_us(count: int) -> float:
