@@ -6,29 +6,36 @@ import re
 import struct
 import subprocess
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
+from fdvv.compensation.force_loop.gains import force_loop_gains
 from fdvv.device.linked import LinkedDevice
 from fdvv.device.plant import Inputs, Outputs
 from fdvv.device.twin import SimulatedPerson
 from fdvv.firmware.core import INPUTS, OUTPUTS, Core, RecordArray
+from fdvv.model.press import Press
 from fdvv.protocol.tables import Fault, LoopState
 from fdvv.testing.conformance import plain_surface
+from fdvv.twin.finger import Finger
+from fdvv.twin.gesture import plan
 from fdvv_m0.board import EmulatedBoard
 from fdvv_m0.m4 import PIN_ENABLE, M4Emulator
 from fdvv_m0.records import TickInputs
-from tests.support.force_loop_press import CONTROLLER, KNOWN, RIG, force_loop_gains
+from tests.support.force_loop_press import CONTROLLER, KNOWN, RIG
 
 from ._m0 import M4_CHECK, M4_CONTROLLER, build, frames, sizes_bytes
 from ._simavr import say
+from .test_m0_cost import benchmark
 
 pytestmark = pytest.mark.firmware
 FLASH_BYTES, RAM_BYTES, STACK_BYTES = 512 * 1024 - 16 * 1024, 192 * 1024, 8 * 1024
 FAMILY, START = 0x55114460, 0x4000
 SUPPLY_GAIN_Q11 = 18150
 BEFORE = 200
+COST = benchmark("force_loop_cost")
 
 
 @pytest.fixture(scope="module")
@@ -62,17 +69,23 @@ class Witness(EmulatedBoard):
         return rows
 
 
-@pytest.fixture(scope="module")
-def pressed(elf: Path) -> tuple[Witness, LinkedDevice]:
+class Pressed(NamedTuple):
     """A board after a press with the loop closed over USB, on the twin's rig behind its registers."""
+
+    board: Witness
+    device: LinkedDevice
+    press: Press
+
+
+@pytest.fixture(scope="module")
+def pressed(elf: Path) -> Pressed:
     board = Witness(elf)
     device = LinkedDevice(board, SimulatedPerson(RIG, seed=2))
     assert device.load_cell is not None
     device.close_loop(force_loop_gains(KNOWN, device.load_cell, 1e-4, CONTROLLER))
     device.upload(plain_surface(), 4.0)
     device.client.ping()
-    device.press_result = device.press(100.0)  # type: ignore[attr-defined] # for the tests below
-    return board, device
+    return Pressed(board, device, device.press(100.0))
 
 
 def test_the_programs_fit_flash_and_ram(elf: Path) -> None:
@@ -94,14 +107,14 @@ def test_nothing_uses_the_floating_point_unit_before_it_is_on(elf: Path) -> None
     code = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert "isb" in code
     assert not re.search(r"\tv[a-z]+", code)
-    clocks = started(elf).clocks
+    clocks = started(elf).oscillators
     assert clocks.fpu_cycle is not None
     assert clocks.fpu_cycle < 200
 
 
 def test_the_clocks_are_those_that_the_program_counts_on(elf: Path) -> None:
     emulator = started(elf)
-    assert [emulator.clocks.hz(generator) for generator in range(4)] == [120e6, 48e6, 2e6, 12e6]
+    assert [emulator.oscillators.hz(generator) for generator in range(4)] == [120e6, 48e6, 2e6, 12e6]
     assert emulator.tick_us == pytest.approx(250)
     assert emulator.resets == 0
 
@@ -113,9 +126,9 @@ def test_the_drive_is_off_until_it_is_armed(elf: Path) -> None:
 
 
 def test_a_press_with_the_loop_closed_over_usb_is_that_of_the_core_bit_for_bit(
-    pressed: tuple[Witness, LinkedDevice],
+    pressed: Pressed,
 ) -> None:
-    board, device = pressed
+    board, device, _ = pressed
     done = np.array([(o.duty_q15, o.enable) for _, o in board.log])
     first = int(np.flatnonzero(done[:, 1])[0])
     count = int(done[:, 1].sum())
@@ -146,9 +159,8 @@ def same_telemetry(device: LinkedDevice, found: RecordArray) -> bool:
     )
 
 
-def test_the_loop_holds_the_force_and_no_tick_is_late(pressed: tuple[Witness, LinkedDevice]) -> None:
-    board, device = pressed
-    press = device.press_result  # type: ignore[attr-defined] # set by the fixture
+def test_the_loop_holds_the_force_and_no_tick_is_late(pressed: Pressed) -> None:
+    board, device, press = pressed
     x, turn = press.displacement_mm, int(press.displacement_mm.argmax())
     rows = np.flatnonzero((x[:turn] > 1.0) & (x[:turn] < 3.5))
     off = np.abs(press.force_cN[rows] - 40.0 - 5.0 * x[rows])
@@ -161,6 +173,28 @@ def test_the_loop_holds_the_force_and_no_tick_is_late(pressed: tuple[Witness, Li
     assert latency.max() < 100
     counters = device.client.counters()
     assert (counters.late, counters.lost_records, board.emulator.resets) == (0, 0, 0)
+    assert LoopState(device.client.read_force_loop().state) is LoopState.CLOSED
+
+
+def test_the_largest_program_on_the_dearest_settings_misses_no_tick(elf: Path) -> None:
+    settings = COST.dearest_settings()
+    person = SimulatedPerson(RIG, seed=2)
+    person.settings = settings
+    board = EmulatedBoard(elf)
+    device = LinkedDevice(board, person)
+    assert device.load_cell is not None
+    device.close_loop(force_loop_gains(KNOWN, device.load_cell, 1e-4, CONTROLLER))
+    device.upload_program(COST.full_image(48, 32, settings))
+    device.client.stream(1)
+    device.client.arm()
+    device.client.listen(device.port.now_s() + 0.1)
+    person._plant.press(plan(Finger(), 4e-3, 0.1))
+    device.client.listen(device.port.now_s() + 0.25)
+    latency = np.array([cost.latency_us or 0.0 for cost in board.emulator.costs[-2500:]])
+    say(f"largest program: setpoint after {np.median(latency):.1f} us, at most {latency.max():.1f}")
+    counters = device.client.counters()
+    assert device.fault().fault is Fault.NONE
+    assert (counters.late, counters.lost_records) == (0, 0)
     assert LoopState(device.client.read_force_loop().state) is LoopState.CLOSED
 
 

@@ -23,7 +23,7 @@ KINDS = {
     "twin": "the simulated rig, whole presses at once",
     "host": "the firmware as a program of this machine, in lockstep with the simulated rig",
     "emulated": "the program of the ItsyBitsy M0 in an emulator, in lockstep with the simulated rig; slow",
-    "emulated:FILE": "the same, from that ELF file",
+    "emulated:FILE": "the same, from that ELF file of the ItsyBitsy M0 or M4",
     "serial:PORT": "a rig on a serial port, pressed by a person",
     "replay:FILE": "a recorded session",
 }

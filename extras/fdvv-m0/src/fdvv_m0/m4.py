@@ -361,13 +361,14 @@ class M4Emulator(M0Emulator):
     chip = SAMD51
     pin_key = PIN_KEY
     supply_mV_counts = 3300 * 242 / 22 / 4096
+    oscillators: Oscillators
 
     def _make_chip(self, cause: str) -> None:
         bus: Any = self._bus
         bus.put(RCAUSE, 1, RESETS[cause])
         bus.put(GENCTRL, 4, DFLL | GENERATOR_ON)
         parts: Any = self
-        parts.clocks = Oscillators(bus)
+        self.oscillators = parts.clocks = Oscillators(bus)
         parts.port = PortA(bus, lambda: self.pwm.changed())
         parts.port.key_log = self.key_log
         parts.pwm = Setpoint(bus, parts.clocks, lambda: parts.port)
