@@ -23,6 +23,7 @@ def test_info_tells_limits_firmware_and_counters(fdvv: Run) -> None:
     info = json.loads(fdvv("device", "info", "--json").out)
     assert (info["name"], info["simulated"], info["mode"]) == ("host", True, "idle")
     assert info["counters"]["bad_frames"] == 0
+    assert (info["force_loop"], info["load_cell"]) == ("open", None)
     assert "force_limit_cN" in fdvv("device", "info").out
     assert json.loads(fdvv("device", "info", "--device", "twin", "--json").out)["name"] == "twin"
 

@@ -138,6 +138,7 @@ def test_a_board_tells_its_load_cell_and_the_state_of_its_loop() -> None:
     assert (state(device), device.loop) == (LoopState.OPEN, None)
     device.close_loop(GAINS)
     assert (state(device), device.loop) == (LoopState.CLOSED, GAINS)
+    assert device.force_loop.state() == "closed"
     device.close_loop(None)
     assert (state(device), device.loop) == (LoopState.OPEN, None)
 
@@ -249,7 +250,7 @@ def test_a_host_with_another_definition_of_the_loop_is_refused(monkeypatch: pyte
 def test_a_board_without_a_floating_point_unit_renders_by_tables(tmp_path: Path) -> None:
     subprocess.run(["make", "-s", "-C", str(HOST), f"BUILD={tmp_path}", "LOOP="], check=True)
     with opened(HostBoard(tmp_path / "fdvv-host")) as device:
-        assert (device.has_loop, device.load_cell, device.loop) == (False, None, None)
+        assert (device.force_loop.state(), device.load_cell, device.loop) == ("none", None, None)
         assert refusal(device.client.read_force_loop)[0] is Refusal.UNKNOWN_MESSAGE
         with pytest.raises(DeviceError, match="this board has no force loop; it renders by tables only"):
             device.close_loop(GAINS)
@@ -326,6 +327,7 @@ def test_a_cell_that_fails_in_a_press_is_reported_and_the_loop_stays_open() -> N
         device.press(100.0)
     found = device.client.read_force_loop()
     assert (found.state, found.fault) == (LoopState.FAILED, LoopFault.CELL_DEAD)
+    assert device.force_loop.state() == "failed, cell_dead"
     assert device.loop is None
     device.press(100.0)
     device.close_loop(GAINS)

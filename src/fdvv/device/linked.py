@@ -130,7 +130,7 @@ class LinkedDevice(Remote):
             if self.settings() != person.settings:
                 self.configure(person.settings)
                 self._clear_first_fault()
-            if self.has_loop and _cell_of(person) is not None:
+            if self.force_loop.exists and _cell_of(person) is not None:
                 self.fit_cell(_cell_of(person))
         except BaseException:
             self.port.close()
@@ -194,7 +194,7 @@ class LinkedDevice(Remote):
                 self.stop()
             self.port.connect(self._person.rest(self._settings))
         self._fail_on_fault()
-        self._fail_on_open_loop()
+        self.force_loop.check()
         return self._joined(truth, ticks, velocity_mm_s)
 
     def _joined(self, truth: Truth, ticks: IntArray, velocity_mm_s: float) -> Press:

@@ -10,6 +10,7 @@ import numpy as np
 
 from fdvv.device.client import Client
 from fdvv.device.contract import DeviceInfo, FaultReport, check_speed, check_table
+from fdvv.device.remote_loop import RemoteLoop
 from fdvv.device.telemetry import TickColumns
 from fdvv.device.wire import Port, RefusedError
 from fdvv.errors import DeviceError, ModelError
@@ -21,7 +22,6 @@ from fdvv.protocol.tables import (
     CellSpec,
     Fault,
     ForceLoopGains,
-    LoopFault,
     Mode,
     Refusal,
     Settings,
@@ -53,6 +53,7 @@ class Remote:
     Attributes
     ----------
     client : the connection.
+    force_loop : the loop of a board that has one.
     travel_mm, image : of the active program as uploaded here; None and empty before.
     """
 
@@ -62,9 +63,7 @@ class Remote:
         self.travel_mm: float | None = None
         self.image = b""
         self._closed = False
-        self._load_cell: CellSpec | None = None
-        self._loop: tuple[ForceLoopGains, int] | None = None
-        self._read_cell()
+        self.force_loop = RemoteLoop(client)
 
     def info(self) -> DeviceInfo:
         hello, settings = self.client.hello, self._settings
@@ -85,70 +84,28 @@ class Remote:
         Raises DeviceError with the device's reason, one of which is that it is rendering.
         """
         self.client.write_settings(settings)
-        self._settings, self.travel_mm, self._loop = settings, None, None
-        self._read_cell()
-
-    @property
-    def has_loop(self) -> bool:
-        """Whether the firmware can close a force loop."""
-        return bool(self.client.hello.board_flags & BoardFlag.FORCE_LOOP)
+        self._settings, self.travel_mm = settings, None
+        self.force_loop.read()
 
     @property
     def load_cell(self) -> CellSpec | None:
-        return self._load_cell
+        return self.force_loop.load_cell
 
     @property
     def loop(self) -> ForceLoopGains | None:
-        """The gains that were sent in this connection; a new one, a fault or other settings open the loop."""
-        if self._loop is None or self._loop[1] != self.client.connections:
-            return None
-        return self._loop[0]
+        return self.force_loop.gains
 
     def fit_cell(self, cell: CellSpec | None) -> None:
         """Say which load cell is fitted; opens the loop. DeviceError on a board without a force loop."""
-        self._loop = self.travel_mm = None
-        none = CellSpec(plate_kg=0.0, stiffness_N_m=0.0, damping_N_s_m=0.0, filter_s=0.0)
-        self.client.write_load_cell(cell or none)
-        self._read_cell()
+        self.travel_mm = None
+        self.force_loop.fit(cell)
 
     def close_loop(self, gains: ForceLoopGains | None) -> None:
         """Close the loop, or open it; upload again afterwards. DeviceError without a cell, or with the
         device's reason, one of which is that it is rendering.
         """
-        if gains is not None and self.load_cell is None:
-            lacks = "this rig has no load cell" if self.has_loop else "this board has no force loop"
-            raise DeviceError(f"{self.client.port.name}: {lacks}; it renders by tables only")
-        if gains is not None:
-            self._greet_loop()
-            self.client.close_force_loop(gains)
-        elif self.has_loop:
-            self._greet_loop()
-            self.client.open_force_loop()
+        self.force_loop.close(gains)
         self.travel_mm = None
-        self._loop = None if gains is None else (gains, self.client.connections)
-
-    def _read_cell(self) -> None:
-        if not self.has_loop:
-            return
-        found = self.client.read_force_loop()
-        cell = CellSpec(**{name: getattr(found, name) for name in CellSpec.REALS})
-        self._load_cell = cell if cell.stiffness_N_m > 0 else None
-
-    def _greet_loop(self) -> None:
-        """Compare definitions again: after a new connection the board knows nothing of the last one."""
-        self.client.read_force_loop()
-
-    def _fail_on_open_loop(self) -> None:
-        """Raise DeviceError if the loop was opened by itself in a press."""
-        if self.loop is None:
-            return
-        fault = LoopFault(self.client.read_force_loop().fault)
-        if fault is not LoopFault.SOUND:
-            self._loop = None
-            raise DeviceError(
-                f"{self.client.port.name}: the force loop opened, {fault.name.lower()}; "
-                "check the load cell and its cable, then close the loop again"
-            )
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         check_table(self.info(), surface, travel_mm)
@@ -174,7 +131,7 @@ class Remote:
         return FaultReport(*found, reply.time_us * 1e-6, *at, reply.count)
 
     def clear_fault(self) -> None:
-        self._loop = None  # a fault opens it
+        self.force_loop.forget()  # a fault opens it
         self.client.clear_fault(self.fault().fault)
 
     def close(self) -> None:
@@ -205,7 +162,7 @@ class Remote:
         """Raise DeviceError if the device fell to zero force."""
         report = self.fault()
         if report.fault is not Fault.NONE:
-            self._loop = None
+            self.force_loop.forget()
             raise DeviceError(f"{self.client.port.name}: fell to zero force, {report}; clear the fault")
 
 
@@ -252,7 +209,7 @@ class PressedDevice(Remote):
             found = self._wait(travel_mm)
         finally:
             self.stop()
-        self._fail_on_open_loop()
+        self.force_loop.check()
         return self._record(found, velocity_mm_s)
 
     def _wait(self, travel_mm: float) -> TickColumns:

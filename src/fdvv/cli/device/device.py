@@ -115,7 +115,8 @@ def info(spec: str, as_json: bool) -> None:
     if as_json:
         ui.print_json(document)
         return
-    flat = {k: v for k, v in document.items() if not isinstance(v, dict)}
+    flat = {k: v for k, v in document.items() if v is not None and not isinstance(v, dict)}
+    flat |= document.get("load_cell") or {}
     flat |= document.get("counters", {})
     ui.print_table(["what", "value"], [[k, str(v)] for k, v in flat.items()], left=2)
 
@@ -129,6 +130,8 @@ def _firmware(found: Remote) -> dict[str, Any]:
         "serial": hello.serial,
         "mode": Mode(client.ping().mode).name.lower(),
         "fault": str(found.fault()),
+        "force_loop": found.force_loop.state(),
+        "load_cell": asdict(found.load_cell) if found.load_cell else None,
         "counters": asdict(client.counters()),
     }
 
