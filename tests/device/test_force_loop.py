@@ -17,6 +17,8 @@ from fdvv.device.boards import HostBoard, LibraryBoard
 from fdvv.device.contract import ForceLoopDevice
 from fdvv.device.linked import LinkedDevice
 from fdvv.device.plant import Inputs, Outputs
+from fdvv.device.remote import PressedDevice
+from fdvv.device.serial import SerialPort
 from fdvv.device.twin import SimulatedPerson, TwinDevice
 from fdvv.device.wire import RefusedError
 from fdvv.errors import DeviceError, ModelError
@@ -39,6 +41,8 @@ from fdvv.testing.conformance import plain_surface
 from fdvv.twin.settings import cell_of
 from tests.support.force_loop_press import CONTROLLER, KNOWN, RIG
 from tests.support.link_rigs import linked
+from tests.support.pressed_rig import SETTINGS, Rig
+from tests.support.scripted_person import ScriptedPerson
 
 HOST = Path(__file__).resolve().parents[2] / "firmware" / "boards" / "host"
 CELL = cell_of(RIG) or CellSpec(plate_kg=0.0, stiffness_N_m=0.0, damping_N_s_m=0.0, filter_s=0.0)
@@ -301,6 +305,21 @@ def test_what_ends_a_session_opens_the_loop(
     with closed(board()) as device:
         end(device)
         assert (state(device), device.loop) == (LoopState.OPEN, None)
+
+
+def test_the_loop_is_closed_over_a_serial_line() -> None:
+    rig = Rig(ScriptedPerson(), 1)
+    rig.start()
+    with PressedDevice(SerialPort(rig.path)) as device:
+        device.configure(replace(SETTINGS, force_gain_q14=8192, force_offset_counts=2048))
+        device.fit_cell(CELL)
+        device.close_loop(replace(GAINS, tick_s=1e-6 * SETTINGS.tick_us))
+        assert device.force_loop.state() == "closed"
+        device.upload(plain_surface(), 4.0)
+        assert device.force_loop.state() == "closed"
+        device.client.reconnect()
+        assert (device.force_loop.state(), device.loop) == ("open", None)
+    rig.end()
 
 
 def test_a_board_that_starts_has_its_loop_open() -> None:
