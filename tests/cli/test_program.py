@@ -74,7 +74,7 @@ def test_mistakes_get_one_line(fdvv: Run, tmp_path: Path) -> None:
 
 
 def test_a_program_that_may_not_come_back_is_not_sent_to_a_device(fdvv: Run, tmp_path: Path) -> None:
-    save_program(make("button", "mx-clear"), tmp_path / "c.fdvv-program.json")
+    save_program(make("multi-level", "mx-clear"), tmp_path / "c.fdvv-program.json")
     ran = fdvv("device", "upload", "c.fdvv-program.json", "--device", "host")
     assert ran.status == 2
     assert "may not lift the cap" in ran.err

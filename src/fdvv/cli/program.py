@@ -115,6 +115,10 @@ def make(name: str, base: str | None, given: tuple[str, ...], output: Path) -> N
     made = make_shipped(name, model, **dict(map(_parameter, given)))
     save_program(made, output)
     click.echo(f"{output}: {ui.counted(len(made.states), 'state')}, travel {made.travel_mm:.3f} mm")
+    refused = check_program(made).refused
+    ui.print_warnings(
+        [f"a rig refuses it: {one}; {one.remedy}, with --set or another base" for one in refused[:1]]
+    )
 
 
 def _parameter(text: str) -> tuple[str, float]:

@@ -112,7 +112,7 @@ def require_accepted(program: Program, limits: Limits | None = None) -> Report:
     if report.refused:
         first = report.refused[0]
         place = f"state {first.state!r}, {first.place}" if first.state else first.place
-        remedy = "change it; fdvv program check lists everything"
+        remedy = f"{first.remedy}; fdvv program check lists everything"
         raise InputError(f"program {program.name!r}", place, first.reason, remedy)
     return report
 

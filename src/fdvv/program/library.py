@@ -8,6 +8,7 @@ each does is promised in its docstring and tested in tests/program/test_ideas.py
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from importlib import resources
@@ -28,8 +29,19 @@ from fdvv.program.button import (
 )
 from fdvv.program.condition import Condition, Transition, When
 from fdvv.program.file import PROGRAM_SUFFIX, load_program, program_from_json
+from fdvv.program.motion import Motion
 from fdvv.program.program import Program, Signal, State, Velocity, VibrationEvent
-from fdvv.program.surface import STEP_mm, Surface, flat, of_model, raised, scaled
+from fdvv.program.surface import (
+    Limits,
+    RETURNING_cN,
+    STEP_mm,
+    Surface,
+    flat,
+    of_model,
+    raised,
+    returning,
+    scaled,
+)
 
 BASE = "mx-red"
 """Base of the shipped programs by default: linear, so that nothing distracts."""
@@ -201,7 +213,8 @@ def rapid_trigger(
 ) -> Program:
     """Go down after any fall of press_mm and up after any rise of release_mm, wherever in the stroke.
 
-    All four in steps of 0.01 mm. Falls and rises count from the highest and the deepest point since the key
+    All four in steps of 0.01 mm; top_dead_mm is 0.3 or, unless it is set, as deep as the cap of a weak base
+    may bounce. Falls and rises count from the highest and the deepest point since the key
     last changed. Above top_dead_mm the key is always up; within bottom_dead_mm of the bottom it is always
     down. The feel is the base's.
     """
@@ -285,6 +298,7 @@ def make(name: str, base: FDVVModel | str | None = None, /, **parameters: float)
 
     base : the model it extends, or the name of a built-in; mx-red by default.
     parameters : those of the program; the others have their defaults.
+    Forces of the base that would not bring the cap back against friction are raised; the description says so.
     Raises InputError for an unknown name or parameter, or a value out of range. The result is not checked.
     """
     if name not in MAKERS:
@@ -302,7 +316,33 @@ def make(name: str, base: FDVVModel | str | None = None, /, **parameters: float)
             parameters[parameter] = int(value)
     model = load_builtin(base or BASE) if base is None or isinstance(base, str) else base
     check_ranges(name, model, **(known | parameters))
-    return MAKERS[name](model, **parameters)
+    made = _returning(MAKERS[name](model, **parameters))
+    if name == "rapid-trigger" and "top_dead_mm" not in parameters:
+        deeper_mm = _bounce_mm(made)
+        if deeper_mm > known["top_dead_mm"]:
+            return make(name, model, **parameters, top_dead_mm=deeper_mm)
+    return made
+
+
+def _returning(program: Program) -> Program:
+    """Raise the forces that would not bring the cap back, and say by how much; surfaces that pull stay."""
+    surfaces = tuple(returning(s) if s.table_cN.max() > RETURNING_cN else s for s in program.surfaces)
+    pairs = zip(surfaces, program.surfaces, strict=True)
+    raised_cN = max(float((new.table_cN - old.table_cN).max()) for new, old in pairs)
+    if raised_cN <= 0:
+        return program
+    said = (
+        f"Forces below {RETURNING_cN:g} cN are raised to it, by up to {raised_cN:.1f}, to bring the cap back."
+    )
+    return replace(program, surfaces=surfaces, description=f"{program.description} {said}")
+
+
+def _bounce_mm(program: Program) -> float:
+    """Return how deep a cap may bounce from the top in the start state, to 0.01 mm, upward."""
+    limits = Limits()
+    motion = Motion(program, limits, limits.grid_error_cN)
+    start = [state.name for state in program.states].index(program.start)
+    return math.ceil(100 * float(motion.cells.edges_mm[motion.top_cells(start).stop])) / 100
 
 
 def load_shipped(name: str) -> Program:

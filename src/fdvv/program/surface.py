@@ -147,6 +147,22 @@ def raised(surface: Surface, name: str, points: Sequence[tuple[float, float]]) -
     return _of_table(name, x_mm, np.array(surface.velocity_mm_s), table)
 
 
+CONTACT_mm = 0.09
+RETURNING_cN = 10.0
+"""Force that brings a cap back: twice the friction that a program is checked with."""
+
+
+def returning(surface: Surface) -> Surface:
+    """Raise every force below RETURNING_cN to it, but for the contact in the first 0.1 mm.
+
+    A real button is returned by its spring; its curve at speed may fall to nothing near the top, where the
+    finger leaves the cap behind, and a rig that followed it would leave its cap there.
+    """
+    beyond = np.array(surface.displacement_mm) > CONTACT_mm
+    table = np.where(beyond, np.maximum(surface.table_cN, RETURNING_cN), surface.table_cN)
+    return _of_table(surface.name, np.array(surface.displacement_mm), np.array(surface.velocity_mm_s), table)
+
+
 @dataclass(frozen=True, eq=False)
 class Grid:
     """A surface as an image holds it.
