@@ -60,7 +60,12 @@ static void estimate(fdvv_core *core, uint16_t force_counts, int16_t force_cN64)
     fdvv_force_loop_turn(&core->loop, metres(core->settings.reversal_um16));
 }
 
-static int32_t ahead_um16(const fdvv_core *core) { return um16(fdvv_force_loop_ahead_m(&core->loop)); }
+/* Conditions look at the estimated displacement, which has no lag, and a fade starts from the last target. */
+static void see_estimates(fdvv_core *core, fdvv_machine_inputs *in)
+{
+    core->position.um16 = um16(core->loop.x_m);
+    in->command_cN64 = short_cN64(core->loop.target_N);
+}
 
 /* The program's force at this displacement: of one stroke, or between both after a turn. */
 static float force_N(fdvv_core *core, fdvv_machine_inputs *in, int32_t at_um16)
@@ -79,8 +84,9 @@ static float force_N(fdvv_core *core, fdvv_machine_inputs *in, int32_t at_um16)
 /* The program's force where the drive acts, and at the present displacement, turned into a command. */
 static int32_t close_cN64(fdvv_core *core, fdvv_machine_inputs *in)
 {
-    float ahead_N = force_N(core, in, ahead_um16(core));
+    float ahead_N = force_N(core, in, um16(fdvv_force_loop_ahead_m(&core->loop)));
     float now_N = force_N(core, in, um16(core->loop.x_m));
+    fdvv_force_loop_enter(&core->loop, core->machine.state, now_N);
     return short_cN64(fdvv_force_loop_command_N(&core->loop, ahead_N, now_N, travel_m(core)));
 }
 

@@ -19,6 +19,12 @@
 #define ERROR_N 0.5f
 #define FEEDBACK_N 3.0f
 #define INTEGRAL_N 0.5f
+/* The feedback takes over a step of the target with this lag: its lead would answer a step with a kick that throws the
+ * cap off the finger. */
+#define STEP_s 1e-3f
+/* A cap that nothing touches and that is faster than any finger gets the drag that programs are checked with. */
+#define FREE_m_s 0.3f
+#define FREE_N_s_m 4.0f
 
 /* A turn counts from here on: the noise of the estimated displacement is below it. */
 #define TREMBLE_m 1e-5f
@@ -58,6 +64,7 @@ void fdvv_force_loop_init(fdvv_force_loop *loop, const fdvv_force_loop_gains *ga
     loop->gains = *gains;
     loop->scale = 1.0f;
     loop->enabled = 1;
+    loop->state = FDVV_NO_STATE;
 }
 
 /* Correct the prediction by the position's reading, which lags: it is compared with a lagging copy of the state. */
@@ -210,16 +217,34 @@ static float feedback_N(fdvv_force_loop *loop, float error_N, float top, float b
     return fed_N * gate(loop, fed_N, top, bottom) + loop->integral_N;
 }
 
+void fdvv_force_loop_enter(fdvv_force_loop *loop, uint8_t state, float now_N)
+{
+    if (loop->state != state && loop->state != FDVV_NO_STATE)
+        loop->step_N += loop->target_N - now_N;
+    loop->state = state;
+    loop->target_N = now_N;
+}
+
+/* Force against a free cap that flies faster than a finger follows. */
+static float free_drag_N(const fdvv_force_loop *loop)
+{
+    float beyond_m_s = loop->v_m_s - clamp(loop->v_m_s, -FREE_m_s, FREE_m_s);
+    return (1.0f - loop->contact) * FREE_N_s_m * beyond_m_s;
+}
+
 float fdvv_force_loop_command_N(fdvv_force_loop *loop, float ahead_N, float now_N, float travel_m)
 {
     const fdvv_force_loop_gains *g = &loop->gains;
     float top = ramp(loop->x_m, TOP_FROM_m, TOP_WHOLE_m);
     float bottom = ramp(travel_m - loop->x_m, BOTTOM_FROM_m, BOTTOM_WHOLE_m);
-    float error_N = clamp(now_N - loop->force_N, -ERROR_N, ERROR_N);
+    /* a finger cannot be pulled */
+    float wanted_N = now_N + loop->step_N > 0.0f ? now_N + loop->step_N : 0.0f;
+    float error_N = clamp(wanted_N - loop->force_N, -ERROR_N, ERROR_N);
     float fast_m_s = loop->v_m_s + g->velocity_lead_s * loop->a_m_s2, total_N;
     loop->contact += g->contact_rate * (ramp(loop->force_N, CONTACT_FROM_N, CONTACT_WHOLE_N) - loop->contact);
     total_N = ahead_N + g->weight_N - (g->drag_N_s_m + g->brake_N_s_m) * fast_m_s - friction_N(g, fast_m_s);
-    total_N += feedback_N(loop, error_N, top, bottom);
+    total_N += feedback_N(loop, error_N, top, bottom) + free_drag_N(loop);
+    loop->step_N -= loop->step_N * (g->tick_s < STEP_s ? g->tick_s / STEP_s : 1.0f);
     loop->slow_m_s += g->highpass_rate * (loop->v_m_s - loop->slow_m_s);
     total_N += loop->scale * g->damping_N_s_m * (loop->v_m_s - loop->slow_m_s) * top * bottom * loop->contact;
     return total_N / gain_at(g, fdvv_force_loop_ahead_m(loop));

@@ -13,6 +13,8 @@ typedef struct {
     float coil_N, cell_coil_N, last_N;
     float force_N;            /* at the finger */
     float error_N, low_N[2], integral_N, slow_m_s, contact;
+    float target_N;           /* of the last tick: what a fade begins with */
+    float step_N;             /* left of the last step of the target, which the feedback follows with a lag */
     float last_m;             /* displacement at the last turn's check */
     float release;            /* weight of the release's curve: 0 in a press, 1 once the cap has turned */
     float scale;              /* of what is fed back: halved at each ringing */
@@ -21,7 +23,10 @@ typedef struct {
     int8_t side;              /* of the last large feedback */
     uint8_t turns;            /* of its sign, in ringing_ticks */
     uint8_t enabled, started, at_stop, fault;
+    uint8_t state;            /* of the program in the last tick; FDVV_NO_STATE before the first */
 } fdvv_force_loop;
+
+#define FDVV_NO_STATE 255
 
 void fdvv_force_loop_init(fdvv_force_loop *loop, const fdvv_force_loop_gains *gains);
 
@@ -52,6 +57,10 @@ void fdvv_force_loop_turn(fdvv_force_loop *loop, float reversal_m);
 
 /* Displacement when the drive of this tick acts. */
 float fdvv_force_loop_ahead_m(const fdvv_force_loop *loop);
+
+/* Take note of the program's state and of its target at the present displacement: a target that steps from one state
+ * to the next reaches the drive at once, and the feedback within a few milliseconds. */
+void fdvv_force_loop_enter(fdvv_force_loop *loop, uint8_t state, float now_N);
 
 /* Command for a target at the displacement ahead and one at the present displacement. */
 float fdvv_force_loop_command_N(fdvv_force_loop *loop, float ahead_N, float now_N, float travel_m);

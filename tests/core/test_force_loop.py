@@ -59,14 +59,15 @@ class Loop:
             getattr(self._lib, f"fdvv_force_loop_{name}").restype = ctypes.c_float
         self._lib.fdvv_force_loop_init(self._memory, gains.pack())
 
-    def tick(self, position_m: float, cell_N: float, target_N: float) -> tuple[float, float]:
-        """Return displacement ahead and command of a tick with the same target ahead and now."""
+    def tick(self, position_m: float, cell_N: float, target_N: float, state: int = 0) -> tuple[float, float]:
+        """Return displacement ahead and command of a tick with the same target ahead and now, in a state."""
         number = ctypes.c_float
         lib, memory = self._lib, self._memory
         lib.fdvv_force_loop_estimate(memory, number(position_m), number(cell_N), number(TRAVEL_m))
         lib.fdvv_force_loop_turn(memory, number(1e-4))
         ahead = float(lib.fdvv_force_loop_ahead_m(memory))
         target = number(target_N)
+        lib.fdvv_force_loop_enter(memory, ctypes.c_uint8(state), target)
         command = float(lib.fdvv_force_loop_command_N(memory, target, target, number(TRAVEL_m)))
         lib.fdvv_force_loop_predict(memory, number(command))
         return ahead, command
@@ -95,8 +96,11 @@ class Oracle:
     total: float = 0.0
     slow: float = 0.0
     touch: float = 0.0
+    state: int | None = None
+    target: float = 0.0
+    step: float = 0.0
 
-    def tick(self, position_m: float, f: float, target: float) -> tuple[float, float]:
+    def tick(self, position_m: float, f: float, target: float, state: int = 0) -> tuple[float, float]:
         g = self.g
         if self.s is None:
             self.x = self.s = position_m
@@ -111,7 +115,11 @@ class Oracle:
         self.a = push / g.mass_kg
         felt = f + g.plate_kg * self.a
         ahead = self.x + g.lead_s * self.v + 0.5 * g.lead_s**2 * self.a
-        error = float(np.clip(target - felt, -0.5, 0.5))
+        if self.state not in (None, state):
+            self.step += self.target - target
+        self.state, self.target = state, target
+        error = float(np.clip(max(target + self.step, 0.0) - felt, -0.5, 0.5))
+        self.step *= 1 - g.tick_s / 1e-3
         self.touch += g.contact_rate * (float(np.clip((felt - 0.005) / 0.03, 0, 1)) - self.touch)
         wanted = g.proportional * error + g.derivative_s * (error - self.e) / g.tick_s
         self.e = error
@@ -125,6 +133,7 @@ class Oracle:
         self.slow += g.highpass_rate * (self.v - self.slow)
         bracket = target + g.weight_N - (g.drag_N_s_m + g.brake_N_s_m) * fast
         bracket -= g.friction_N * np.clip(fast / g.friction_m_s, -1, 1)
+        bracket += 4.0 * (1 - self.touch) * (self.v - float(np.clip(self.v, -0.3, 0.3)))
         bracket += fed + self.total + g.damping_N_s_m * (self.v - self.slow) * self.touch
         command = bracket / (g.gain + ahead * (g.gain_1_m + ahead * g.gain_1_m2))
         mean = command + g.compute_ratio * (self.last - command)
@@ -158,6 +167,30 @@ def test_the_loop_follows_its_equations_between_the_stops() -> None:
         wanted_ahead, wanted = oracle.tick(place, force, 0.6)
         assert ahead == pytest.approx(wanted_ahead, abs=2e-7)
         assert command == pytest.approx(wanted, abs=2e-3)
+
+
+def test_a_loop_in_a_program_follows_its_equations_through_pulls_steps_and_free_flight() -> None:
+    random = np.random.default_rng(2)
+    loop, oracle = Loop(), Oracle()
+    t = np.arange(1200) * TICK_s
+    places = 2e-3 + 0.7e-3 * np.sin(2 * np.pi * 80 * t) + 5e-6 * random.standard_normal(t.size)
+    forces = np.maximum(0.0, 0.5 * np.sin(2 * np.pi * 9 * t)) + 1e-4 * random.standard_normal(t.size)
+    states = (t / 0.013).astype(int) % 3
+    for place, force, state in zip(places, forces, states.tolist(), strict=True):
+        target = (0.4, -0.1, 0.7)[state]
+        _, command = loop.tick(place, force, target, state)
+        assert command == pytest.approx(oracle.tick(place, force, target, state)[1], abs=4e-3)
+
+
+def test_a_step_between_states_does_not_kick_a_held_cap() -> None:
+    """The same step of the target within a state is answered by the lead, which wants all that it may."""
+    largest = []
+    for state in (0, 1):
+        loop = Loop()
+        for _ in range(2000):
+            loop.tick(2e-3, 0.6, 0.6)
+        largest.append(max(loop.tick(2e-3, 0.6, 0.2, state)[1] * -1 for _ in range(10)))
+    assert largest[1] < 0.5 * largest[0]
 
 
 def test_a_still_cap_under_its_target_is_commanded_target_and_weight() -> None:
