@@ -29,7 +29,10 @@ def test_a_shipped_program_is_accepted_and_is_that_of_its_file(name: str) -> Non
     assert load_shipped(name) == program
 
 
-TOO_MUCH = {("fast-tapping", "mx-clear"): {"trigger_mm": 1.2}, ("multi-level", "mx-clear"): {"levels": 2}}
+TOO_MUCH: dict[tuple[str, str], dict[str, float]] = {
+    ("fast-tapping", "mx-clear"): {"trigger_mm": 1.2},
+    ("multi-level", "mx-clear"): {"levels": 2},
+}
 """What the check refuses by default, since this light return lets the cap bounce deep, and what helps."""
 
 

@@ -39,7 +39,7 @@ COMMANDS = {
     "press": ("press", "Press a real button; simulated."),
     "probe": ("rendering.compensate", "Measure on fresh presses how well a rig renders a model."),
     "process": ("bench.process", "Turn recorded presses into a model, with its spread over presses."),
-    "program": ("program", "Work with programs: list, show, make, check, compile."),
+    "program": ("program", "Work with programs: list, show, make, check, compile, render."),
     "show": ("show", "Show landmarks and curves of a button."),
     "studio": ("studio", "See, edit, press and tune buttons in the browser."),
     "study": ("study.study", "Compare buttons blind, with people, and analyse what they said."),

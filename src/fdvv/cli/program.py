@@ -1,4 +1,4 @@
-"""fdvv program: list, show, make, check and compile."""
+"""fdvv program: list, show, make, check, compile and render."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ opposing_option = ui.option(
 
 @click.group()
 def program() -> None:
-    """Work with programs: list, show, make, check, compile.
+    """Work with programs: list, show, make, check, compile, render.
 
     A program is what a device runs: states with their forces, and what leads from one to another.
     PROGRAM is a shipped program's name or a *.fdvv-program.json file (docs/reference/program-file.md).
@@ -207,3 +207,31 @@ def compile_(
         worst_cN = max(compiled.grid_error_cN.values())
         click.echo(f"{output}: {len(compiled.image)} bytes, forces within {worst_cN:.2f} cN")
     ui.print_warnings([str(finding) for finding in report.warnings])
+
+
+@program.command()
+@click.argument("program")
+@ui.option(
+    "--rig-known", type=ui.FILE, help="*.rig.json of this rig, as fdvv compensate --save-rig writes it."
+)
+@ui.option("--learned", type=ui.FILE, help="*.actuation.json of a button whose surfaces the program has.")
+@ui.option("--device", "spec", default="twin", help="'twin' is simulated; see fdvv device.")
+@ui.option("--rig", type=ui.RIG, help="Of the twin: recommended, light, paper ..., or a TOML file.")
+@ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the twin.")
+@ui.speeds_option("--velocity", "velocities_mm_s", help="mm/s; repeatable.")
+@ui.option("--presses", type=click.IntRange(1, 50), default=3, help="Per speed, as it is and rendered.")
+@ui.option("-o", "--output", type=ui.NEW_FILE, help="The *.fdvv-image to write, for this rig.")
+@ui.json_option
+def render(
+    program: str, rig_known: Path | None, learned: Path | None, output: Path | None, **options: Any
+) -> None:
+    """Render a program on an identified rig, and measure in every state how it is felt.
+
+    A rig with a load cell holds the program's forces with its loop closed; on another one they become the
+    commands that this rig needs. The twin presses the program as it is and as it is rendered: errors are at
+    the finger, in true displacement, against what the active state intends. Any other device gets the
+    rendering and is ready to be pressed.
+    """
+    from fdvv.cli.program_render import render as run
+
+    run(program, rig_known, learned, output, **options)

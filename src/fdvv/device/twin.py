@@ -53,6 +53,7 @@ class TwinDevice:
         self._settings = settings_of(self._rig)
         self._random = np.random.default_rng(seed)
         self._active: bytes | None = None
+        self._paced_on = b""
         self._paces: dict[float, float] = {}
         self._fresh: set[float] = set()
 
@@ -104,10 +105,15 @@ class TwinDevice:
         except ModelError as error:
             raise DeviceError(f"twin: {error}; upload a coarser or smoother table") from error
 
-    def upload_program(self, image: bytes) -> None:
-        """Make a program (a checked image, protocol/fdvv.toml) active; DeviceError beyond the travel."""
+    def upload_program(self, image: bytes, paced_on: bytes | None = None) -> None:
+        """Make a program (a checked image, protocol/fdvv.toml) active; DeviceError beyond the travel.
+
+        paced_on : image on which the person learned the pace, if not on this one: a cap that a program moves
+            by itself says nothing about the speed of the hand.
+        """
         check_travel(self.info(), travel_mm_of(image))
         self._activate(image)
+        self._paced_on = paced_on or image
 
     def press(self, velocity_mm_s: float) -> Press:
         return self.press_trace(velocity_mm_s).press(velocity_mm_s)
@@ -117,7 +123,7 @@ class TwinDevice:
         if self._active is None:
             raise DeviceError("twin: press before upload; upload a surface first")
         check_speed("twin", velocity_mm_s)
-        press_s = self._pace_s(velocity_mm_s, self._active)
+        press_s = self._pace_s(velocity_mm_s, self._paced_on)
         travel_m, speed_m_s = m_from_mm(travel_mm_of(self._active)), m_from_mm(velocity_mm_s)
         gesture = vary(self._finger, travel_m, press_s, speed_m_s, self._random)
         noise = draw_noise(self._rig, self._finger, gesture, self._random)
@@ -140,7 +146,7 @@ class TwinDevice:
         return trace
 
     def _activate(self, image: bytes) -> None:
-        self._active = image
+        self._active = self._paced_on = image
         self._fresh.clear()
 
     def _pace_s(self, velocity_mm_s: float, image: bytes) -> float:

@@ -11,7 +11,6 @@ import numpy as np
 from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.method import Tuning
 from fdvv.compensation.rig_aware import RigAware
-from fdvv.compensation.rig_learning import tuning_of
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import InputError, ModelError
 from fdvv.library.catalog import BUTTONS, Catalog
@@ -21,6 +20,7 @@ from fdvv.model.file import MODEL_SUFFIX, builtin_names, load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.program.button import button_program
 from fdvv.program.check import require_accepted
+from fdvv.program.compensate import commands
 from fdvv.program.compile import compile_program
 from fdvv.program.condition import When
 from fdvv.program.program import Program, Signal
@@ -29,6 +29,7 @@ from fdvv.program.surface import Surface as ProgramSurface
 from fdvv.project.programs import ProgramCatalog
 from fdvv.protocol.tables import Settings
 from fdvv.rendering.compensate import CompensationResult, compensate
+from fdvv.rendering.program_render import tuning_with
 from fdvv.rendering.tuning import settings_with
 from fdvv.twin.files import load_finger, load_rig
 from fdvv.twin.finger import Finger
@@ -165,16 +166,18 @@ def program_subject(
 ) -> PressSubject:
     """Make a program ready to be pressed. Raises InputError on an unknown rig or a program that is refused.
 
-    Compensated, its rig looks ahead and pushes against its own forces; its tables are the program's own.
+    Compensated, its rig looks ahead and pushes against its own forces; its tables are this rig's commands.
     """
     require_accepted(program)
     name, rig = _rig(mode, rig_name)
-    tuning = Tuning()
-    if mode is PressMode.COMPENSATED:
-        law = RigAware()
-        model = learned_rig(name).rig
-        tuning = tuning_of(model, program.travel_mm, law.bandwidth_Hz, law.friction_mm_s)
-    return _subject(program, mode, name, rig, tuning, _description(mode, name, program=True))
+    description = _description(mode, name, program=True)
+    if mode is not PressMode.COMPENSATED:
+        return _subject(program, mode, name, rig, Tuning(), description)
+    known, limit_cN = learned_rig(name), rig_limits(rig).force_cN
+    tuning, made = tuning_with(known, program.travel_mm), commands(program, known, limit_cN)
+    subject = _subject(made, mode, name, rig, tuning, description, learned=True)
+    press, release = _surfaces(program)
+    return replace(subject, press=press, release=release)
 
 
 @cache

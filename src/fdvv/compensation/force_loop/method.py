@@ -222,12 +222,17 @@ def _surface(job: CompensationJob, corrections: Rows) -> ForceSurface:
     """Return the corrected target, lifted just under the top stop and within the force limit."""
     target, limit = job.target, job.force_limit_cN
     x = target.displacement_mm
-    near = np.clip((LIFT_mm - x) / (LIFT_mm - LIFTED_mm), 0.0, 1.0)
     rows = [
-        np.clip(force + np.maximum(LIFT_cN - force, 0.0) * near + correction, -limit, limit)
+        np.clip(lifted_target_cN(x, force) + correction, -limit, limit)
         for force, correction in zip((target.press_cN, target.release_cN), corrections, strict=True)
     ]
     return ForceSurface(x, target.velocity_mm_s, *rows)
+
+
+def lifted_target_cN(displacement_mm: FloatArray, force_cN: FloatArray) -> FloatArray:
+    """Return a target, (..., n), that rises to LIFT_cN just under the top stop."""
+    near = np.clip((LIFT_mm - displacement_mm) / (LIFT_mm - LIFTED_mm), 0.0, 1.0)
+    return np.asarray(force_cN + np.maximum(LIFT_cN - force_cN, 0.0) * near)
 
 
 def _strokes(
