@@ -5,6 +5,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
+
+from fdvv.compensation.identification.rig_file import LearnedRig, save_rig
+from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.model.surface import ForceSurface
 from fdvv.program.file import load_program, program_to_json, save_program
 from fdvv.program.library import make, programs
 from fdvv.rendering.tuning import program_image
@@ -78,3 +83,40 @@ def test_a_program_that_may_not_come_back_is_not_sent_to_a_device(fdvv: Run, tmp
     ran = fdvv("device", "upload", "c.fdvv-program.json", "--device", "host")
     assert ran.status == 2
     assert "for ever; move the conditions of these states apart" in ran.err
+
+
+def bench_file(tmp_path: Path) -> str:
+    """Write what a person's `fdvv compensate --save-rig` leaves of a rig: here without a residual."""
+    zero = np.zeros((1, 2))
+    residual = ForceSurface(np.array([0.0, 4.0]), np.array([100.0]), zero, zero)
+    rig = RigModel(
+        (0.95, 0.02, -0.003), 1.3e-4, 5e-5, 5.5e-4, 0.3, 0.0, 3.0, 11.8, 11.6, 0.0, 0.01, presses=4
+    )
+    save_rig(LearnedRig(rig, residual, 4.0, np.ones((2, 1))), tmp_path / "bench.rig.json")
+    return "bench.rig.json"
+
+
+def test_render_measures_every_state_and_says_what_is_next(fdvv: Run, tmp_path: Path) -> None:
+    known = bench_file(tmp_path)
+    ran = fdvv(
+        "program", "render", "dwell-ticks", "--rig", "recommended", "--rig-known", known, "--velocity", "100",
+        "--presses", "1", "-o", "d.fdvv-image",
+    )  # fmt: skip
+    assert ran.status == 0, ran.err
+    assert "force loop closed" in ran.out
+    assert "dwelling, press at 100 mm/s" in ran.out
+    assert "dwell-ticks is felt as written" in ran.out
+    assert "next: upload it to the rig" in ran.out
+    assert (tmp_path / "d.fdvv-image").read_bytes()[:4] == b"FDVP"
+
+
+def test_render_makes_another_device_ready_to_be_pressed(fdvv: Run, tmp_path: Path) -> None:
+    ran = fdvv("program", "render", "multi-level", "--device", "host", "--rig-known", bench_file(tmp_path))
+    assert ran.status == 0, ran.err
+    assert "multi-level is active, compensated for this rig" in ran.out
+
+
+def test_render_asks_for_a_rig_that_is_known(fdvv: Run) -> None:
+    ran = fdvv("program", "render", "multi-level")
+    assert ran.status == 2
+    assert "identify it with fdvv compensate BUTTON --save-rig FILE.rig.json" in ran.err
