@@ -51,10 +51,8 @@ static float gain_at(const fdvv_force_loop_gains *g, float x_m)
     return g->gain + x_m * (g->gain_1_m + x_m * g->gain_1_m2);
 }
 
-static float friction_N(const fdvv_force_loop_gains *g, float v_m_s)
-{
-    return g->friction_N * clamp(v_m_s / g->friction_m_s, -1.0f, 1.0f);
-}
+/* Dry friction turns over a distance, not with the sign of the speed: that sign would shake a held cap. */
+static float friction_N(const fdvv_force_loop *loop) { return loop->gains.friction_N * loop->slid; }
 
 void fdvv_force_loop_init(fdvv_force_loop *loop, const fdvv_force_loop_gains *gains)
 {
@@ -154,13 +152,15 @@ void fdvv_force_loop_estimate(fdvv_force_loop *loop, float position_m, float cel
 {
     const fdvv_force_loop_gains *g = &loop->gains;
     if (!loop->started) {
-        loop->x_m = loop->lagging_m = loop->last_m = position_m;
+        loop->x_m = loop->lagging_m = loop->last_m = loop->slid_m = position_m;
         loop->started = 1;
     }
     loop->at_stop = (uint8_t)(loop->x_m > travel_m - NEAR_STOP_m || loop->x_m < NEAR_STOP_m);
     correct(loop, position_m);
+    loop->slid = clamp(loop->slid + (loop->x_m - loop->slid_m) / g->friction_m, -1.0f, 1.0f);
+    loop->slid_m = loop->x_m;
     loop->a_m_s2 = (cell_N + g->plate_kg * loop->a_m_s2 - loop->cell_coil_N - g->drag_N_s_m * loop->v_m_s -
-                    friction_N(g, loop->v_m_s) + g->weight_N + loop->unknown_N) / g->mass_kg;
+                    friction_N(loop) + g->weight_N + loop->unknown_N) / g->mass_kg;
     if (loop->at_stop)
         loop->a_m_s2 = off_stop(loop, loop->a_m_s2, cell_N, travel_m);
     loop->force_N = cell_N + g->plate_kg * loop->a_m_s2;
@@ -240,9 +240,12 @@ float fdvv_force_loop_command_N(fdvv_force_loop *loop, float ahead_N, float now_
     /* a finger cannot be pulled */
     float wanted_N = now_N + loop->step_N > 0.0f ? now_N + loop->step_N : 0.0f;
     float error_N = clamp(wanted_N - loop->force_N, -ERROR_N, ERROR_N);
-    float fast_m_s = loop->v_m_s + g->velocity_lead_s * loop->a_m_s2, total_N;
+    float fast_m_s = loop->v_m_s + g->velocity_lead_s * loop->a_m_s2, helped, total_N;
     loop->contact += g->contact_rate * (ramp(loop->force_N, CONTACT_FROM_N, CONTACT_WHOLE_N) - loop->contact);
-    total_N = ahead_N + g->weight_N - (g->drag_N_s_m + g->brake_N_s_m) * fast_m_s - friction_N(g, fast_m_s);
+    /* at a stop the estimate is the sensor's noise, which would make the cap rattle */
+    helped = top * bottom;
+    total_N = ahead_N + g->weight_N;
+    total_N -= helped * ((g->drag_N_s_m + g->brake_N_s_m) * fast_m_s + friction_N(loop));
     total_N += feedback_N(loop, error_N, top, bottom) + free_drag_N(loop);
     loop->step_N -= loop->step_N * (g->tick_s < STEP_s ? g->tick_s / STEP_s : 1.0f);
     loop->slow_m_s += g->highpass_rate * (loop->v_m_s - loop->slow_m_s);

@@ -17,6 +17,7 @@ typedef struct {
     float step_N;             /* left of the last step of the target, which the feedback follows with a lag */
     float last_m;             /* displacement at the last turn's check */
     float release;            /* weight of the release's curve: 0 in a press, 1 once the cap has turned */
+    float slid, slid_m;       /* part of the dry friction, -1 to 1, and the displacement it was taken at */
     float scale;              /* of what is fed back: halved at each ringing */
     uint16_t counts;          /* last reading of the cell */
     uint16_t same_ticks, unexplained_ticks, ringing_ticks;

@@ -7,7 +7,7 @@
 #include "protocol.h"
 
 #define FDVV_FORCE_LOOP_PROTOCOL_VERSION 1
-#define FDVV_FORCE_LOOP_PROTOCOL_HASH 0x4b67e524u
+#define FDVV_FORCE_LOOP_PROTOCOL_HASH 0x562e8365u
 
 
 /* why a request of the force loop was not carried out, beyond those of every request */
@@ -61,7 +61,7 @@ typedef struct {
     float drag_N_s_m; /* N s/m; 0.0 to 100.0; of the bushing */
     float brake_N_s_m; /* N s/m; -100.0 to 100.0; of a coil driven by a voltage */
     float friction_N; /* N; 0.0 to 10.0 */
-    float friction_m_s; /* m/s; 1e-05 to 10.0; speed above which it is whole */
+    float friction_m; /* m; 1e-06 to 0.01; displacement after a turn at which it has turned too */
     float weight_N; /* N; -10.0 to 10.0 */
     float gain; /* 0.01 to 100.0; force per commanded force, a parabola over the displacement */
     float gain_1_m; /* 1/m; -100000.0 to 100000.0 */
@@ -91,7 +91,7 @@ typedef char fdvv_force_loop_gains_has_132_bytes[sizeof(fdvv_force_loop_gains) =
     X(drag_N_s_m, 0.0f, 100.0f) \
     X(brake_N_s_m, -100.0f, 100.0f) \
     X(friction_N, 0.0f, 10.0f) \
-    X(friction_m_s, 1e-05f, 10.0f) \
+    X(friction_m, 1e-06f, 0.01f) \
     X(weight_N, -10.0f, 10.0f) \
     X(gain, 0.01f, 100.0f) \
     X(gain_1_m, -100000.0f, 100000.0f) \

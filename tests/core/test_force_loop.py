@@ -27,7 +27,7 @@ GAINS = ForceLoopGains(
     drag_N_s_m=0.4,
     brake_N_s_m=0.0,
     friction_N=0.04,
-    friction_m_s=0.01,
+    friction_m=1e-4,
     weight_N=0.12,
     gain=0.95,
     gain_1_m=20.0,
@@ -96,6 +96,8 @@ class Oracle:
     total: float = 0.0
     slow: float = 0.0
     touch: float = 0.0
+    slid: float = 0.0
+    slid_at: float = 0.0
     state: int | None = None
     target: float = 0.0
     step: float = 0.0
@@ -103,14 +105,16 @@ class Oracle:
     def tick(self, position_m: float, f: float, target: float, state: int = 0) -> tuple[float, float]:
         g = self.g
         if self.s is None:
-            self.x = self.s = position_m
+            self.x = self.s = self.slid_at = position_m
         gains = g.free_gains
         beyond = position_m - self.s
         self.x += gains[0] * beyond
         self.v += gains[1] * beyond
         self.d = float(np.clip(self.d + gains[2] * beyond, -0.15, 0.15))
         self.s += gains[3] * beyond
-        rub = g.friction_N * np.clip(self.v / g.friction_m_s, -1, 1)
+        self.slid = float(np.clip(self.slid + (self.x - self.slid_at) / g.friction_m, -1, 1))
+        self.slid_at = self.x
+        rub = g.friction_N * self.slid
         push = f + g.plate_kg * self.a - self.u_f - g.drag_N_s_m * self.v - rub + g.weight_N + self.d
         self.a = push / g.mass_kg
         felt = f + g.plate_kg * self.a
@@ -132,7 +136,7 @@ class Oracle:
         fast = self.v + g.velocity_lead_s * self.a
         self.slow += g.highpass_rate * (self.v - self.slow)
         bracket = target + g.weight_N - (g.drag_N_s_m + g.brake_N_s_m) * fast
-        bracket -= g.friction_N * np.clip(fast / g.friction_m_s, -1, 1)
+        bracket -= rub
         bracket += 4.0 * (1 - self.touch) * (self.v - float(np.clip(self.v, -0.3, 0.3)))
         bracket += fed + self.total + g.damping_N_s_m * (self.v - self.slow) * self.touch
         command = bracket / (g.gain + ahead * (g.gain_1_m + ahead * g.gain_1_m2))

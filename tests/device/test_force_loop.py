@@ -113,9 +113,9 @@ def test_the_same_press_as_on_the_twin_within_what_two_presses_differ() -> None:
     twin = TwinDevice(RIG, seed=2)
     twin.close_loop(GAINS)
     twin.upload(plain_surface(), 4.0)
-    off = [np.abs(error_cN(device)).mean() for device in (twin, closed())]
-    assert off[1] == pytest.approx(off[0], rel=0.4)
-    assert off[1] < 1.0
+    off = [[np.abs(error_cN(device)).mean() for _ in range(4)] for device in (twin, closed())]
+    assert np.median(off[1]) == pytest.approx(np.median(off[0]), abs=0.15)
+    assert max(off[0] + off[1]) < 1.0
 
 
 def error_cN(device: TwinDevice | LinkedDevice) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

@@ -12,7 +12,8 @@ from fdvv.compensation.force_loop.stability import LoopController, LoopPlant
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.units import FloatArray, N_from_cN, m_from_mm
 
-FRICTION_m_s = 0.01
+FRICTION_m = 1e-4
+"""As over reversal_m of the recommended rig: what turns with the stroke turns together."""
 LEAST_kg = 2e-3
 LEAST_s = 1e-5
 CONTACT_s = 1e-3
@@ -61,7 +62,7 @@ def force_loop_gains(
         drag_N_s_m=max(0.0, rig.drag_N_s_m - rig.back_emf_N_s_m),
         brake_N_s_m=rig.back_emf_N_s_m,
         friction_N=float(N_from_cN(max(0.0, rig.friction_cN))),
-        friction_m_s=FRICTION_m_s,
+        friction_m=FRICTION_m,
         weight_N=float(N_from_cN(rig.weight_cN)),
         gain=c0,
         gain_1_m=1e3 * c1,
