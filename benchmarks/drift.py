@@ -14,7 +14,8 @@ from dataclasses import replace
 from tests.support.rig_truth import draw_fast_rig, rig_truth
 
 from fdvv.compensation.identification.drift import detect_drift
-from fdvv.compensation.identification.identify import identification_surface, identify
+from fdvv.compensation.identification.excitation import identification_surface
+from fdvv.compensation.identification.identify import identify
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import FitError, ModelError

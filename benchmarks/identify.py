@@ -18,7 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 from tests.support.rig_truth import draw_fast_rig, missed_cN, rig_truth
 
-from fdvv.compensation.identification.identify import identification_surface, identify
+from fdvv.compensation.identification.balance import PARAMETERS
+from fdvv.compensation.identification.excitation import identification_surface
+from fdvv.compensation.identification.identify import identify
 from fdvv.compensation.identification.rig_model import Prior, RigModel
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import ModelError
@@ -52,23 +54,19 @@ ERRORS = (
 
 def prior_model() -> RigModel:
     """Return the model assumed for any rig before it is pressed."""
-    m = dict(zip(("c0", "c1", "c2", "b", "emf", "f", "w", "m", "p", "x", "d", "e"), _means(), strict=True))
+    m = dict(zip(PARAMETERS, Prior().vectors(2.5e-4)[0].tolist(), strict=True))
     return RigModel(
-        gain=(m["c0"], m["c1"], m["c2"]),
-        delay_s=m["d"] + m["e"],
-        electric_lag_s=m["e"],
-        position_lag_s=m["x"],
-        drag_N_s_m=m["b"] + m["emf"],
-        back_emf_N_s_m=m["emf"],
-        friction_cN=m["f"],
-        weight_cN=m["w"],
-        mass_g=m["m"],
-        play_cN=2 * m["p"],
+        gain=(m["gain_0"], m["gain_1"], m["gain_2"]),
+        delay_s=m["command_delay_s"] + m["electric_lag_s"],
+        electric_lag_s=m["electric_lag_s"],
+        position_lag_s=m["position_lag_s"],
+        drag_N_s_m=m["viscous_N_s_m"] + m["back_emf_N_s_m"],
+        back_emf_N_s_m=m["back_emf_N_s_m"],
+        friction_cN=m["friction_cN"],
+        weight_cN=m["weight_cN"],
+        mass_g=m["mass_g"],
+        play_cN=2 * m["half_play_cN"],
     )
-
-
-def _means() -> list[float]:
-    return [float(mean) for mean in Prior().vectors(2.5e-4)[0]]
 
 
 def numbers(known: RigModel) -> FloatArray:
@@ -103,7 +101,7 @@ def held_against_truth(seed: int, rig: Rig, finger: Finger, ripple_cN: float) ->
     button = load_builtin(BUTTONS[seed % 2])
     target = ForceSurface.of_model(button, SPEEDS_mm_s, 0.05)
     device = TwinDevice(rig, finger, seed)
-    device.upload(identification_surface(target, ripple_cN=ripple_cN), button.travel_mm)
+    device.upload(identification_surface(target, ripple_cN=ripple_cN), button.travel_mm, paced=True)
     presses = [device.press(v) for v in SPEEDS_mm_s]
     begun = time.perf_counter()
     known = identify(presses, button.travel_mm)

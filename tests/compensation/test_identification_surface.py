@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fdvv.compensation.identification.identify import identification_surface
+from fdvv.compensation.identification.excitation import identification_surface
 from fdvv.compensation.tables import grid_mm
 from fdvv.errors import ModelError
 from fdvv.model.file import load_builtin

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from fdvv.compensation.identification.balance import Sensor
-from fdvv.compensation.identification.identify import identification_surface, identify
+from fdvv.compensation.identification.excitation import identification_surface
+from fdvv.compensation.identification.identify import identify
 from fdvv.compensation.identification.rig_model import Plausible, Prior, RigModel
 from fdvv.compensation.rig_aware import explain_rig
 from fdvv.device.twin import TwinDevice
@@ -43,7 +44,7 @@ def presses_of(plant: Plant) -> list[Press]:
 def compare(known: RigModel, plant: Plant) -> dict[str, float]:
     """Return the errors by name, with the gain at mid travel."""
     true, middle = known_of(plant), np.array(0.5 * TRAVEL_mm)
-    names = [name for name in known.error if name != "gain"]
+    names = [name for name in known.error if name not in ("gain", "own_cN")]
     missed = {name: getattr(known, name) - getattr(true, name) for name in names}
     return {**missed, "gain": float(known.gain_at(middle) - true.gain_at(middle))}
 
@@ -59,6 +60,8 @@ CLOSE = {
     "weight_cN": 0.3,
     "mass_g": 0.2,
     "play_cN": 0.01,
+    "stick_cN": 0.1,
+    "side_ratio": 0.002,
 }
 PLANTS = {
     "voltage drive": Plant(),
@@ -74,6 +77,7 @@ def test_without_noise_a_plant_in_closed_form_is_found_again(plant: Plant) -> No
     known = identify(presses_of(plant), TRAVEL_mm, no_play)
     missed = compare(known, plant)
     assert {name: found for name, found in missed.items() if abs(found) > CLOSE[name]} == {}
+    assert np.abs(known.own_cN).max() < 0.1
     assert known.residual_cN < 0.05
 
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fdvv.compensation.identification.balance import Sensor
-from fdvv.compensation.identification.identify import identification_surface, identify
+from fdvv.compensation.identification.excitation import identification_surface
+from fdvv.compensation.identification.identify import identify
 from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.identification.rig_model import Prior, RigModel
 from fdvv.compensation.method import UNTUNED, CompensationJob, Outcome, PressCount, Trial, Tuning

@@ -15,6 +15,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from fdvv.compensation.identification.own_force import NODES, hats
 from fdvv.compensation.presses import rig_columns
 from fdvv.compensation.tables import bin_force
 from fdvv.errors import FitError, ModelError
@@ -55,6 +56,13 @@ def windows(tick_s: float) -> tuple[FloatArray, ...]:
 def windowed(window: FloatArray, signal: FloatArray) -> FloatArray:
     """Convolve a signal with a window, (n,); beyond its ends the signal holds its end values."""
     return np.convolve(np.pad(signal, window.size // 2, mode="edge"), window, mode="valid")
+
+
+def windowed_columns(window: FloatArray, signals: FloatArray) -> FloatArray:
+    """Convolve every column of (n, k) signals with a window; see windowed()."""
+    from scipy.ndimage import convolve1d
+
+    return np.asarray(convolve1d(signals, window, axis=0, mode="nearest"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,16 +122,20 @@ def noise(columns: list[FloatArray]) -> float:
 
 PARAMETERS = (
     *("gain_0", "gain_1", "gain_2", "viscous_N_s_m", "back_emf_N_s_m", "friction_cN", "weight_cN", "mass_g"),
-    *("half_play_cN", "position_lag_s", "command_delay_s", "electric_lag_s"),
+    *("half_play_cN", "stick_cN", "side_ratio", "position_lag_s", "command_delay_s", "electric_lag_s"),
 )
-"""Estimated parameters, in the order of every vector; the last three are nonlinear."""
+"""Estimated parameters, in the order of every vector; the own force's values follow. Three are nonlinear."""
 GAIN = slice(0, 3)
-VISCOUS, BACK_EMF, FRICTION, WEIGHT, MASS, PLAY, LAG, DELAY, ELECTRIC = range(3, 12)
+VISCOUS, BACK_EMF, FRICTION, WEIGHT, MASS, PLAY, STICK, SIDE, LAG, DELAY, ELECTRIC = range(3, 14)
+OWN = slice(ELECTRIC + 1, ELECTRIC + 1 + NODES)
+NUMBER_COUNT, COUNT = OWN.start, OWN.stop
 LINEAR = slice(0, LAG)
 MOVING = (VISCOUS, BACK_EMF, MASS, LAG)
 """Parameters whose columns contain the noise of the sensed position."""
 MASS_cN = cN_PER_g_m_s2 / 1000.0
 """A gram accelerated by 1 mm/s2."""
+STRIBECK_mm_s = 25.0
+"""Speed over which static friction fades to sliding friction; bushings have 5 to 60."""
 SLIDING_mm_s = 4.0
 """Width of the smoothed sign function of dry friction."""
 STILL_mm_s = 15.0
@@ -179,7 +191,7 @@ def rendered_cN(ticks: Ticks, sensor: Sensor) -> FloatArray:
 
 
 def columns(ticks: Ticks, numbers: FloatArray, stretch: FloatArray) -> FloatArray:
-    """Return the regressors of the linear parameters, (n, 9); stretch is that of the sensor's play, -1 to 1.
+    """Return the regressors of the linear numbers, (n, 11); stretch is that of the sensor's play, -1 to 1.
 
     The regressor of back-EMF depends on the gain in numbers.
     """
@@ -191,8 +203,21 @@ def columns(ticks: Ticks, numbers: FloatArray, stretch: FloatArray) -> FloatArra
     x = ticks.ahead_mm(lag)
     lagged = (first_order_lag(command * x**power, electric, ticks.tick_s) for power in range(3))
     pushes = [windowed(window, push) for push in lagged]
-    rub = windowed(window, np.tanh(v / SLIDING_mm_s))
-    rest = [DRAG_cN * v, braking(ticks, numbers), rub, np.full(v.size, -1.0), MASS_cN * a, -stretch]
+    sliding = np.tanh(v / SLIDING_mm_s)
+    rub, stick, side = (
+        windowed(window, sliding * load)
+        for load in (np.ones(v.size), np.exp(-np.abs(v) / STRIBECK_mm_s), ticks.force_cN)
+    )
+    rest = [
+        DRAG_cN * v,
+        braking(ticks, numbers),
+        rub,
+        np.full(v.size, -1.0),
+        MASS_cN * a,
+        -stretch,
+        stick,
+        side,
+    ]
     return np.stack([*pushes, *rest], axis=1)
 
 
@@ -227,28 +252,38 @@ def _derived(ticks: Ticks, signal: FloatArray, numbers: FloatArray) -> FloatArra
     return first_order_lag(DRAG_cN * (first + numbers[LAG] * second), numbers[ELECTRIC], ticks.tick_s)
 
 
-def predicted(ticks: Ticks, numbers: FloatArray, stretch: FloatArray, sensor: Sensor) -> FloatArray:
-    """Return the windowed force that these parameters predict, (n,)."""
-    return np.asarray(columns(ticks, numbers, stretch) @ with_cone(numbers, sensor))
+def predicted(
+    ticks: Ticks, numbers: FloatArray, stretch: FloatArray, sensor: Sensor, step_mm: float
+) -> FloatArray:
+    """Return the windowed force that these parameters predict, (n,); step_mm: of the own force's values."""
+    places = step_mm * np.arange(NODES)
+    own = np.interp(ticks.ahead_mm(numbers[LAG]), places, numbers[OWN])
+    described = columns(ticks, numbers, stretch) @ with_cone(numbers, sensor)
+    return np.asarray(described + windowed(windows(ticks.tick_s)[0], own))
 
 
 def with_cone(numbers: FloatArray, sensor: Sensor) -> FloatArray:
-    """Return the linear parameters with the sensor's cone added to the mass, (9,)."""
+    """Return the linear numbers with the sensor's cone added to the mass, (11,)."""
     loaded = numbers[LINEAR].copy()
     loaded[MASS] += sensor.cone_g
     return loaded
 
 
 def slopes(
-    ticks: Ticks, numbers: FloatArray, stretch: FloatArray, sensor: Sensor
+    ticks: Ticks, numbers: FloatArray, stretch: FloatArray, sensor: Sensor, step_mm: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the predicted force, (n,), and its derivative by every parameter, (n, 12)."""
-    linear = columns(ticks, numbers, stretch)
-    force = linear @ with_cone(numbers, sensor)
-    linear[:, GAIN] += braking_slopes(ticks, numbers)
-    nudges = NUDGE_s * np.eye(numbers.size)[[LAG, DELAY, ELECTRIC]]
-    nudged = [(predicted(ticks, numbers + n, stretch, sensor) - force) / NUDGE_s for n in nudges]
-    return force, np.column_stack([linear, *nudged])
+    """Return the predicted force, (n,), and its derivative by every parameter, (n, COUNT)."""
+    found = np.empty((ticks.t_s.size, COUNT))
+    found[:, LINEAR] = columns(ticks, numbers, stretch)
+    own = hats(ticks.ahead_mm(numbers[LAG]), step_mm)
+    found[:, OWN] = windowed_columns(windows(ticks.tick_s)[0], own)
+    force = found[:, LINEAR] @ with_cone(numbers, sensor) + found[:, OWN] @ numbers[OWN]
+    found[:, GAIN] += braking_slopes(ticks, numbers)
+    for place in (LAG, DELAY, ELECTRIC):
+        nudged = numbers.copy()
+        nudged[place] += NUDGE_s
+        found[:, place] = (predicted(ticks, nudged, stretch, sensor, step_mm) - force) / NUDGE_s
+    return force, found
 
 
 def play_stretch(ticks: Ticks) -> FloatArray:

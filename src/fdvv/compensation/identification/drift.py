@@ -14,12 +14,17 @@ from fdvv.compensation.identification.balance import (
     GAIN,
     LAG,
     MASS,
+    OWN,
     PLAY,
+    SIDE,
+    STICK,
     VISCOUS,
     WEIGHT,
     ticks_of,
 )
-from fdvv.compensation.identification.identify import RigEstimation, along, parameter_vector, residual_cN
+from fdvv.compensation.identification.estimation import RigEstimation
+from fdvv.compensation.identification.identify import along, parameter_vector, residual_cN
+from fdvv.compensation.identification.own_force import NODES
 from fdvv.compensation.identification.rig_model import Prior, RigModel
 from fdvv.model.press import Press
 from fdvv.units import FloatArray
@@ -34,7 +39,7 @@ SHARED_ratio = 0.25
 UNINFORMATIVE_VARIANCE = 1e6
 """Variance of a change already reported, in squares of the prior's spread."""
 LEAST_drag_ratio, LEAST_drag_N_s_m = 0.15, 0.2
-LEAST_lag_ms = 0.2
+LEAST_lag_ms, LEAST_spring_cN_mm = 0.2, 2.0
 ERRORS = {
     0: "gain",
     VISCOUS: "drag_N_s_m",
@@ -42,6 +47,8 @@ ERRORS = {
     WEIGHT: "weight_cN",
     MASS: "mass_g",
     PLAY: "play_cN",
+    STICK: "stick_cN",
+    SIDE: "side_ratio",
     LAG: "position_lag_s",
     ELECTRIC: "electric_lag_s",
 }
@@ -73,12 +80,15 @@ def detect_drift(
     """
     prior = prior or Prior()
     problem = RigEstimation([ticks_of(press, "the press", prior.tick_s)], travel_mm, prior)
-    problem.mean = numbers = parameter_vector(rig)
+    problem.mean = numbers = parameter_vector(rig, problem.own_step_mm)
     runs = problem.runs(numbers)
     gradient, matrix = problem.normal(numbers, runs)
     outlier_cN = max(OUTLIER_RESIDUAL_ratio * rig.residual_cN, rig.residual_cN + OUTLIER_RESIDUAL_cN)
     outlier = residual_cN(problem, numbers, runs) > outlier_cN
-    changes = _largest_changes(rig, problem.spread, gradient, matrix - np.eye(numbers.size), outlier)
+    slopes = gradient, matrix - np.eye(numbers.size)
+    changes = _largest_changes(
+        problem.unroot, _changes(rig, problem.own_step_mm), _doubt(rig), slopes, outlier
+    )
     messages = [_message(change, size) for change, size in changes]
     left = residual_cN(problem, numbers + sum(size * change.along for change, size in changes), runs)
     if left > outlier_cN:
@@ -89,18 +99,24 @@ def detect_drift(
 
 
 def _largest_changes(
-    rig: RigModel, spread: FloatArray, gradient: FloatArray, matrix: FloatArray, outlier: bool
+    unroot: FloatArray,
+    changes: list[_Change],
+    errors: FloatArray,
+    slopes: tuple[FloatArray, FloatArray],
+    outlier: bool,
 ) -> list[tuple[_Change, float]]:
-    """Find changes one by one, the most significant first; vectors in spreads of the prior.
+    """Find changes one by one, the most significant first; gradient and matrix in roots of the prior.
 
-    For an outlier the likeliest change is returned even if it is not significant.
+    errors : that count against a change. For an outlier the likeliest change is returned even if it is not
+    significant.
     """
     found: list[tuple[_Change, float]] = []
-    changes, doubt = _changes(rig), np.diag((SHARED_ratio * _errors(rig) / spread) ** 2)
+    gradient, matrix = slopes
+    doubt = unroot @ np.diag(errors**2) @ unroot.T
     while len(found) < MOST_changes:
-        shrunk = np.linalg.inv(np.eye(spread.size) + matrix @ doubt)
+        shrunk = np.linalg.inv(np.eye(gradient.size) + matrix @ doubt)
         slope, curve = shrunk @ gradient, shrunk @ matrix
-        sized = [(change, *_size(change.along / spread, slope, curve)) for change in changes]
+        sized = [(change, *_size(unroot @ change.along, slope, curve)) for change in changes]
         possible = [s for s in sized if s[0].was + s[1] >= min(s[0].lowest, s[0].was)]
         if not possible:
             break
@@ -110,7 +126,8 @@ def _largest_changes(
         if abs(size) >= change.least:
             found.append((change, size))
         changes.remove(change)
-        doubt = doubt + UNINFORMATIVE_VARIANCE * np.outer(change.along / spread, change.along / spread)
+        reported = unroot @ change.along
+        doubt = doubt + UNINFORMATIVE_VARIANCE * np.outer(reported, reported)
     return found
 
 
@@ -121,9 +138,11 @@ def _size(along: FloatArray, slope: FloatArray, curve: FloatArray) -> tuple[floa
     return size, abs(size) * weight**0.5
 
 
-def _changes(rig: RigModel) -> list[_Change]:
+def _changes(rig: RigModel, own_step_mm: float) -> list[_Change]:
     """List the possible changes: gain and drag relative to their old values, the rest in their units."""
-    numbers = parameter_vector(rig)
+    numbers = parameter_vector(rig, own_step_mm)
+    places = own_step_mm * (np.arange(NODES, dtype=np.float64) - 0.5 * (NODES - 1))
+    stiffness = float(np.polyfit(places, numbers[OWN], 1)[0])
     # a warm coil pushes and brakes less, and braking counts at gain 1 with the square of the gain
     coil = along((GAIN, numbers[GAIN]), (BACK_EMF, -numbers[BACK_EMF]))
     least_drag = max(LEAST_drag_ratio * rig.drag_N_s_m, LEAST_drag_N_s_m)
@@ -132,6 +151,7 @@ def _changes(rig: RigModel) -> list[_Change]:
         _Change("drag", "N s/m", along((VISCOUS, 1.0)), rig.drag_N_s_m, least_drag),
         _Change("friction", "cN", along((FRICTION, 1.0)), rig.friction_cN, 1.5),
         _Change("weight", "cN", along((WEIGHT, 1.0)), rig.weight_cN, 3.0, -np.inf),
+        _Change("spring", "cN/mm", along((OWN, places)), stiffness, LEAST_spring_cN_mm, -np.inf),
         _Change("mass", "g", along((MASS, 1.0)), rig.mass_g, 2.0),
         _Change("play", "cN", along((PLAY, 0.5)), rig.play_cN, 2.0),
         _Change("position lag", "ms", along((LAG, 1e-3)), 1e3 * rig.position_lag_s, LEAST_lag_ms),
@@ -139,11 +159,15 @@ def _changes(rig: RigModel) -> list[_Change]:
     ]
 
 
-def _errors(rig: RigModel) -> FloatArray:
-    """Return the standard error of each parameter, (12,); the gain's is that of its first coefficient."""
+def _doubt(rig: RigModel) -> FloatArray:
+    """Return the part of the standard errors that counts against a change, (COUNT,).
+
+    The gain's is that of its first coefficient.
+    """
     found = along(*((place, rig.error.get(name, 0.0)) for place, name in ERRORS.items()))
     found[PLAY] *= 0.5
-    return found
+    found[OWN] = rig.error.get("own_cN", 0.0)
+    return SHARED_ratio * found
 
 
 def _message(change: _Change, size: float) -> str:
@@ -152,5 +176,5 @@ def _message(change: _Change, size: float) -> str:
         return f"{change.name} {moved} {abs(size):.0%}"
     digits = 2 if change.unit == "ms" else 1
     to = change.was + size
-    share = f" ({size / change.was:+.0%})" if change.was > 0 else ""
+    share = f" ({size / change.was:+.0%})" if change.was > 0.1 * abs(size) else ""
     return f"{change.name} {moved} from {change.was:.{digits}f} to {to:.{digits}f} {change.unit}{share}"

@@ -109,6 +109,12 @@ class RigRecord(msgspec.Struct, forbid_unknown_fields=True):
     residual_cN: float
     presses: int
     error: dict[str, float]
+    stick_cN: float = 0.0
+    side_ratio: float = 0.0
+    own_cN: tuple[float, ...] = ()
+    own_step_mm: float = 0.25
+    at_bound: tuple[str, ...] = ()
+    misfit: str = ""
     learned: LearnedRecord | None = None
 
 
@@ -117,6 +123,7 @@ def save_rig(rig: RigModel | LearnedRig, path: Path | str) -> None:
     model = rig.rig if isinstance(rig, LearnedRig) else rig
     numbers = {f.name: getattr(model, f.name) for f in fields(model)}
     numbers |= {"gain": list(model.gain), "error": dict(model.error)}
+    numbers |= {"own_cN": list(model.own_cN), "at_bound": list(model.at_bound)}
     if isinstance(rig, LearnedRig):
         tables = {name: column.tolist() for name, column in vars(rig.residual).items()}
         numbers["learned"] = {"travel_mm": rig.travel_mm, **tables, "error_cN": rig.error_cN.tolist()}

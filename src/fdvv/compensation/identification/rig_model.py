@@ -11,6 +11,7 @@ from fdvv.compensation.identification.balance import (
     PARAMETERS,
     DRAG_cN,
     Sensor,
+    STRIBECK_mm_s,
     cN_PER_g_m_s2,
     first_order_lag,
 )
@@ -22,7 +23,8 @@ from fdvv.units import FloatArray
 class RigModel:
     """A rig as identified from its own presses; the finger's force at time t is
 
-        rendered(t) = coil(t) + viscous v + friction sign(v) - weight + mass a
+        rendered(t) = coil(t) + viscous v + rub sign(v) + own(x) - weight + mass a
+        rub = friction + stick exp(-|v| / 25 mm/s) + side rendered
         coil(t) + lag coil'(t) = gain(x) command(t - delay_s + lag) + back_emf gain(x)^2 v
 
     with x, v, a the cap's true motion, positive into the button, and lag the electric one. To first order a
@@ -41,13 +43,21 @@ class RigModel:
     drag_N_s_m : viscous friction and, with a voltage drive, back-EMF where the gain is 1.
     back_emf_N_s_m : the coil's part of drag_N_s_m, proportional to the square of the gain.
     friction_cN : dry friction, half of the loop between both directions.
-    weight_cN : of the mover along the stroke; negative if it hangs.
+    weight_cN : mean over the travel of what pulls the cap down: the mover's weight, less the mean of springs
+        and cables; negative if it hangs.
     mass_g : of all that moves with the cap.
     play_cN : hysteresis of the finger's force sensor, whole loop.
+    stick_cN : friction at rest beyond friction_cN; it fades with speed (Stribeck).
+    side_ratio : friction per force of the finger, from the side load on the bushing.
+    own_cN : the rig's own force over displacement beside its weight, at steps of own_step_mm from 0, linear
+        between them, held beyond; empty for none. Flexures, cables and detents make it.
     position_noise_mm, force_noise_cN : rms, as sensed from tick to tick.
     residual_cN : rms residual of the presses it was identified from, averaged over 8 ms.
     presses : it was identified from.
-    error : standard error of every estimated number above, by its name; of ``gain`` at mid travel.
+    error : standard error of every estimated number above, by its name; of ``gain`` at mid travel, of
+        ``own_cN`` the rms over the travel.
+    at_bound : names of the numbers that rest on a bound of their prior: the presses do not show them.
+    misfit : what the presses show that the model lacks, in one sentence; empty if nothing.
     """
 
     gain: tuple[float, float, float] = (1.0, 0.0, 0.0)
@@ -60,16 +70,24 @@ class RigModel:
     weight_cN: float = 0.0
     mass_g: float = 0.0
     play_cN: float = 0.0
+    stick_cN: float = 0.0
+    side_ratio: float = 0.0
+    own_cN: tuple[float, ...] = ()
+    own_step_mm: float = 0.25
     position_noise_mm: float = 0.0
     force_noise_cN: float = 0.0
     residual_cN: float = 0.0
     presses: int = 0
     error: Mapping[str, float] = field(default_factory=dict)
+    at_bound: tuple[str, ...] = ()
+    misfit: str = ""
 
     def __post_init__(self) -> None:
-        numbers = [getattr(self, f.name) for f in fields(self) if f.name not in ("gain", "error")]
-        if not np.isfinite([*numbers, *self.gain, *self.error.values()]).all():
+        numbers = [value for f in fields(self) if isinstance(value := getattr(self, f.name), (int, float))]
+        if not np.isfinite([*numbers, *self.gain, *self.own_cN, *self.error.values()]).all():
             raise ModelError(f"a rig model needs finite numbers, got {self}")
+        if not (self.own_step_mm > 0 and abs(self.side_ratio) < 1):
+            raise ModelError(f"a rig model needs own_step_mm above 0 and side_ratio within 1, got {self}")
 
     def gain_at(self, displacement_mm: FloatArray) -> FloatArray:
         """Return the gain, force on the finger per command, the shape of displacement_mm."""
@@ -81,16 +99,35 @@ class RigModel:
         braking = self.back_emf_N_s_m * self.gain_at(displacement_mm) ** 2
         return np.asarray(self.drag_N_s_m - self.back_emf_N_s_m + braking)
 
+    def own_at(self, displacement_mm: FloatArray) -> FloatArray:
+        """Return the rig's own force against the finger at rest, weight included, of any shape."""
+        if not self.own_cN:
+            return np.full(np.shape(displacement_mm), -self.weight_cN)
+        steps = self.own_step_mm * np.arange(len(self.own_cN))
+        return np.asarray(np.interp(displacement_mm, steps, self.own_cN) - self.weight_cN)
+
+    def rub_at(self, velocity_mm_s: FloatArray, load_cN: FloatArray | float = 0.0) -> FloatArray:
+        """Return the dry friction at a speed of either sign under a finger's force, without direction."""
+        stick = self.stick_cN * np.exp(-np.abs(velocity_mm_s) / STRIBECK_mm_s)
+        return np.asarray(self.friction_cN + stick + self.side_ratio * load_cN)
+
     def opposing_cN(
-        self, velocity_mm_s: FloatArray, acceleration_m_s2: FloatArray, displacement_mm: FloatArray
+        self,
+        velocity_mm_s: FloatArray,
+        acceleration_m_s2: FloatArray,
+        displacement_mm: FloatArray,
+        load_cN: FloatArray | float = 0.0,
     ) -> FloatArray:
-        """Return the force on the finger that the rig itself adds in a motion at zero command, all (n,)."""
+        """Return the force on the finger that the rig itself adds in a motion at zero command, all (n,).
+
+        load_cN : the finger's force, whose side load rubs.
+        """
         drag = self.drag_at(displacement_mm)
         emf = drag - (self.drag_N_s_m - self.back_emf_N_s_m)
-        rub = self.friction_cN * np.sign(velocity_mm_s)
+        rub = self.rub_at(velocity_mm_s, load_cN) * np.sign(velocity_mm_s)
         late_g = 1000.0 * emf * self.electric_lag_s
         inertia = cN_PER_g_m_s2 * (self.mass_g - late_g) * acceleration_m_s2
-        return np.asarray(DRAG_cN * drag * velocity_mm_s + rub - self.weight_cN + inertia)
+        return np.asarray(DRAG_cN * drag * velocity_mm_s + rub + self.own_at(displacement_mm) + inertia)
 
     def coil_cN(
         self,
@@ -119,8 +156,10 @@ class RigModel:
         """Return the force on the finger between the stops, (n,) as every column; see coil_cN()."""
         coil = self.coil_cN(t_s, displacement_mm, velocity_mm_s, commanded_cN)
         viscous = DRAG_cN * (self.drag_N_s_m - self.back_emf_N_s_m) * velocity_mm_s
-        rest = viscous + self.friction_cN * np.sign(velocity_mm_s) - self.weight_cN
-        return coil + rest + cN_PER_g_m_s2 * self.mass_g * acceleration_m_s2
+        way = np.sign(velocity_mm_s)
+        rest = viscous + self.rub_at(velocity_mm_s) * way + self.own_at(displacement_mm)
+        rest = rest + cN_PER_g_m_s2 * self.mass_g * acceleration_m_s2
+        return np.asarray((coil + rest) / (1.0 - self.side_ratio * way))
 
 
 @dataclass(frozen=True)
@@ -147,6 +186,8 @@ RANGES: Mapping[str, Plausible] = {
     "weight_cN": Plausible(20.0, 20.0),
     "mass_g": Plausible(22.0, 8.0, 1.0),
     "half_play_cN": Plausible(1.5, 1.0, 0.0, 5.0),
+    "stick_cN": Plausible(0.0, 1.5),
+    "side_ratio": Plausible(0.0, 0.02),
     "position_lag_s": Plausible(9e-4, 4e-4, 5e-5, 4e-3),
     "electric_lag_s": Plausible(5e-4, 4e-4, 2e-5, 4e-3),
 }
