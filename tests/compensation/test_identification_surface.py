@@ -49,6 +49,14 @@ def test_ripples_differ_between_strokes_and_have_no_steps() -> None:
         assert np.abs(np.diff(ripple)).max() < 8.0
 
 
+def test_every_second_speed_is_pressed_on_a_higher_level_and_the_next_turn_exchanges_them() -> None:
+    row = np.full((3, 81), 60.0)
+    flat = ForceSurface(grid_mm(4.0, 0.05), np.array([50.0, 100.0, 200.0]), row, row)
+    first, second = (identification_surface(flat, turn=turn).press_cN[:, 20] for turn in (0, 1))
+    np.testing.assert_allclose(first - first[0], [0.0, 24.0, 0.0])
+    np.testing.assert_allclose(second - second[1], [24.0, 0.0, 24.0])
+
+
 def test_a_limit_below_the_hold_and_ripples_below_none_are_refused() -> None:
     target = TARGETS["mx-red"]
     with pytest.raises(ModelError, match="got -1"):

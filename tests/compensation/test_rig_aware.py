@@ -14,7 +14,7 @@ from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.compensation.method import CompensationJob, PressCount, Trial, Tuning
 from fdvv.compensation.presses import HOME_mm
 from fdvv.compensation.rig_aware import LOOSE_SPEED_TOLERANCE_ratio, RigAware, RigState
-from fdvv.compensation.rig_learning import LIFT_cN, PressError, command_cN
+from fdvv.compensation.rig_learning import LIFT_cN, PressError, command_cN, least_command_cN
 from fdvv.errors import ModelError
 from fdvv.model.file import load_builtin
 from fdvv.model.press import Press
@@ -54,7 +54,7 @@ def test_a_job_takes_four_presses_and_the_rounds_at_every_speed(states: list[Rig
     trials = [trial for state in states if (trial := METHOD.trial(state))]
     assert [t.velocity_mm_s for t in trials] == [50, 100, 200, 50, *[50, 100, 200] * 2]
     assert [t.pace_ratio for t in trials] == [float("inf")] * 4 + [LOOSE_SPEED_TOLERANCE_ratio] * 6
-    assert [t.tuning == Tuning() for t in trials] == [True] * 4 + [False] * 6
+    assert [t.tuning == Tuning(paced=True) for t in trials] == [True] * 4 + [False] * 6
     assert len(states) == 11
 
 
@@ -115,7 +115,8 @@ def test_a_memory_gives_tables_without_a_press() -> None:
         (outcome.surface.press_cN, TARGET.press_cN, 3.0),
         (outcome.surface.release_cN, TARGET.release_cN, -3.0),
     ):
-        expected_cN = command_cN(known, TARGET.displacement_mm, target) + more
+        learned_cN = command_cN(known, TARGET.displacement_mm, target) + more
+        expected_cN = np.maximum(learned_cN, least_command_cN(known, TARGET.displacement_mm, 440.0))
         np.testing.assert_allclose(table[:, beyond], expected_cN[:, beyond])
     assert [c.mean_error_cN for c in outcome.curves] == [2.0] * 6
     with_presses = replace(method, rounds=1)
@@ -141,7 +142,9 @@ def test_the_cap_is_held_up_at_home_and_the_limit_is_kept() -> None:
     lift = (LIFT_cN + known.weight_cN) / known.gain_at(TARGET.displacement_mm[home])
     np.testing.assert_allclose(surface.press_cN[:, home], np.tile(lift, (3, 1)))
     low = replace(JOB, force_limit_cN=90.0)
-    assert np.abs(method.done(method.init(low)).surface.press_cN).max() == 90.0
+    bounded = method.done(method.init(low)).surface
+    assert np.abs(bounded.press_cN).max() <= 90.0
+    assert bounded.release_cN.max() == 90.0
 
 
 def test_in_a_slow_stroke_the_table_takes_off_the_friction_that_the_controller_does_not() -> None:

@@ -119,10 +119,10 @@ def own_N(r: OtherRig, x: FloatArray) -> FloatArray:
     return np.asarray(r.spring_N_m * y + r.spring_N_m3 * y**3 + cable + detent)
 
 
-Kinds = ("spring", "cable", "detent", "friction", "gain", "rocking")
+KINDS = ("spring", "cable", "detent", "friction", "gain", "rocking")
 
 
-def draw_other_rig(random: np.random.Generator, kinds: Sequence[str] = Kinds) -> OtherRig:
+def draw_other_rig(random: np.random.Generator, kinds: Sequence[str] = KINDS) -> OtherRig:
     """Draw a rig that has these kinds of other physics, the rest as plain as the model assumes."""
     u = random.uniform
     voltage = random.random() < 0.5
@@ -179,7 +179,7 @@ def draw_other_rig(random: np.random.Generator, kinds: Sequence[str] = Kinds) ->
             "bushing_m": u(0.01, 0.02),
         },
     }
-    for kind in Kinds:
+    for kind in KINDS:
         drawn |= other[kind] if kind in kinds else {}
     return OtherRig(**{name: float(value) for name, value in drawn.items()})
 

@@ -46,11 +46,16 @@ QUANTITIES = {
     "position_lag_s": ("position lag", "ms"),
     "play_cN": ("sensor play", "cN"),
 }
+NOTICED_cN, NOTICED_errors = 2.0, 2.0
+"""A rig's own force is reported from here on, over the travel and in standard errors."""
 
 
 def explain_rig(rig: RigModel, middle_mm: float = 2.0) -> str:
-    """Summarize a rig with standard errors, and which estimates are weak; the gain at middle_mm."""
-    found, weak = [], []
+    """Summarize a rig with standard errors; the gain at middle_mm.
+
+    A number is not known if its error exceeds it or it rests on a bound, and weak if its error is large.
+    """
+    found, weak, unknown = [], [], []
     for name, (words, unit) in QUANTITIES.items():
         value = float(rig.gain_at(np.array(middle_mm))) if name == "gain" else float(getattr(rig, name))
         error = rig.error.get(name, 0.0)
@@ -58,10 +63,23 @@ def explain_rig(rig: RigModel, middle_mm: float = 2.0) -> str:
         digits = 2 if unit in ("", "ms") else 1
         end = f" {unit}" if unit else ""
         found.append(f"{words} {scale * value:.{digits}f} +- {scale * error:.{digits}f}{end}")
-        if error > WEAK_ratio * abs(value):
+        if error > abs(value) or name in rig.at_bound:
+            unknown.append(words)
+        elif error > WEAK_ratio * abs(value):
             weak.append(words)
+    found += _own_force(rig)
     text = f"{', '.join(found)}, from {rig.presses} presses; {rig.residual_cN:.1f} cN rms unexplained"
-    return f"{text}; weak: {', '.join(weak)}" if weak else text
+    text = f"{text}; not known: {', '.join(unknown)}" if unknown else text
+    text = f"{text}; weak: {', '.join(weak)}" if weak else text
+    return f"{text}; {rig.misfit}" if rig.misfit else text
+
+
+def _own_force(rig: RigModel) -> list[str]:
+    """Describe the rig's own force over displacement, if there is one."""
+    span, error = float(np.ptp(rig.own_cN)) if rig.own_cN else 0.0, rig.error.get("own_cN", 0.0)
+    if span < max(NOTICED_cN, NOTICED_errors * error):
+        return []
+    return [f"own force over displacement {span:.1f} +- {error:.1f} cN from least to most"]
 
 
 ANY_SPEED_ratio, LOOSE_SPEED_TOLERANCE_ratio = float("inf"), 0.6
@@ -73,8 +91,11 @@ MAX_SPEED_DEVIATION_ratio = 0.5
 def identification_trial(job: CompensationJob, made: int) -> Trial:
     """Return the next press of an identification after so many, at the job's speeds in turn."""
     speeds = job.target.velocity_mm_s
-    surface = identification_surface(job.target, limit_cN=job.force_limit_cN)
-    return Trial(surface, float(speeds[made % speeds.size]), pace_ratio=ANY_SPEED_ratio)
+    turn, at = divmod(made, speeds.size)
+    surface = identification_surface(job.target, limit_cN=job.force_limit_cN, turn=turn)
+    # the announced speed chooses the row, and with it the level
+    speed_mm_s = float(speeds[at])
+    return Trial(surface, speed_mm_s, Tuning(paced=True), ANY_SPEED_ratio)
 
 
 def try_identification(

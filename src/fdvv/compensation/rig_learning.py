@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv.compensation.identification.balance import DRAG_cN, cN_PER_g_m_s2
 from fdvv.compensation.identification.rig_file import LearnedRig
@@ -97,9 +98,15 @@ def added_cN(tuning: Tuning, velocity_mm_s: FloatArray) -> FloatArray:
     return np.asarray(DRAG_cN * tuning.drag_N_s_m * velocity_mm_s + rub)
 
 
-def command_cN(rig: RigModel, grid_mm: FloatArray, target_cN: FloatArray) -> FloatArray:
-    """Return the table that renders the target on a rig at rest, the shape of target_cN."""
-    return np.asarray((target_cN + rig.weight_cN) / rig.gain_at(grid_mm))
+def command_cN(
+    rig: RigModel, grid_mm: FloatArray, target_cN: FloatArray, direction: float = 0.0
+) -> FloatArray:
+    """Return the table that renders the target on a rig at rest, the shape of target_cN.
+
+    direction : 1 for the press, -1 for the release: the side load of the target rubs against it.
+    """
+    borne = target_cN * (1.0 - rig.side_ratio * direction)
+    return np.asarray((borne - rig.own_at(grid_mm)) / rig.gain_at(grid_mm))
 
 
 def required_change(
@@ -120,14 +127,16 @@ def required_change(
     """
     q, dv, da = change
     x = stroke.displacement_mm + q
+    direction = float(np.sign(np.mean(stroke.velocity_mm_s)))
     late_v = stroke.velocity_mm_s + dv - 1000.0 * rig.electric_lag_s * (stroke.acceleration_m_s2 + da)
     gain = rig.gain_at(x)
     viscous = DRAG_cN * (rig.drag_N_s_m - rig.back_emf_N_s_m)
-    own = stroke.own_cN + viscous * dv + cN_PER_g_m_s2 * rig.mass_g * da
+    moved = rig.own_at(x) - rig.own_at(stroke.displacement_mm)
+    own = stroke.own_cN + moved + viscous * dv + cN_PER_g_m_s2 * rig.mass_g * da
     braking = DRAG_cN * rig.back_emf_N_s_m * gain**2 * late_v
     wanted = np.interp(x, *target)
     table = (wanted - own - braking) / gain + added_cN(tuning, late_v)
-    return x, table - command_cN(rig, x, wanted)
+    return x, table - command_cN(rig, x, wanted, direction)
 
 
 def unrepeatable_cN(rig: RigModel, speed_mm_s: float) -> float:
@@ -225,8 +234,53 @@ def learn_stroke(
     return table.updated(seen, speed, unrepeatable_cN(rig, speed), sigma_mm, how.fading)
 
 
+LIFTED_cN = 1.0
+"""What the coil lifts a free cap with, at least, beyond its weight and friction at rest."""
+
+
+def least_command_cN(rig: RigModel, grid_mm: FloatArray, limit_cN: float) -> FloatArray:
+    """Return the least command that lifts a free cap off where it rests, (n,).
+
+    gain command + own(x) > friction at rest. Raises ModelError where the rig cannot, within its limit.
+    """
+    rub = max(0.0, float(rig.rub_at(np.array(0.0))))
+    least = (rub + LIFTED_cN - rig.own_at(grid_mm)) / rig.gain_at(grid_mm)
+    if least.max() > limit_cN:
+        at = int(least.argmax())
+        raise ModelError(
+            f"the cap would hang at {grid_mm[at]:.2f} mm: to lift it takes a command of {least[at]:.0f} cN, "
+            f"the limit is {limit_cN:.0f}; take weight or friction off the rig, or support its spring"
+        )
+    return np.asarray(least)
+
+
+OPEN_LOOP_s = 0.04
+"""A person cannot stop a stroke that takes less: reaction to touch takes 30 to 50 ms."""
+
+
+def stops_within(velocity_mm_s: FloatArray, travel_mm: float) -> npt.NDArray[np.bool_]:
+    """Return at which speeds a finger can stop, and leave the cap, on the way down."""
+    return np.asarray(travel_mm >= OPEN_LOOP_s * velocity_mm_s)
+
+
+def hanging_mm(rig: RigModel, surface: ForceSurface, travel_mm: float) -> FloatArray:
+    """Return the displacements, rising, at which a surface lets a free cap hang.
+
+    It hangs where the coil cannot lift it back against weight, the rig's own force and friction at rest: by
+    any curve of the release, or of a press slow enough to be left on the way. What a fast press takes off its
+    table for inertia makes no cap hang: after the turn at the stop the release's curve lifts it.
+    """
+    grid = surface.displacement_mm
+    lifting = least_command_cN(rig, grid, float("inf")) - LIFTED_cN / rig.gain_at(grid)
+    slow = surface.press_cN[stops_within(surface.velocity_mm_s, travel_mm)]
+    return np.asarray(grid[np.vstack([surface.release_cN, slow]).min(axis=0) <= lifting])
+
+
 def command_surface(job: CompensationJob, rig: RigModel, tables: Pair, friction_mm_s: float) -> ForceSurface:
     """Return the commands: model of the rig plus learned correction, with a lift that holds the cap at rest.
+
+    Where a learned command would let the cap hang, the least one that lifts it is used (hanging_mm()).
+    Raises ModelError if that exceeds the force limit.
 
     friction_mm_s : speed above which the controller compensates friction in full; tables of slower strokes
         contain the rest.
@@ -234,13 +288,17 @@ def command_surface(job: CompensationJob, rig: RigModel, tables: Pair, friction_
     target, limit = job.target, job.force_limit_cN
     grid = target.displacement_mm
     gain = rig.gain_at(grid)
-    lift = (LIFT_cN + rig.weight_cN) / gain
+    lift = (LIFT_cN - rig.own_at(grid)) / gain
+    least = least_command_cN(rig, grid, limit)
     slow = np.clip(1.0 - target.velocity_mm_s / friction_mm_s, 0.0, 1.0)[:, np.newaxis]
     rub = slow * rig.friction_cN / gain
 
     def rows(force_cN: FloatArray, learned_cN: FloatArray, down: float) -> FloatArray:
-        command = command_cN(rig, grid, force_cN) - down * rub + learned_cN
-        return np.clip(np.where(grid <= HOME_mm, np.maximum(command, lift), command), -limit, limit)
+        command = command_cN(rig, grid, force_cN, down) - down * rub + learned_cN
+        command = np.where(grid <= HOME_mm, np.maximum(command, lift), command)
+        brings_back = (down < 0) | stops_within(target.velocity_mm_s, job.travel_mm)
+        command = np.where(brings_back[:, np.newaxis], np.maximum(command, least), command)
+        return np.clip(command, -limit, limit)
 
     press = rows(target.press_cN, tables[0].rows_cN, 1.0)
     release = rows(target.release_cN, tables[1].rows_cN, -1.0)

@@ -189,7 +189,8 @@ def _dose(
         for motion, force in zip(motions, forces, strict=True)
     ]
     # nothing moves before a press: no friction, drag or inertia counts
-    rest = (float(forces[0][0]) + known.weight_cN) / float(known.gain_at(np.array(0.0)))
+    top = np.array(0.0)
+    rest = (float(forces[0][0]) - float(known.own_at(top))) / float(known.gain_at(top))
     return thermal_dose(limits, along[0], along[1], float(motions[0].t_s[-1]), rest)
 
 

@@ -176,26 +176,27 @@ class AchievableStroke:
         return np.asarray((x >= min(FROM_mm, 0.3 * x[-1])) & (x <= x[-1] - min(STOP_GUARD_mm, 0.1 * x[-1])))
 
 
-def opposed_cN(rig: RigModel, motion: Motion) -> FloatArray:
-    """Return the rig's own force along a motion, (n,): drag v + friction direction - weight + mass a.
+def opposed_cN(rig: RigModel, motion: Motion, load_cN: FloatArray | float = 0.0) -> FloatArray:
+    """Return the rig's own force along a motion, (n,): drag v + friction direction + own(x) + mass a.
 
-    Friction keeps the stroke's sign where the cap rests at the ends, about to move.
+    Friction keeps the stroke's sign where the cap rests at the ends, about to move. load_cN : the finger's
+    force, whose side load rubs.
     """
-    v, rub = motion.velocity_mm_s, rig.friction_cN
-    own_cN = rig.opposing_cN(v, motion.acceleration_m_s2, motion.displacement_mm)
+    v, rub = motion.velocity_mm_s, rig.rub_at(motion.velocity_mm_s, load_cN)
+    own_cN = rig.opposing_cN(v, motion.acceleration_m_s2, motion.displacement_mm, load_cN)
     return np.asarray(own_cN + rub * (motion.direction - np.sign(v)))
 
 
 def needed_cN(rig: RigModel, motion: Motion, intended_cN: FloatArray) -> FloatArray:
     """Return the command that a force needs, all (n,).
 
-    (intended - drag v - friction direction + weight - mass a) / gain: RigModel's equation at a steady force.
+    (intended - drag v - friction direction - own(x) - mass a) / gain: RigModel's equation at a steady force.
     Raises ModelError if the coil's gain vanishes.
     """
     gain = rig.gain_at(motion.displacement_mm)
     if gain.min() < LEAST_GAIN:
         raise ModelError(f"the rig's gain falls to {gain.min():.2g} within this travel; identify it again")
-    return np.asarray((intended_cN - opposed_cN(rig, motion)) / gain)
+    return np.asarray((intended_cN - opposed_cN(rig, motion, intended_cN)) / gain)
 
 
 def slew(command_cN: FloatArray, most_cN: float) -> FloatArray:
@@ -239,6 +240,7 @@ def rendered_cN(rig: RigModel, motion: Motion, command_cN: FloatArray, tick_s: f
     The finger cannot pull: the force is at least zero. Source: RigModel.
     """
     rendered = rig.gain_at(motion.displacement_mm) * command_cN + opposed_cN(rig, motion)
+    rendered = rendered / (1.0 - rig.side_ratio * motion.direction)
     lagged = smeared(rendered, rig.electric_lag_s, motion.step_s, tick_s)
     return np.asarray(np.maximum(0.0, lagged), dtype=np.float64)
 

@@ -23,7 +23,11 @@ separates the gain from the rig's own force."""
 
 
 def identification_surface(
-    target: ForceSurface, weight_cN: float = 20.0, ripple_cN: float = 8.0, limit_cN: float = 440.0
+    target: ForceSurface,
+    weight_cN: float = 20.0,
+    ripple_cN: float = 8.0,
+    limit_cN: float = 440.0,
+    turn: int = 0,
 ) -> ForceSurface:
     """Return commands that excite every parameter and still feel like a rough button.
 
@@ -32,14 +36,14 @@ def identification_surface(
     80 cN, else the cap sinks under a resting finger.
 
     target : the button's own force; weight_cN : a guess; ripple_cN : amplitude of the longer ripple;
-    limit_cN : the largest command of the device.
+    limit_cN : the largest command of the device. turn : of the speeds; each exchanges the two levels.
     """
     if not (ripple_cN >= 0 and limit_cN > HOLD_cN):
         raise ModelError(
             f"ripples need 0 cN or more within a limit above {HOLD_cN:g} cN, got {ripple_cN}, {limit_cN}"
         )
     x = target.displacement_mm
-    levels = weight_cN + LEVEL_ratio * ripple_cN * (np.arange(target.velocity_mm_s.size) % 2)
+    levels = weight_cN + LEVEL_ratio * ripple_cN * ((np.arange(target.velocity_mm_s.size) + turn) % 2)
     press, release = (
         np.stack(
             [
