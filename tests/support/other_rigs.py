@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -186,7 +187,8 @@ def draw_other_rig(random: np.random.Generator, kinds: Sequence[str] = KINDS) ->
 
 def stacked(rigs: Sequence[OtherRig]) -> OtherRig:
     """Return rigs as one record of columns."""
-    return OtherRig(**{f.name: np.array([getattr(r, f.name) for r in rigs]) for f in fields(OtherRig)})
+    columns: dict[str, Any] = {f.name: np.array([getattr(r, f.name) for r in rigs]) for f in fields(OtherRig)}
+    return OtherRig(**columns)
 
 
 def minimum_jerk(part: FloatArray) -> FloatArray:
@@ -299,7 +301,7 @@ class _Solver:
             held = np.clip(held, read_f - 0.5 * r.play_N, read_f + 0.5 * r.play_N)
         return self._records(records)
 
-    def _records(self, records: list[tuple[float, FloatArray, ...]]) -> list[Press]:
+    def _records(self, records: list[tuple[Any, ...]]) -> list[Press]:
         t = np.array([row[0] for row in records])
         x, touch, sensed, force, command = (np.stack([row[i] for row in records]) for i in range(1, 6))
         return [
