@@ -192,7 +192,8 @@ class ForceLoop:
 
     def _identify_step(self, press: Press, state: LoopState) -> LoopState:
         presses = (*state.identification, press)
-        sensor = Sensor(filter_s=self.cell.filter_s, cone_g=1e3 * self.cell.plate_kg)
+        # the plate lies before the cell, which reads what is left behind it: a cone lies behind its sensor
+        sensor = Sensor(filter_s=self.cell.filter_s, cone_g=-1e3 * self.cell.plate_kg)
         limits = self.identification_presses, self.max_identification_presses
         found = try_identification(presses, state.job.travel_mm, limits, Prior(sensor=sensor))
         after = replace(state, identification=presses)

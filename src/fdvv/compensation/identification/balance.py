@@ -156,7 +156,7 @@ class Sensor:
     Attributes
     ----------
     filter_s : time constant of its filter.
-    cone_g : mass that moves with the cap in front of the sensor.
+    cone_g : mass that moves with the cap between sensor and cap; negative between finger and sensor.
     """
 
     filter_s: float = 3.33e-4

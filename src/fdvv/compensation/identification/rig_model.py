@@ -49,8 +49,9 @@ class RigModel:
     play_cN : hysteresis of the finger's force sensor, whole loop.
     stick_cN : friction at rest beyond friction_cN; it fades with speed (Stribeck).
     side_ratio : friction per force of the finger, from the side load on the bushing.
-    own_cN : the rig's own force over displacement beside its weight, at steps of own_step_mm from 0, linear
-        between them, held beyond; empty for none. Flexures, cables and detents make it.
+    own_cN : the rig's own force over displacement beside its weight, at even steps from 0, linear between
+        them, held beyond; empty for none. Flexures, cables and detents make it.
+    own_step_mm : between two values of own_cN.
     position_noise_mm, force_noise_cN : rms, as sensed from tick to tick.
     residual_cN : rms residual of the presses it was identified from, averaged over 8 ms.
     presses : it was identified from.

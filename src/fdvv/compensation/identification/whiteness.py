@@ -27,6 +27,8 @@ KOLMOGOROV = 1.949
 """Bound of the cumulative periodogram at CHANCE, times the square root of its frequencies."""
 EVERY = 2
 """Every second value of the own force has one of the direction beside it."""
+REPEATS = 2.0
+"""Times its bound by chance: play and lags are linear in the model, not in a rig, which repeats a little."""
 NOTICED_cN = 1.5
 """A smaller repeating force is not reported."""
 SPREAD_cN = 5.0
@@ -43,7 +45,7 @@ class Whiteness:
     periodogram : largest excess of the cumulative periodogram at low frequencies, times the square root of
         the number of frequencies; KOLMOGOROV by chance.
     slow_ratio : power of the slow residuals, in that of white ones; standard errors grow with its root.
-    repeating : statistic of the score test over its bound; above 1 it fails.
+    repeating : statistic of the score test over its bound; above REPEATS it fails.
     repeating_cN, repeating_mm : rms of the force that repeats, and where it is largest.
     """
 
@@ -56,7 +58,7 @@ class Whiteness:
     @property
     def misfit(self) -> str:
         """What the model lacks and what to do, in one sentence; empty if nothing shows."""
-        if self.repeating > 1.0 and self.repeating_cN > NOTICED_cN:
+        if self.repeating > REPEATS and self.repeating_cN > NOTICED_cN:
             return (
                 f"the residual repeats over displacement: {self.repeating_cN:.1f} cN rms that change sign "
                 f"between press and release, most at {self.repeating_mm:.1f} mm, which no number describes; "
