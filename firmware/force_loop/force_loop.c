@@ -51,6 +51,15 @@ static float gain_at(const fdvv_force_loop_gains *g, float x_m)
     return g->gain + x_m * (g->gain_1_m + x_m * g->gain_1_m2);
 }
 
+/* Linear between the values, held beyond. What is not a number stays one, and reads the first values. */
+static float own_N(const fdvv_force_loop_gains *g, float x_m)
+{
+    enum { OWN_VALUES = sizeof g->own_N / sizeof *g->own_N };
+    float at = clamp(x_m * g->own_per_m, 0.0f, (float)(OWN_VALUES - 1));
+    int low = at >= (float)(OWN_VALUES - 2) ? OWN_VALUES - 2 : at > 0.0f ? (int)at : 0;
+    return g->own_N[low] + (at - (float)low) * (g->own_N[low + 1] - g->own_N[low]);
+}
+
 /* Dry friction turns over a distance, not with the sign of the speed: that sign would shake a held cap. */
 static float friction_N(const fdvv_force_loop *loop) { return loop->gains.friction_N * loop->slid; }
 
@@ -160,7 +169,7 @@ void fdvv_force_loop_estimate(fdvv_force_loop *loop, float position_m, float cel
     loop->slid = clamp(loop->slid + (loop->x_m - loop->slid_m) / g->friction_m, -1.0f, 1.0f);
     loop->slid_m = loop->x_m;
     loop->a_m_s2 = (cell_N + g->plate_kg * loop->a_m_s2 - loop->cell_coil_N - g->drag_N_s_m * loop->v_m_s -
-                    friction_N(loop) + g->weight_N + loop->unknown_N) / g->mass_kg;
+                    friction_N(loop) - own_N(g, loop->x_m) + loop->unknown_N) / g->mass_kg;
     if (loop->at_stop)
         loop->a_m_s2 = off_stop(loop, loop->a_m_s2, cell_N, travel_m);
     loop->force_N = cell_N + g->plate_kg * loop->a_m_s2;
@@ -240,22 +249,23 @@ float fdvv_force_loop_command_N(fdvv_force_loop *loop, float ahead_N, float now_
     /* a finger cannot be pulled */
     float wanted_N = now_N + loop->step_N > 0.0f ? now_N + loop->step_N : 0.0f;
     float error_N = clamp(wanted_N - loop->force_N, -ERROR_N, ERROR_N);
-    float fast_m_s = loop->v_m_s + g->velocity_lead_s * loop->a_m_s2, helped, total_N;
+    float fast_m_s = loop->v_m_s + g->velocity_lead_s * loop->a_m_s2;
+    float ahead_m = fdvv_force_loop_ahead_m(loop), helped, total_N;
     loop->contact += g->contact_rate * (ramp(loop->force_N, CONTACT_FROM_N, CONTACT_WHOLE_N) - loop->contact);
     /* at a stop the estimate is the sensor's noise, which would make the cap rattle */
     helped = top * bottom;
-    total_N = ahead_N + g->weight_N;
+    total_N = ahead_N - own_N(g, ahead_m);
     total_N -= helped * ((g->drag_N_s_m + g->brake_N_s_m) * fast_m_s + friction_N(loop));
     total_N += feedback_N(loop, error_N, top, bottom) + free_drag_N(loop);
     loop->step_N -= loop->step_N * (g->tick_s < STEP_s ? g->tick_s / STEP_s : 1.0f);
     loop->slow_m_s += g->highpass_rate * (loop->v_m_s - loop->slow_m_s);
     total_N += loop->scale * g->damping_N_s_m * (loop->v_m_s - loop->slow_m_s) * top * bottom * loop->contact;
-    return total_N / gain_at(g, fdvv_force_loop_ahead_m(loop));
+    return total_N / gain_at(g, ahead_m);
 }
 
 float fdvv_force_loop_open_N(const fdvv_force_loop *loop, float target_N, float x_m)
 {
-    return (target_N + loop->gains.weight_N) / gain_at(&loop->gains, x_m);
+    return (target_N - own_N(&loop->gains, x_m)) / gain_at(&loop->gains, x_m);
 }
 
 void fdvv_force_loop_predict(fdvv_force_loop *loop, float command_N)

@@ -7,7 +7,7 @@
 #include "protocol.h"
 
 #define FDVV_FORCE_LOOP_PROTOCOL_VERSION 1
-#define FDVV_FORCE_LOOP_PROTOCOL_HASH 0x562e8365u
+#define FDVV_FORCE_LOOP_PROTOCOL_HASH 0x8fb59a2fu
 
 
 /* why a request of the force loop was not carried out, beyond those of every request */
@@ -56,13 +56,14 @@ typedef char fdvv_load_cell_has_16_bytes[sizeof(fdvv_load_cell) == 16 ? 1 : -1];
 typedef struct {
     float tick_s; /* s; 5e-05 to 0.002; period of the loop, that of the settings */
     float compute_ratio; /* ticks; 0.0 to 1.0; from the readings to the new drive */
-    float mass_kg; /* kg; 0.0001 to 1.0; of what moves, without the plate of the cell */
+    float mass_kg; /* kg; 0.0001 to 1.0; of all that moves, with the plate of the cell */
     float plate_kg; /* kg; 0.0 to 0.1; between finger and cell */
     float drag_N_s_m; /* N s/m; 0.0 to 100.0; of the bushing */
     float brake_N_s_m; /* N s/m; -100.0 to 100.0; of a coil driven by a voltage */
     float friction_N; /* N; 0.0 to 10.0 */
     float friction_m; /* m; 1e-06 to 0.01; displacement after a turn at which it has turned too */
-    float weight_N; /* N; -10.0 to 10.0 */
+    float own_N[8]; /* N; -10.0 to 10.0; the rig's own force against the finger, its weight included, at even steps from 0 */
+    float own_per_m; /* 1/m; 0.0 to 1000000.0; steps per metre */
     float gain; /* 0.01 to 100.0; force per commanded force, a parabola over the displacement */
     float gain_1_m; /* 1/m; -100000.0 to 100000.0 */
     float gain_1_m2; /* 1/m2; -100000000.0 to 100000000.0 */
@@ -82,7 +83,7 @@ typedef struct {
     float highpass_rate; /* 0.0 to 1.0 */
     float contact_rate; /* 0.0 to 1.0; of the contact's weight */
 } fdvv_force_loop_gains;
-typedef char fdvv_force_loop_gains_has_132_bytes[sizeof(fdvv_force_loop_gains) == 132 ? 1 : -1];
+typedef char fdvv_force_loop_gains_has_164_bytes[sizeof(fdvv_force_loop_gains) == 164 ? 1 : -1];
 #define FDVV_FORCE_LOOP_GAINS_RANGES(X) \
     X(tick_s, 5e-05f, 0.002f) \
     X(compute_ratio, 0.0f, 1.0f) \
@@ -92,7 +93,15 @@ typedef char fdvv_force_loop_gains_has_132_bytes[sizeof(fdvv_force_loop_gains) =
     X(brake_N_s_m, -100.0f, 100.0f) \
     X(friction_N, 0.0f, 10.0f) \
     X(friction_m, 1e-06f, 0.01f) \
-    X(weight_N, -10.0f, 10.0f) \
+    X(own_N[0], -10.0f, 10.0f) \
+    X(own_N[1], -10.0f, 10.0f) \
+    X(own_N[2], -10.0f, 10.0f) \
+    X(own_N[3], -10.0f, 10.0f) \
+    X(own_N[4], -10.0f, 10.0f) \
+    X(own_N[5], -10.0f, 10.0f) \
+    X(own_N[6], -10.0f, 10.0f) \
+    X(own_N[7], -10.0f, 10.0f) \
+    X(own_per_m, 0.0f, 1000000.0f) \
     X(gain, 0.01f, 100.0f) \
     X(gain_1_m, -100000.0f, 100000.0f) \
     X(gain_1_m2, -100000000.0f, 100000000.0f) \
@@ -152,7 +161,7 @@ typedef char fdvv_read_force_loop_reply_has_20_bytes[sizeof(fdvv_read_force_loop
 #define FDVV_FORCE_LOOP_MESSAGES(X) \
     X(READ_FORCE_LOOP, 0x13, 4, 20) \
     X(WRITE_LOAD_CELL, 0x14, 16, 0) \
-    X(CLOSE_FORCE_LOOP, 0x15, 132, 0) \
+    X(CLOSE_FORCE_LOOP, 0x15, 164, 0) \
     X(OPEN_FORCE_LOOP, 0x16, 0, 0) \
 
 enum {

@@ -28,7 +28,8 @@ GAINS = ForceLoopGains(
     brake_N_s_m=0.0,
     friction_N=0.04,
     friction_m=1e-4,
-    weight_N=0.12,
+    own_N=(-0.12, -0.1, -0.13, -0.05, -0.16, -0.12, -0.02, -0.2),
+    own_per_m=1750.0,
     gain=0.95,
     gain_1_m=20.0,
     gain_1_m2=-3000.0,
@@ -102,6 +103,9 @@ class Oracle:
     target: float = 0.0
     step: float = 0.0
 
+    def own_N(self, x_m: float) -> float:
+        return float(np.interp(x_m * self.g.own_per_m, np.arange(8), self.g.own_N))
+
     def tick(self, position_m: float, f: float, target: float, state: int = 0) -> tuple[float, float]:
         g = self.g
         if self.s is None:
@@ -115,7 +119,7 @@ class Oracle:
         self.slid = float(np.clip(self.slid + (self.x - self.slid_at) / g.friction_m, -1, 1))
         self.slid_at = self.x
         rub = g.friction_N * self.slid
-        push = f + g.plate_kg * self.a - self.u_f - g.drag_N_s_m * self.v - rub + g.weight_N + self.d
+        push = f + g.plate_kg * self.a - self.u_f - g.drag_N_s_m * self.v - rub - self.own_N(self.x) + self.d
         self.a = push / g.mass_kg
         felt = f + g.plate_kg * self.a
         ahead = self.x + g.lead_s * self.v + 0.5 * g.lead_s**2 * self.a
@@ -135,7 +139,7 @@ class Oracle:
         fed *= 0.15 + 0.85 * self.touch if fed > 0 else self.touch
         fast = self.v + g.velocity_lead_s * self.a
         self.slow += g.highpass_rate * (self.v - self.slow)
-        bracket = target + g.weight_N - (g.drag_N_s_m + g.brake_N_s_m) * fast
+        bracket = target - self.own_N(ahead) - (g.drag_N_s_m + g.brake_N_s_m) * fast
         bracket -= rub
         bracket += 4.0 * (1 - self.touch) * (self.v - float(np.clip(self.v, -0.3, 0.3)))
         bracket += fed + self.total + g.damping_N_s_m * (self.v - self.slow) * self.touch
@@ -202,7 +206,7 @@ def test_a_still_cap_under_its_target_is_commanded_target_and_weight() -> None:
     for _ in range(3000):
         _, command = loop.tick(2e-3, 0.6, 0.6)
     assert command * (GAINS.gain + 2e-3 * GAINS.gain_1_m + 4e-6 * GAINS.gain_1_m2) == pytest.approx(
-        0.6 + GAINS.weight_N, abs=0.05
+        0.6 - float(np.interp(3.5, np.arange(8), GAINS.own_N)), abs=0.05
     )
 
 

@@ -183,8 +183,8 @@ def test_constants_that_are_none_are_refused_by_their_number() -> None:
     device = opened()
     assert sent(device, tick_s=float("nan")) == (Refusal.BAD_VALUE, 0)
     assert sent(device, mass_kg=0.0) == (Refusal.BAD_VALUE, 2)
-    assert sent(device, stop_gains=(0.0, 0.0, float("inf"), 0.0)) == (Refusal.BAD_VALUE, 21)
-    assert sent(device, contact_rate=1.01) == (Refusal.BAD_VALUE, 32)
+    assert sent(device, stop_gains=(0.0, 0.0, float("inf"), 0.0)) == (Refusal.BAD_VALUE, 29)
+    assert sent(device, contact_rate=1.01) == (Refusal.BAD_VALUE, 40)
     assert state(device) is LoopState.OPEN
     with pytest.raises(ModelError, match="mass_kg must be"):
         replace(GAINS, mass_kg=0.0)

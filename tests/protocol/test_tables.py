@@ -65,7 +65,10 @@ def test_a_constant_of_the_loop_is_one_row_and_leaves_the_boards_without_a_loop_
     assert "X(own_force_N[2], -1.0f, 1.0f)" in make.header(more)
     made = make.tables(make.extended(SOURCE, more))
     assert "    own_force_N: tuple[float, ...] = (0.0, 0.0, 0.5)" in made
-    assert '    RUNS: ClassVar[dict[str, int]] = {"free_gains": 4, "stop_gains": 4, "own_force_N": 3}' in made
+    assert (
+        'RUNS: ClassVar[dict[str, int]] = {"own_N": 8, "free_gains": 4, "stop_gains": 4, "own_force_N": 3'
+        in made
+    )
     assert f"\nHASH = 0x{tables.HASH:08X}\n" in made
     assert f"FORCE_LOOP_HASH = 0x{tables.FORCE_LOOP_HASH:08X}" not in made
     row[6] = [1.0, 1.0, 1.0]

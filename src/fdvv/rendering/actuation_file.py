@@ -10,6 +10,7 @@ from typing import Any, Literal
 import msgspec
 import numpy as np
 
+from fdvv.compensation.force_loop.constants import of_earlier_version
 from fdvv.compensation.method import CurveOutcome, Outcome, Tuning
 from fdvv.errors import InputError, ModelError
 from fdvv.io.documents import ACTUATION, own_kind
@@ -121,7 +122,10 @@ def _result(record: ActuationRecord) -> CompensationResult:
     unknown = sorted(set(record.tuning) - {f.name for f in fields(Tuning)})
     if unknown:
         raise ModelError(f"unknown field {unknown[0]!r} - at `$.tuning`")
-    tuning = msgspec.convert(record.tuning, Tuning)
+    held = record.tuning
+    if isinstance(loop := held.get("loop"), dict):
+        held = {**held, "loop": of_earlier_version(loop)}
+    tuning = msgspec.convert(held, Tuning)
     outcome = Outcome(surface, curves, learned, True, record.explanation, tuning)
     names = record.method, record.model, record.device, record.travel_mm
     return CompensationResult(*names, outcome, tuple(record.skipped), record.simulated, record.receipt)

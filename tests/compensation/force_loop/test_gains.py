@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 
-from fdvv.compensation.force_loop.constants import CellSpec
+from fdvv.compensation.force_loop.constants import CellSpec, of_earlier_version
 from fdvv.compensation.force_loop.gains import estimator_gains, force_loop_gains, rate
 from fdvv.compensation.force_loop.stability import LoopController
 from fdvv.compensation.identification.rig_model import RigModel
@@ -50,7 +50,8 @@ def test_a_less_noisy_sensor_is_believed_more() -> None:
 def test_every_constant_comes_from_the_rig_the_cell_and_the_controller() -> None:
     gains = force_loop_gains(RIG, CELL, 1e-4, CONTROLLER)
     assert gains.lead_s == pytest.approx(1.3e-4 + 4e-5)
-    assert gains.weight_N == pytest.approx(0.118)
+    assert gains.mass_kg == pytest.approx(0.0116)
+    assert gains.own_N == pytest.approx((-0.118,) * 8)
     assert (gains.gain, gains.gain_1_m, gains.gain_1_m2) == pytest.approx((0.95, 20.0, -3000.0))
     assert gains.compute_ratio == pytest.approx(0.3)
     assert gains.position_rate == pytest.approx(rate(1e-4, 5.1e-4))
@@ -62,6 +63,30 @@ def test_a_coil_driven_by_a_voltage_brakes_and_its_braking_is_not_led() -> None:
     gains = force_loop_gains(replace(RIG, drag_N_s_m=5.2, back_emf_N_s_m=4.8), CELL, 1e-4, CONTROLLER)
     assert (gains.drag_N_s_m, gains.brake_N_s_m) == pytest.approx((0.4, 4.8))
     assert gains.velocity_lead_s == pytest.approx(gains.lead_s - 5e-5)
+
+
+def test_the_rig_s_own_force_is_kept_at_eight_even_steps() -> None:
+    sloped = replace(RIG, own_cN=(-14.0, 0.0, 14.0), own_step_mm=2.0)
+    gains = force_loop_gains(sloped, CELL, 1e-4, CONTROLLER)
+    assert gains.own_N == pytest.approx([0.01 * (force - 11.8) for force in range(-14, 15, 4)])
+    assert gains.own_per_m == pytest.approx(7 / 4e-3)
+    bent = replace(RIG, own_cN=tuple(6.0 * np.sin(np.arange(17) * 0.4)), own_step_mm=0.25)
+    gains = force_loop_gains(bent, CELL, 1e-4, CONTROLLER)
+    x_mm = np.linspace(0.0, 4.0, 50)
+    kept = 100 * np.interp(1e-3 * x_mm * gains.own_per_m, np.arange(8), gains.own_N)
+    assert np.abs(kept - bent.own_at(x_mm)).max() < 0.5
+
+
+def test_gains_of_a_file_that_knows_a_weight_alone_become_a_constant_own_force() -> None:
+    now = asdict(force_loop_gains(RIG, CELL, 1e-4, CONTROLLER))
+    before = {name: value for name, value in now.items() if name not in ("own_N", "own_per_m")}
+    del before["friction_m"]
+    found = of_earlier_version({**before, "weight_N": 0.118, "friction_m_s": 0.01})
+    assert found["own_N"] == pytest.approx([-0.118] * 8)
+    assert set(found) == set(now)
+    assert of_earlier_version(now) == now
+    with pytest.raises(ModelError, match="own_N has 8 numbers"):
+        replace(force_loop_gains(RIG, CELL, 1e-4, CONTROLLER), own_N=(0.0,))
 
 
 def test_numbers_that_are_not_finite_are_refused() -> None:

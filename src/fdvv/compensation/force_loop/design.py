@@ -23,6 +23,8 @@ from fdvv.units import FloatArray
 FINGER_kg = 0.008
 """Mass of a finger: a light cap is not lighter than what holds it."""
 BACK_OFF_ratio = 0.85
+FARTHEST = 3.4
+"""From the start, as a logarithm: a gain of a million behind a low pass of a millihertz is an integral."""
 ROUNDS = 40
 CALLS = 160
 
@@ -44,8 +46,11 @@ def design_controller(plant: LoopPlant) -> LoopController:
 
     bank, start = FingerBank(plant), np.log(astuple(scaled_start(plant)))
 
+    def controller_of(logs: FloatArray) -> LoopController:
+        return LoopController(*np.exp(np.clip(logs, start - FARTHEST, start + FARTHEST)).tolist())
+
     def cost(logs: FloatArray) -> float:
-        controller = LoopController(*np.exp(logs).tolist())
+        controller = controller_of(logs)
         excess = _excess(bank, controller)
         left = float(np.sqrt(np.mean(bank.left(controller) ** 2)))
         return left + (0.5 + 2 * excess if excess > 0 else 0.0)
@@ -53,7 +58,7 @@ def design_controller(plant: LoopPlant) -> LoopController:
     found = minimize(
         cost, start, method="Nelder-Mead", options={"maxfev": CALLS, "initial_simplex": _simplex(start)}
     )
-    return _within_margins(bank, LoopController(*np.exp(found.x).tolist()))
+    return _within_margins(bank, controller_of(found.x))
 
 
 def _simplex(start: FloatArray) -> FloatArray:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from fdvv.compensation.force_loop.constants import CellSpec, ForceLoopGains
+from fdvv.compensation.force_loop.constants import OWN_VALUES, CellSpec, ForceLoopGains
 from fdvv.compensation.force_loop.design import design_controller
 from fdvv.compensation.force_loop.stability import LoopController, LoopPlant
 from fdvv.compensation.identification.rig_model import RigModel
@@ -23,12 +23,14 @@ LEAK_1_s = 2.0
 FORCE_NOISE_N, STOP_NOISE_N = 0.05, 3.0
 WALK_N_s = 0.5
 LEAST_NOISE_m = 1e-6
+FINE = 16
+"""Places between two values of the own force."""
 
 
 def plant_of_rig(rig: RigModel, cell: CellSpec) -> LoopPlant:
     """Return what the loop acts on: an identified rig with its cell."""
     return LoopPlant(
-        mass_kg=max(LEAST_kg, 1e-3 * rig.mass_g),
+        mass_kg=max(LEAST_kg, 1e-3 * rig.mass_g - cell.plate_kg),
         plate_kg=cell.plate_kg,
         drag_N_s_m=max(0.0, rig.drag_N_s_m),
         cell_N_m=cell.stiffness_N_m,
@@ -54,24 +56,28 @@ def force_loop_gains(
     lead_s = plant.age_s
     voltage = rig.back_emf_N_s_m > 0.5 * rig.drag_N_s_m
     c0, c1, c2 = rig.gain
+    own_cN, own_per_m = own_force(rig)
+    # what accelerates is the force at the finger, in front of the plate
+    moving_kg = plant.mass_kg + plant.plate_kg
     return ForceLoopGains(
         tick_s=tick_s,
         compute_ratio=min(1.0, max(0.0, plant.delay_s / tick_s - 0.5)),
-        mass_kg=plant.mass_kg,
+        mass_kg=moving_kg,
         plate_kg=plant.plate_kg,
         drag_N_s_m=max(0.0, rig.drag_N_s_m - rig.back_emf_N_s_m),
         brake_N_s_m=rig.back_emf_N_s_m,
         friction_N=float(N_from_cN(max(0.0, rig.friction_cN))),
         friction_m=FRICTION_m,
-        weight_N=float(N_from_cN(rig.weight_cN)),
+        own_N=tuple(N_from_cN(own_cN).tolist()),
+        own_per_m=own_per_m,
         gain=c0,
         gain_1_m=1e3 * c1,
         gain_1_m2=1e6 * c2,
         coil_rate=rate(tick_s, plant.coil_s),
         cell_rate=rate(tick_s, plant.cell_s),
         position_rate=rate(tick_s, late_s),
-        free_gains=tuple(estimator_gains(tick_s, late_s, plant.mass_kg, noise_m, FORCE_NOISE_N).tolist()),
-        stop_gains=tuple(estimator_gains(tick_s, late_s, plant.mass_kg, noise_m, STOP_NOISE_N).tolist()),
+        free_gains=tuple(estimator_gains(tick_s, late_s, moving_kg, noise_m, FORCE_NOISE_N).tolist()),
+        stop_gains=tuple(estimator_gains(tick_s, late_s, moving_kg, noise_m, STOP_NOISE_N).tolist()),
         lead_s=lead_s,
         velocity_lead_s=lead_s - plant.coil_s if voltage else lead_s,
         proportional=controller.proportional,
@@ -83,6 +89,19 @@ def force_loop_gains(
         highpass_rate=rate(tick_s, 1 / (2 * math.pi * controller.highpass_Hz)),
         contact_rate=rate(tick_s, CONTACT_s),
     )
+
+
+def own_force(rig: RigModel) -> tuple[FloatArray, float]:
+    """Return the rig's own force at OWN_VALUES even steps, (OWN_VALUES,), and the steps per metre.
+
+    Of all forces that are linear between them it is the one nearest to the rig's, in squares.
+    """
+    fine_mm = rig.own_step_mm * max(1, len(rig.own_cN) - 1)
+    at = np.linspace(0.0, OWN_VALUES - 1.0, FINE * (OWN_VALUES - 1) + 1)
+    hats = np.maximum(0.0, 1.0 - np.abs(at[:, np.newaxis] - np.arange(OWN_VALUES)))
+    force = rig.own_at(at * fine_mm / (OWN_VALUES - 1))
+    nearest = np.asarray(np.linalg.lstsq(hats, force, rcond=None)[0], dtype=np.float64)
+    return nearest, 1e3 * (OWN_VALUES - 1) / fine_mm
 
 
 def rate(tick_s: float, lag_s: float) -> float:
