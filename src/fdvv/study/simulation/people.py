@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.study.simulation.perception import PerceivedDifference, Senses, vibration_steps
+from fdvv.model.noticeable import vibration_steps
+from fdvv.study.simulation.perception import PerceivedDifference, Senses
 from fdvv.units import FloatArray
 
 NOISE_JND = 1.0 / (math.sqrt(2.0) * 0.6744897501960817)
@@ -103,8 +104,8 @@ class SimulatedPeople:
         if not difference.vibration:
             return np.zeros(self.shape)
         steps = [
-            vibration_steps(self.vibration_gain * first, senses)
-            - vibration_steps(self.vibration_gain * second, senses)
+            vibration_steps(self.vibration_gain * first, senses.vibration_ratio)
+            - vibration_steps(self.vibration_gain * second, senses.vibration_ratio)
             for first, second in difference.vibration
         ]
         weights = np.asarray([1.0, senses.release_weight])

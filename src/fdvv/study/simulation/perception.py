@@ -11,6 +11,16 @@ import numpy as np
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import (
+    BEST_Hz,
+    FORCE_floor_cN,
+    FORCE_jnd_ratio,
+    HEARD_s,
+    THRESHOLD_um,
+    VIBRATION_jnd_ratio,
+    vibration_steps,
+    vibration_threshold_um,
+)
 from fdvv.model.vibration import Vibration
 from fdvv.units import FloatArray
 
@@ -18,15 +28,13 @@ BINS = 80
 """Places along the travel at which force is felt."""
 PACES = 5
 """Speeds that represent all: the medians of fifths of the presses."""
-HEARD_s = 0.2
-"""Over which vibration adds up in the skin: some 3 dB per doubling up to there (Verrillo 1965)."""
-LOWEST_Hz, HIGHEST_Hz = 40.0, 1000.0
-"""Beyond which the threshold of vibration is held: other receptors take over, or none."""
 
 
 @dataclass(frozen=True)
 class Senses:
     """Constants of feeling, of nobody in particular; docs/explanation/simulated-participants.md sweeps them.
+
+    Those of force and vibration come from fdvv.model.noticeable.
 
     Attributes
     ----------
@@ -43,11 +51,11 @@ class Senses:
     pooling : exponent by which places add up; 2: root of the mean square, large: the largest alone.
     """
 
-    weber_ratio: float = 0.07
-    floor_cN: float = 30.0
-    threshold_um: float = 0.2
-    best_Hz: float = 250.0
-    vibration_ratio: float = 0.17
+    weber_ratio: float = FORCE_jnd_ratio
+    floor_cN: float = FORCE_floor_cN
+    threshold_um: float = THRESHOLD_um
+    best_Hz: float = BEST_Hz
+    vibration_ratio: float = VIBRATION_jnd_ratio
     pace_mm_s: float = 80.0
     pace_spread_ratio: float = 0.45
     speed_weight: float = 1.0
@@ -132,7 +140,7 @@ def perceived_difference(
     mean = apart.mean(axis=1)
     changing = np.sqrt(np.mean((apart - mean[:, None, :]) ** 2, axis=1))
     pairs = tuple(zip(first.vibration.tolist(), second.vibration.tolist(), strict=True))
-    steps = vibration_steps(first.vibration, senses) - vibration_steps(second.vibration, senses)
+    steps = np.subtract(*(vibration_steps(one.vibration, senses.vibration_ratio) for one in (first, second)))
     return PerceivedDifference(
         _pooled(mean, senses),
         senses.speed_weight * _pooled(changing, senses),
@@ -151,20 +159,10 @@ def vibration_above_threshold(vibration: Vibration | None, senses: Senses) -> fl
     energy = 0.0
     for mode in vibration.modes:
         amplitude_um = 1e6 * mode.amplitude_m_s2 / (2 * math.pi * mode.frequency_Hz) ** 2
-        above = amplitude_um / threshold_um(mode.frequency_Hz, senses)
+        least_um = vibration_threshold_um(mode.frequency_Hz, senses.threshold_um, senses.best_Hz)
+        above = amplitude_um / float(least_um)
         energy += above**2 * _lasting_s(mode.decay_1_s, vibration.duration_s) / HEARD_s
     return math.sqrt(energy)
-
-
-def threshold_um(frequency_Hz: float, senses: Senses) -> float:
-    """Return the faintest amplitude that is felt: lowest at best_Hz, 12 dB per octave away from it."""
-    ratio = min(max(frequency_Hz, LOWEST_Hz), HIGHEST_Hz) / senses.best_Hz
-    return senses.threshold_um * 0.5 * (ratio**2 + ratio**-2)
-
-
-def vibration_steps(above: FloatArray, senses: Senses) -> FloatArray:
-    """Return just noticeable steps of vibration: one at threshold, one per 1.5 dB far above it."""
-    return np.asarray(np.log1p(senses.vibration_ratio * above) / senses.vibration_ratio)
 
 
 def _lasting_s(decay_1_s: float, duration_s: float) -> float:
