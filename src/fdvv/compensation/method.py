@@ -91,12 +91,14 @@ class Trial:
     """The next press: upload surface with this tuning, and have it pressed once at velocity_mm_s.
 
     pace_ratio : largest relative deviation of the speed; None: that of the session.
+    vibrating : the model's vibrations are played in this press.
     """
 
     surface: ForceSurface
     velocity_mm_s: float
     tuning: Tuning = UNTUNED
     pace_ratio: float | None = None
+    vibrating: bool = False
 
 
 @dataclass(frozen=True)

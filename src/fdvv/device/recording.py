@@ -88,6 +88,10 @@ class Recorder:
     def settings(self) -> Settings:
         return self._device.settings()
 
+    @property
+    def has_exciter(self) -> bool:
+        return bool(getattr(self._device, "has_exciter", False))
+
     def configure(self, settings: Settings) -> None:
         self._recorded(lambda: self._device.configure(settings), {"settings": dataclasses.asdict(settings)})
 
@@ -180,6 +184,11 @@ class ReplayDevice:
     def settings(self) -> Settings:
         """Return what the recorded device held at this place of its session."""
         return self._settings
+
+    @property
+    def has_exciter(self) -> bool:
+        """Whether programs were recorded, which alone play vibrations."""
+        return any("program" in line for line in self._lines)
 
     def configure(self, settings: Settings) -> None:
         wanted = dataclasses.asdict(settings)

@@ -75,6 +75,11 @@ class Remote:
             settings.tick_us * 1e-6,
         )
 
+    @property
+    def has_exciter(self) -> bool:
+        """Whether a vibration board answers; nothing says whether an exciter hangs on it."""
+        return bool(self.client.hello.board_flags & BoardFlag.VIBRATION)
+
     def settings(self) -> Settings:
         return self._settings
 

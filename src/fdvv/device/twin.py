@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 
 import numpy as np
 
@@ -16,9 +17,9 @@ from fdvv.model.surface import ForceSurface
 from fdvv.protocol.messages import CN64_PER_cN, travel_mm_of
 from fdvv.protocol.tables import Mode, Settings
 from fdvv.twin.finger import Finger, bare
-from fdvv.twin.gesture import vary
+from fdvv.twin.gesture import Gesture, vary
 from fdvv.twin.image import image_of
-from fdvv.twin.noise import draw_noise
+from fdvv.twin.noise import Noise, draw_noise
 from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.plant import RigPlant
 from fdvv.twin.rig import Rig
@@ -56,6 +57,9 @@ class TwinDevice:
         self._paced_on = b""
         self._paces: dict[float, float] = {}
         self._fresh: set[float] = set()
+        self._made: list[tuple[Gesture, Noise]] = []
+        self._made_before: list[tuple[Gesture, Noise]] = []
+        self._again: deque[tuple[Gesture, Noise]] = deque()
 
     def info(self) -> DeviceInfo:
         control, stops = self._rig.controller, self._rig.stops
@@ -80,6 +84,17 @@ class TwinDevice:
         except ModelError as error:
             raise DeviceError(f"twin: {error}") from error
         self._settings, self._active, self.loop = settings, None, None
+
+    @property
+    def has_exciter(self) -> bool:
+        return self._rig.exciter.fitted == "yes"
+
+    def repeat_presses(self) -> None:
+        """Let the next presses be those of the program before, gesture and noise alike; later ones are fresh.
+
+        What differs is then the doing of the program: nobody but a simulated person can press like that.
+        """
+        self._again = deque(self._made_before)
 
     @property
     def _constants(self) -> LoopConstants | None:
@@ -123,10 +138,7 @@ class TwinDevice:
         if self._active is None:
             raise DeviceError("twin: press before upload; upload a surface first")
         check_speed("twin", velocity_mm_s)
-        press_s = self._pace_s(velocity_mm_s, self._paced_on)
-        travel_m, speed_m_s = m_from_mm(travel_mm_of(self._active)), m_from_mm(velocity_mm_s)
-        gesture = vary(self._finger, travel_m, press_s, speed_m_s, self._random)
-        noise = draw_noise(self._rig, self._finger, gesture, self._random)
+        gesture, noise = self._again.popleft() if self._again else self._drawn(velocity_mm_s, self._active)
         trace = simulate_program(
             self._rig,
             self._finger,
@@ -145,9 +157,19 @@ class TwinDevice:
             )
         return trace
 
+    def _drawn(self, velocity_mm_s: float, image: bytes) -> tuple[Gesture, Noise]:
+        """Draw a fresh press, and keep it to be repeated."""
+        press_s = self._pace_s(velocity_mm_s, self._paced_on)
+        travel_m, speed_m_s = m_from_mm(travel_mm_of(image)), m_from_mm(velocity_mm_s)
+        gesture = vary(self._finger, travel_m, press_s, speed_m_s, self._random)
+        self._made.append((gesture, draw_noise(self._rig, self._finger, gesture, self._random)))
+        return self._made[-1]
+
     def _activate(self, image: bytes) -> None:
         self._active = self._paced_on = image
         self._fresh.clear()
+        self._made_before, self._made = self._made, []
+        self._again.clear()
 
     def _pace_s(self, velocity_mm_s: float, image: bytes) -> float:
         """Return the stroke's duration, found once per upload and speed, from the last one found."""

@@ -3,47 +3,64 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
+from functools import partial
 from typing import Any
 
-import numpy as np
-
-from fdvv.compensation.method import UNTUNED, CurveOutcome, PressCount, Trial, Tuning, error_cN
-from fdvv.compensation.presses import FROM_mm, STOP_GUARD_mm, judge_press, mean_speed_mm_s, split_strokes
-from fdvv.compensation.tables import bin_force, grid_mm
+from fdvv.compensation.method import UNTUNED, PressCount, Trial, Tuning
+from fdvv.compensation.presses import FROM_mm, STOP_GUARD_mm, judge_press
 from fdvv.device.contract import Device
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke, reading_order
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import SOURCES
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.compensate import check_force_sensor, check_speeds
+from fdvv.rendering.exciter import prepare_exciter
+from fdvv.rendering.noticed import overall
+from fdvv.rendering.probe_curve import ProbeCurve, judged_curves, with_vibrations
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
-from fdvv.rendering.session import Session, table_digest
+from fdvv.rendering.session import Session, plain, table_digest
 from fdvv.rendering.session_log import PressLog
 from fdvv.rendering.session_run import Guide, Progress, SessionPlan, VelocityProgress, run
-from fdvv.units import FloatArray
+from fdvv.rendering.verdict import RenderingMeans, next_step, verdict
+from fdvv.rendering.vibration_presses import Playback, has_exciter, upload_vibrating
 
 Found = tuple[tuple[Press, ...], ...]
-"""Presses of every velocity, in the order of the plan."""
+"""Presses of every velocity, in the order of the plan: silent ones, then those that play the vibrations."""
+
+
+NOT_LEARNED = ("as uploaded", "not compensated", "uncompensated")
+"""Methods of tables that no rig taught."""
 
 
 @dataclass(frozen=True, eq=False)
 class ProbePlan:
-    """So many presses of one surface under one tuning at every velocity, one velocity after the other."""
+    """So many presses of one surface under one tuning at every velocity, one velocity after the other.
+
+    vibrating : presses per velocity that also play the model's vibrations, after the silent ones.
+    """
 
     surface: ForceSurface
     velocities_mm_s: tuple[float, ...]
     presses: int
     tuning: Tuning = UNTUNED
+    vibrating: int = 0
 
     def init(self) -> Found:
-        return ((),) * len(self.velocities_mm_s)
+        return ((),) * (2 * len(self.velocities_mm_s))
 
     def trial(self, found: Found) -> Trial | None:
         """Return the first velocity that lacks presses; None when none does."""
         at = self._at(found)
-        return None if at is None else Trial(self.surface, self.velocities_mm_s[at], self.tuning)
+        if at is None:
+            return None
+        return Trial(self.surface, self.velocities_mm_s[at // 2], self.tuning, vibrating=at % 2 == 1)
+
+    def of(self, found: Found) -> list[tuple[float, tuple[Press, ...], tuple[Press, ...]]]:
+        """Return every velocity with its silent presses and its vibrating ones."""
+        return list(zip(self.velocities_mm_s, found[::2], found[1::2], strict=True))
 
     def step(self, press: Press, found: Found) -> Found:
         """Add a press to those of the velocity that was asked for. ModelError if none was."""
@@ -53,113 +70,15 @@ class ProbePlan:
         return (*found[:at], (*found[at], press), *found[at + 1 :])
 
     def count(self, found: Found) -> PressCount:
-        wanted = (self.presses,) * len(self.velocities_mm_s)
+        wanted = (self.presses + self.vibrating,) * len(self.velocities_mm_s)
         return PressCount(sum(map(len, found)), sum(wanted), wanted)
 
     def explain(self, found: Found) -> str:
         return ""
 
     def _at(self, found: Found) -> int | None:
-        return next((i for i, presses in enumerate(found) if len(presses) < self.presses), None)
-
-
-BIN_mm = 0.05
-ALPHA = 0.7
-"""Weight of eq. 3, so that the probe's error_k reads like the paper's."""
-
-
-@dataclass(frozen=True, eq=False)
-class ProbeCurve:
-    """One stroke at one velocity over several fresh presses.
-
-    Attributes
-    ----------
-    displacement_mm, target_cN : (n,) bins judged, and what the model asks for at the asked speed.
-    rendered_cN : (presses, n) force on the finger; 0 in bins the cap did not reach, where there was none.
-    achieved_mm_s : (presses,) mean speed of each stroke.
-    at_achieved_cN : (presses, n) what the model asks for at the achieved speed.
-    reached_ratio : part of the bins that the cap reached, of the worst press.
-    """
-
-    stroke: Stroke
-    velocity_mm_s: float
-    displacement_mm: FloatArray
-    target_cN: FloatArray
-    rendered_cN: FloatArray
-    achieved_mm_s: FloatArray
-    at_achieved_cN: FloatArray
-    reached_ratio: float
-
-    @property
-    def error_cN(self) -> FloatArray:
-        """error_k (eq. 3) of each press, (presses,)."""
-        return np.array([error_cN(self.target_cN, row, ALPHA) for row in self.rendered_cN])
-
-    @property
-    def mean_errors_cN(self) -> FloatArray:
-        """Mean of |target - rendered| over the bins, (presses,)."""
-        return np.asarray(np.abs(self.target_cN - self.rendered_cN).mean(axis=1))
-
-    @property
-    def max_errors_cN(self) -> FloatArray:
-        """Largest |target - rendered|, (presses,)."""
-        return np.asarray(np.abs(self.target_cN - self.rendered_cN).max(axis=1))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return medians over the presses with quartiles as spread, and the three quartiles of the force."""
-        achieved = np.abs(self.at_achieved_cN - self.rendered_cN).mean(axis=1)
-        return {
-            "stroke": str(self.stroke),
-            "velocity_mm_s": self.velocity_mm_s,
-            "error_cN": self.error_cN.tolist(),
-            "mean_error_cN": float(np.median(self.mean_errors_cN)),
-            "max_error_cN": float(np.median(self.max_errors_cN)),
-            "mean_error_quartiles_cN": np.percentile(self.mean_errors_cN, [25, 75]).tolist(),
-            "max_error_quartiles_cN": np.percentile(self.max_errors_cN, [25, 75]).tolist(),
-            "mean_error_at_achieved_speed_cN": float(np.median(achieved)),
-            "achieved_mm_s": float(np.median(self.achieved_mm_s)),
-            "reached_ratio": self.reached_ratio,
-            "displacement_mm": self.displacement_mm.tolist(),
-            "target_cN": self.target_cN.tolist(),
-            "rendered_quartiles_cN": np.percentile(self.rendered_cN, [25, 50, 75], axis=0).tolist(),
-        }
-
-    @property
-    def outcome(self) -> CurveOutcome:
-        """error_k of the presses and the medians of their mean and largest errors."""
-        medians = float(np.median(self.mean_errors_cN)), float(np.median(self.max_errors_cN))
-        return CurveOutcome(self.stroke, self.velocity_mm_s, tuple(self.error_cN.tolist()), *medians, "")
-
-
-def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Press]) -> list[ProbeCurve]:
-    grid = grid_mm(model.travel_mm, BIN_mm)
-    # a bin at the very edge counts, however its centre was rounded
-    judged = (grid >= FROM_mm - 1e-9) & (grid <= model.travel_mm - STOP_GUARD_mm + 1e-9)
-    x, curves = grid[judged], []
-    spans = [split_strokes(press.displacement_mm, model.travel_mm) for press in presses]
-    for i, stroke in enumerate(Stroke):
-        forces, speeds = [], []
-        for press, strokes in zip(presses, spans, strict=True):
-            rows = strokes[i]
-            forces.append(bin_force(press.displacement_mm[rows], press.force_cN[rows], grid)[judged])
-            speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, rows))
-        rendered, achieved = np.stack(forces), np.array(speeds)
-        # without a release curve the press serves for both
-        served = stroke if model.of(stroke) else Stroke.PRESS
-        paces = np.nan_to_num(achieved, nan=velocity_mm_s)[:, None]
-        curves.append(
-            ProbeCurve(
-                stroke,
-                velocity_mm_s,
-                x,
-                model.force_cN(x, velocity_mm_s, served),
-                np.nan_to_num(rendered, nan=0.0),
-                achieved,
-                model.force_cN(x[np.newaxis], paces, served),
-                float(np.isfinite(rendered).mean(axis=1).min()),
-            )
-        )
-    return curves
+        wanted = (self.presses, self.vibrating)
+        return next((i for i, presses in enumerate(found) if len(presses) < wanted[i % 2]), None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,6 +92,7 @@ class ProbeResult:
     presses : made, those that could not be used among them.
     skipped : the presses that could not be used, each with its reason.
     receipt : how it came about.
+    means : what the rig has to render with.
     """
 
     method: str
@@ -184,9 +104,15 @@ class ProbeResult:
     skipped: tuple[str, ...]
     simulated: bool
     receipt: RunSummary
+    means: RenderingMeans
 
     def to_dict(self) -> dict[str, Any]:
         """Return the report; errors in cN, true displacement, median over presses."""
+        strokes = {
+            str(stroke): overall([c.total for c in self.curves if c.stroke is stroke]).to_dict()
+            for stroke in Stroke
+            if any(c.stroke is stroke for c in self.curves)
+        }
         return {
             "method": self.method,
             "model": self.model_name,
@@ -195,6 +121,13 @@ class ProbeResult:
             "presses": self.presses,
             "skipped": list(self.skipped),
             "curves": [c.to_dict() for c in self.curves],
+            "noticeable": {
+                "total": overall([c.total for c in self.curves]).to_dict(),
+                **strokes,
+                "sources": [asdict(source) for source in SOURCES],
+            },
+            "verdict": verdict(self.curves),
+            "next_step": next_step(self.curves, self.means),
             "simulated": self.simulated,
         }
 
@@ -216,6 +149,7 @@ def probe(
     session: Session | None = None,
     guide: Guide | None = None,
     tuning: Tuning = UNTUNED,
+    playback: Playback | None = None,
 ) -> ProbeResult:
     """Upload a surface once, press it afresh at every speed, and compare the rendered force with the model.
 
@@ -224,14 +158,23 @@ def probe(
     judged but counted, with its reason; being at its limit is the rig's own doing and is judged.
     progress, session, guide : as in ``compensate``. tuning : of the controller, as it was learned with the
     surface; the device keeps it afterwards.
+    playback : also press with the model's vibrations, where it has some and the device an exciter; force is
+    judged on the presses without. None: the cap's own motion is compared with them.
 
     Raises DeviceError if the device fails or too many presses in a row cannot be used, InputError on bad
     speeds and on a folder that is no session of this probe, KeyboardInterrupt on Ctrl-C.
     """
     session = session or Session()
     check_force_sensor(device, truth_counts=True)
-    plan = ProbePlan(surface, tuple(check_speeds(velocities_mm_s)), presses, tuning)
+    if playback and not (model.vibrations and has_exciter(device)):
+        playback = None
+    if playback and playback.exciter:
+        prepare_exciter(device, playback.exciter)
+    count = playback.presses if playback else 0
+    plan = ProbePlan(surface, tuple(check_speeds(velocities_mm_s)), presses, tuning, count)
     settings: dict[str, Any] = {"presses": presses, "surface_sha256": table_digest(surface)}
+    if playback:
+        settings["playback"] = plain(playback)
     if tuning != UNTUNED:
         settings["tuning"] = tuning.to_dict()
     manifest = session.manifest("probe", device, model, plan.velocities_mm_s, method, settings)
@@ -246,27 +189,51 @@ def probe(
         lambda found: _standings(model, plan, found),
         progress or (lambda _done: None),
         guide or Guide(),
+        partial(upload_vibrating, model=model, playback=playback) if playback else None,
     )
     with session.open_log(manifest, PressLog) as log:
         found = run(device, session_plan, plan.init(), log)
-        curves = _all_curves(model, plan, found)
+        curves = _with_vibrations(model, plan, found)
         outcomes = [curve.outcome for curve in curves]
         receipt = write_run_summary(session.folder, manifest, log.runs, log.entries, outcomes)
         skipped = tuple(str(entry) for entry in log.entries if not entry.used)
     info, range_mm = device.info(), (FROM_mm, model.travel_mm - STOP_GUARD_mm)
     presses, names = len(log.entries), (method, model.name, info.name)
-    return ProbeResult(*names, range_mm, tuple(curves), presses, skipped, info.simulated, receipt)
+    means = RenderingMeans(
+        learned=method not in NOT_LEARNED,
+        force_loop=tuning.loop is not None,
+        exciter=has_exciter(device),
+        exciter_known=bool(playback and playback.exciter),
+    )
+    return ProbeResult(*names, range_mm, tuple(curves), presses, skipped, info.simulated, receipt, means)
 
 
 def _all_curves(model: FDVVModel, plan: ProbePlan, found: Found) -> list[ProbeCurve]:
-    pairs = zip(plan.velocities_mm_s, found, strict=True)
-    curves = [curve for speed, presses in pairs if presses for curve in judged_curves(model, speed, presses)]
+    pairs = plan.of(found)
+    curves = [curve for speed, silent, _ in pairs if silent for curve in judged_curves(model, speed, silent)]
     return sorted(curves, key=reading_order)
+
+
+def _with_vibrations(model: FDVVModel, plan: ProbePlan, found: Found) -> list[ProbeCurve]:
+    curves = _all_curves(model, plan, found)
+    judged = [
+        curve
+        for speed, silent, vibrating in plan.of(found)
+        for curve in with_vibrations(
+            model, [c for c in curves if c.velocity_mm_s == speed], silent, vibrating
+        )
+    ]
+    return sorted(judged, key=reading_order)
 
 
 def _standings(model: FDVVModel, plan: ProbePlan, found: Found) -> tuple[VelocityProgress, ...]:
     curves = [curve.outcome for curve in _all_curves(model, plan, found)]
     return tuple(
-        VelocityProgress(speed, len(made), plan.presses, tuple(c for c in curves if c.velocity_mm_s == speed))
-        for speed, made in zip(plan.velocities_mm_s, found, strict=True)
+        VelocityProgress(
+            speed,
+            len(silent) + len(vibrating),
+            plan.presses + plan.vibrating,
+            tuple(c for c in curves if c.velocity_mm_s == speed),
+        )
+        for speed, silent, vibrating in plan.of(found)
     )

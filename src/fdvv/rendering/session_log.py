@@ -136,12 +136,14 @@ class PressRecord:
     """A press on file; without columns if the device faulted before reporting it.
 
     tuning : of the controller; on file only where it does something.
+    vibrating : the model's vibrations were played; on file only where they were.
     """
 
     entry: PressEntry
     surface: ForceSurface
     press: Press | None
     tuning: Tuning = UNTUNED
+    vibrating: bool = False
 
 
 class PressLog(SessionFile[PressEntry]):
@@ -174,7 +176,7 @@ def _packed(record: PressRecord) -> dict[str, Any]:
     columns = pack_record(record.press) if record.press else None
     tuning = {} if record.tuning == UNTUNED else {"tuning": record.tuning.to_dict()}
     found = {**msgspec.to_builtins(record.entry), "surface": pack_record(record.surface), "columns": columns}
-    return found | tuning
+    return found | tuning | ({"vibrating": True} if record.vibrating else {})
 
 
 def _record(path: Path | None, found: dict[str, Any], number: int) -> PressRecord:
@@ -182,10 +184,11 @@ def _record(path: Path | None, found: dict[str, Any], number: int) -> PressRecor
     try:
         surface, columns = unpack_surface(found.pop("surface")), found.pop("columns")
         tuning = msgspec.convert(found.pop("tuning", {}), Tuning)
+        vibrating = bool(found.pop("vibrating", False))
         entry = msgspec.convert(found, PressEntry)
         if entry.number != number:
             raise ValueError(f"bears the number {entry.number}")
-        return PressRecord(entry, surface, unpack_press(columns) if columns else None, tuning)
+        return PressRecord(entry, surface, unpack_press(columns) if columns else None, tuning, vibrating)
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise InputError(path, f"press {number}", str(error), REMEDY) from error
 

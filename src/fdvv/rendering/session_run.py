@@ -108,6 +108,7 @@ class SessionPlan(Generic[S]):
     patience : the session stops after this many unusable presses in a row.
     velocity_progress : of a state.
     progress : called after every press; guide : called before it, and with notices.
+    upload_vibrating : uploads a trial whose vibrations are played; None where no trial has any.
     """
 
     stage: str
@@ -118,19 +119,29 @@ class SessionPlan(Generic[S]):
     velocity_progress: Callable[[S], tuple[VelocityProgress, ...]]
     progress: Progress = lambda _done: None
     guide: Guide = field(default_factory=Guide)
+    upload_vibrating: Callable[[Device, Trial], None] | None = None
 
 
-def prepare(device: Device, trial: Trial, travel_mm: float, before: Trial | None) -> None:
+def prepare(
+    device: Device,
+    trial: Trial,
+    travel_mm: float,
+    before: Trial | None,
+    upload_vibrating: Callable[[Device, Trial], None] | None = None,
+) -> None:
     """Put a trial on the device, replacing only what differs from the trial before.
 
     Settings are written before the table, only if the tuning changes them, and persist after the session.
     """
     # a method that changed nothing gives the same object again, so identity is enough
-    fresh = before is None or before.surface is not trial.surface
+    fresh = before is None or before.surface is not trial.surface or before.vibrating != trial.vibrating
     if before is None or before.tuning != trial.tuning:
         fresh |= tune(device, trial.tuning) or before is None or before.tuning.paced != trial.tuning.paced
     if fresh:
-        device.upload(trial.surface, travel_mm, trial.tuning.paced)
+        if trial.vibrating and upload_vibrating:
+            upload_vibrating(device, trial)
+        else:
+            device.upload(trial.surface, travel_mm, trial.tuning.paced)
 
 
 def run(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S:
@@ -189,7 +200,7 @@ def _resume_notice(plan: SessionPlan[S], state: S, log: PressLog) -> str:
 
 def _same(trial: Trial, record: PressRecord) -> bool:
     """Return whether a press was made with the tables and tuning of a trial."""
-    if trial.velocity_mm_s != record.entry.velocity_mm_s:
+    if trial.velocity_mm_s != record.entry.velocity_mm_s or trial.vibrating != record.vibrating:
         return False
     numbers = trial.tuning.numbers(), record.tuning.numbers()
     if numbers[0].shape != numbers[1].shape or not np.allclose(*numbers, rtol=SAME_TUNING_ratio, atol=0):
@@ -207,7 +218,7 @@ def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S
     before, in_a_row = None, 0
     clear_latched(device, plan.guide.notice)
     while (trial := plan.source.trial(state)) is not None:
-        prepare(device, trial, plan.travel_mm, before)
+        prepare(device, trial, plan.travel_mm, before, plan.upload_vibrating)
         count = plan.source.count(state)
         plan.guide.ask(PressRequest(trial.velocity_mm_s, plan.travel_mm, count.made + 1, count.total))
         press, fault = None, ""
@@ -268,7 +279,7 @@ def _taken(
             reason = str(error)
     achieved = verdict.achieved_mm_s if np.isfinite(verdict.achieved_mm_s) else None
     entry = PressEntry(len(log.entries) + 1, trial.velocity_mm_s, reason, achieved, now())
-    log.add(PressRecord(entry, trial.surface, press, trial.tuning))
+    log.add(PressRecord(entry, trial.surface, press, trial.tuning, trial.vibrating))
     return entry, after
 
 

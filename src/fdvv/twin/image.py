@@ -50,10 +50,12 @@ def image_of(
     vibrations: Sequence[Vibration] = (),
     slots: Sequence[Slot] = (),
     paced: bool = False,
+    waves: Sequence[Sequence[int]] = (),
 ) -> TableImage:
-    """Make the program that renders a table as it is, and plays these sines at these displacements.
+    """Make the program that renders a table as it is, and plays these waveforms at these displacements.
 
     paced : the announced velocity chooses the row, else the one decided in the press.
+    waves : samples of each slot, -128 to 127; empty for a sine, and for all if left out.
 
     Columns stay where they are if their step is a whole number of 1/16 um and all fit; else the table is
     sampled anew, as finely as fits. ModelError if that changes it by more than 0.1 cN, or if its numbers are
@@ -63,7 +65,9 @@ def image_of(
         raise ModelError(
             f"a device holds {SURFACE_VELOCITIES} velocities at most, got {surface.velocity_mm_s.size}"
         )
-    start, step, columns = _grid(surface)
+    held_waves = [bytes(np.asarray(wave, dtype="i1")) for wave in waves]
+    extra = [event.length_bytes() for event in (*vibrations, *slots)] + list(map(len, held_waves))
+    start, step, columns = _grid(surface, sum(extra))
     x = (start + step * np.arange(columns)) / UM16_PER_mm
     old = surface.displacement_mm
     tables = [
@@ -80,14 +84,16 @@ def image_of(
         )
     source = VelocitySource.ANNOUNCED if paced else VelocitySource.DECIDED
     grid = start, step, columns
-    return TableImage(_pack(surface, travel_mm, grid, held, [*vibrations, *slots], source), error)
+    return TableImage(_pack(surface, travel_mm, grid, held, [*vibrations, *slots], source, held_waves), error)
 
 
-def _grid(surface: ForceSurface) -> tuple[int, int, int]:
-    """Choose first column, step (both 1/16 um) and count."""
+def _grid(surface: ForceSurface, taken_bytes: int = 0) -> tuple[int, int, int]:
+    """Choose first column, step (both 1/16 um) and count, beside what else takes room."""
     first, last = (UM16_PER_mm * float(surface.displacement_mm[i]) for i in (0, -1))
     start, count = round(first), surface.displacement_mm.size
-    fits = min(SURFACE_DISPLACEMENTS, (IMAGE_BYTES - 160) // (4 * surface.velocity_mm_s.size) - 2)
+    fits = min(
+        SURFACE_DISPLACEMENTS, (IMAGE_BYTES - 160 - taken_bytes) // (4 * surface.velocity_mm_s.size) - 2
+    )
     low, high = Surface.LIMITS["step_um16"]
     exact = (last - first) / (count - 1)
     if count <= fits and low <= exact <= high and abs(exact - round(exact)) * (count - 1) < 1:
@@ -115,6 +121,7 @@ def _pack(
     held: list[FloatArray],
     events: Sequence[Vibration | Slot],
     source: VelocitySource,
+    waves: Sequence[bytes],
 ) -> bytes:
     start, step, columns = grid
     rows = surface.velocity_mm_s.size
@@ -130,9 +137,24 @@ def _pack(
         ).pack()
         for at in places
     ]
-    body = b"".join([*parts, *(event.pack() for event in events), speeds, *forces])
+    placed = _placed(events, waves, places[1] + len(forces[1]))
+    body = b"".join([*parts, *(event.pack() for event in placed), speeds, *forces, *waves])
     body += bytes(-len(body) % 4)
     return _sealed(body, round(UM16_PER_mm * travel_mm), events)
+
+
+def _placed(events: Sequence[Vibration | Slot], waves: Sequence[bytes], at: int) -> list[Vibration | Slot]:
+    """Return the events with each slot at its own samples, which lie one after the other from ``at``."""
+    found: list[Vibration | Slot] = []
+    left = list(waves)
+    for event in events:
+        wave = left.pop(0) if isinstance(event, Slot) and left else b""
+        if isinstance(event, Slot) and wave:
+            found.append(replace(event, wave_at=at, wave_samples=len(wave)))
+        else:
+            found.append(event)
+        at += len(wave)
+    return found
 
 
 def _state(source: VelocitySource) -> State:

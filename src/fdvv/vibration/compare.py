@@ -32,6 +32,8 @@ AROUND_s = 0.01
 BANDS_Hz = ((40.0, 100.0), (100.0, 200.0), (200.0, 400.0), (400.0, 800.0))
 PERIODS = 1.0
 """Of the slowest mode that must lie within the stroke, else nothing is compared."""
+FREQUENCY_periods = 3.0
+"""Of the slowest mode after the onset, without which its frequency is not measured."""
 CERTAIN_errors = 2.0
 """Standard errors that added energy must exceed, and the likeness it must have, to have an onset."""
 ALIKE = 0.6
@@ -75,8 +77,9 @@ class VibrationError:
     onset_ms, onset_mm : late (positive) or early; None if nothing like the vibration was added.
     likeness : root of the part of the added energy that the shape asked for explains, at any strength and
         phase; 1 is the same shape.
-    frequency_ratio : of the shape that explains most, over the one asked for.
-    level_JND, onset_JND, frequency_JND : what a finger could notice; None where there is no onset.
+    frequency_ratio : of the shape that explains most, over the one asked for; None without an onset, or if
+        too little of it lies in the stroke.
+    level_JND, onset_JND, frequency_JND : what a finger could notice; None where that was not measured.
     compared_ms : length of what is compared, after the onset.
     """
 
@@ -189,15 +192,14 @@ class _Comparison:
         )
         if onset_s is None:
             return found
+        late_ms = 1e3 * onset_s
+        onset_JND = abs(late_ms) / ONSET_jnd_ms
+        found = replace(found, onset_ms=late_ms, onset_mm=onset_s * self._speed_mm_s, onset_JND=onset_JND)
+        if self._since_s[-1] - onset_s < FREQUENCY_periods / _slowest_Hz(self._vibration):
+            return found
         ratio = self._frequency_ratio(onset_s)
-        return replace(
-            found,
-            onset_ms=1e3 * onset_s,
-            onset_mm=onset_s * self._speed_mm_s,
-            frequency_ratio=ratio,
-            onset_JND=1e3 * abs(onset_s) / ONSET_jnd_ms,
-            frequency_JND=abs(float(np.log(ratio))) / float(np.log1p(FREQUENCY_jnd_ratio)),
-        )
+        apart = abs(float(np.log(ratio))) / float(np.log1p(FREQUENCY_jnd_ratio))
+        return replace(found, frequency_ratio=ratio, frequency_JND=apart)
 
     def _level_JND(self, added: float) -> float:
         """Compare what is felt, the cap's own motion included, with that motion and the vibration."""
