@@ -24,6 +24,8 @@ INTENDED: Any = {"color": style.INK, "linestyle": (0, (1, 1.2)), "linewidth": 1.
 ACHIEVABLE: Any = {"color": style.PALETTE[0], "linewidth": 1.6}
 MEASURED: Any = {"color": style.PALETTE[1], "linewidth": 1.4}
 CUT: Any = {"color": style.PALETTE[5], "alpha": 0.25, "linewidth": 0.0}
+JND_BAND: Any = {"color": "#dde2e7", "linewidth": 0.0, "zorder": 0.5}
+NOTICED_pt = 4.0
 LINE_LENGTH, MOST_LINES, TEXT_pt = 70, 3, 8.0
 
 
@@ -31,7 +33,9 @@ LINE_LENGTH, MOST_LINES, TEXT_pt = 70, 3, 8.0
 def plot_rendering(curves: Sequence[RenderedCurve], title: str = "", simulated: bool = False) -> Any:
     """Draw target and rendered force in a grid: a row per velocity (rising), a column per stroke.
 
-    A line is the mean of a method's presses, its band the spread from low to high.
+    A line is the mean of a method's presses, its band the spread from low to high. Where a curve says so,
+    the target has a grey band of one just noticeable difference, and a bar below the curves marks where
+    a finger would notice more than half of a method's presses.
     Returns the (velocities, strokes) array of axes; a cell without a curve is left blank.
     Raises ModelError if there is no curve, or two for one cell.
     """
@@ -39,6 +43,7 @@ def plot_rendering(curves: Sequence[RenderedCurve], title: str = "", simulated: 
     axes = _draw_grid(curves, (4.2, 2.3, 0.4), lambda ax, c: _draw_cell(ax, c, methods, simulated), True)
     handles = [style.handle("target", **INTENDED)]
     handles += [style.handle(style.name_text(name), color=colour) for name, colour in methods.items()]
+    handles += _noticed_handles(curves)
     _legend_below(axes, handles, min(len(handles), 3 * axes.shape[1]), title)
     return axes
 
@@ -79,8 +84,20 @@ def _methods(curves: Sequence[RenderedCurve]) -> dict[str, str]:
     return {name: order[i % len(order)] for i, name in enumerate(names)}
 
 
+def _noticed_handles(curves: Sequence[RenderedCurve]) -> list[Line2D]:
+    handles = []
+    if any(curve.jnd_cN is not None for curve in curves):
+        handles.append(style.handle("± 1 JND of force", linewidth=7.0, color=JND_BAND["color"]))
+    if any(band.noticed_ratio is not None for curve in curves for band in curve.bands):
+        handles.append(style.handle("noticed", linewidth=NOTICED_pt, color=style.QUIET))
+    return handles
+
+
 def _draw_cell(ax: Axes, curve: RenderedCurve, methods: dict[str, str], simulated: bool) -> None:
     x = curve.displacement_mm
+    if curve.jnd_cN is not None:
+        ax.fill_between(x, curve.target_cN - curve.jnd_cN, curve.target_cN + curve.jnd_cN, **JND_BAND)
+    _mark_noticed(ax, curve, methods)
     for band in curve.bands:
         colour = methods[band.method]
         ax.fill_between(x, band.low_cN, band.high_cN, color=colour, alpha=0.22, linewidth=0.0)
@@ -88,6 +105,20 @@ def _draw_cell(ax: Axes, curve: RenderedCurve, methods: dict[str, str], simulate
     ax.plot(x, curve.target_cN, **INTENDED)
     title = f"{curve.stroke}, {style.velocity_text(curve.velocity_mm_s)}"
     style.set_titles(ax, title, simulated or curve.simulated)
+
+
+def _mark_noticed(ax: Axes, curve: RenderedCurve, methods: dict[str, str]) -> None:
+    """Draw a bar per method at the bottom of the axes, where most of its presses would be noticed."""
+    step_mm = float(np.median(np.diff(curve.displacement_mm)))
+    shown = [band for band in curve.bands if band.noticed_ratio is not None]
+    for i, band in enumerate(shown):
+        noticed = np.flatnonzero(np.asarray(band.noticed_ratio) > 0.5)
+        runs = np.split(noticed, np.flatnonzero(np.diff(noticed) > 1) + 1) if noticed.size else []
+        for run in runs:
+            span = curve.displacement_mm[run[0]] - step_mm / 2, curve.displacement_mm[run[-1]] + step_mm / 2
+            look: Any = {"color": methods[band.method], "linewidth": NOTICED_pt, "solid_capstyle": "butt"}
+            y = 0.02 + 0.035 * (len(shown) - 1 - i)
+            ax.plot(span, [y, y], transform=ax.get_xaxis_transform(), gid="noticed", **look)
 
 
 def _legend_below(axes: Any, handles: Sequence[Line2D], columns: int, title: str) -> None:

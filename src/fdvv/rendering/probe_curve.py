@@ -17,10 +17,18 @@ from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import force_jnd_cN
 from fdvv.model.press import Press
 from fdvv.rendering.noticed import Noticed, noticed
-from fdvv.rendering.vibration_presses import NONE_ASKED, RenderedVibration, rendered_vibration
+from fdvv.rendering.vibration_presses import (
+    NONE_ASKED,
+    RenderedVibration,
+    rendered_vibration,
+    shows_vibration,
+)
 from fdvv.units import FloatArray
+from fdvv.vibration.compare import RATE_Hz, ripple_rms
 
 BIN_mm = 0.05
+FEWEST_rows = 40
+"""Of a record, without which nothing shows whether the force shakes."""
 ENTRY_mm = 0.6
 """Up to here the press begins, where a rig has had little time; told apart from the rest."""
 ALPHA = 0.7
@@ -38,6 +46,8 @@ class ProbeCurve:
     achieved_mm_s : (presses,) mean speed of each stroke.
     at_achieved_cN : (presses, n) what the model asks for at the achieved speed.
     reached_ratio : part of the bins that the cap reached, of the worst press.
+    ripple_cN : rms from 40 to 800 Hz of the force's error over time, median over presses: what shakes and
+        nobody asked for; None if it was not measured.
     vibration : what became of the vibration.
     """
 
@@ -49,6 +59,7 @@ class ProbeCurve:
     achieved_mm_s: FloatArray
     at_achieved_cN: FloatArray
     reached_ratio: float
+    ripple_cN: float | None = None
     vibration: RenderedVibration = NONE_ASKED
 
     @property
@@ -123,6 +134,7 @@ class ProbeCurve:
             "displacement_mm": self.displacement_mm.tolist(),
             "target_cN": self.target_cN.tolist(),
             "rendered_quartiles_cN": np.percentile(self.rendered_cN, [25, 50, 75], axis=0).tolist(),
+            "force_ripple_cN": self.ripple_cN,
             "noticeable": self.noticeable(),
             "vibration": self.vibration.to_dict(),
         }
@@ -137,12 +149,16 @@ class ProbeCurve:
 def with_vibrations(
     model: FDVVModel, curves: Sequence[ProbeCurve], silent: Sequence[Press], vibrating: Sequence[Press]
 ) -> list[ProbeCurve]:
-    """Return the curves of one velocity with what became of their vibrations.
+    """Return the curves of one velocity with what became of their vibrations, and with the force's ripple.
 
     silent, vibrating : presses without the vibrations and with them; none of the latter if none was played.
     """
     return [
-        replace(c, vibration=rendered_vibration(model, c.stroke, c.velocity_mm_s, silent, vibrating))
+        replace(
+            c,
+            ripple_cN=_ripple_cN(model, c, silent),
+            vibration=rendered_vibration(model, c.stroke, c.velocity_mm_s, silent, vibrating),
+        )
         for c in curves
     ]
 
@@ -156,13 +172,12 @@ def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Pres
     spans = [split_strokes(press.displacement_mm, model.travel_mm) for press in presses]
     for i, stroke in enumerate(Stroke):
         forces, speeds = [], []
+        served = _served(model, stroke)
         for press, strokes in zip(presses, spans, strict=True):
             rows = strokes[i]
             forces.append(bin_force(press.displacement_mm[rows], press.force_cN[rows], grid)[judged])
             speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, rows))
         rendered, achieved = np.stack(forces), np.array(speeds)
-        # without a release curve the press serves for both
-        served = stroke if model.of(stroke) else Stroke.PRESS
         paces = np.nan_to_num(achieved, nan=velocity_mm_s)[:, None]
         curves.append(
             ProbeCurve(
@@ -177,3 +192,26 @@ def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Pres
             )
         )
     return curves
+
+
+def _served(model: FDVVModel, stroke: Stroke) -> Stroke:
+    """Return the stroke whose curve is rendered: without a release curve the press serves for both."""
+    return stroke if model.of(stroke) else Stroke.PRESS
+
+
+def _ripple_cN(model: FDVVModel, curve: ProbeCurve, presses: Sequence[Press]) -> float | None:
+    """Return the median over presses of what shakes in the force; None if a record is too coarse for that."""
+    if not all(map(shows_vibration, presses)):
+        return None
+    found = []
+    for press in presses:
+        rows = split_strokes(press.displacement_mm, model.travel_mm)[list(Stroke).index(curve.stroke)]
+        t_s, x_mm = press.t_s[rows], press.displacement_mm[rows]
+        judged = (x_mm >= FROM_mm) & (x_mm <= model.travel_mm - STOP_GUARD_mm)
+        if judged.sum() < FEWEST_rows:
+            return None
+        target_cN = model.force_cN(x_mm[judged], curve.velocity_mm_s, _served(model, curve.stroke))
+        even_s = np.arange(t_s[judged][0], t_s[judged][-1], 1 / RATE_Hz)
+        error_cN = press.force_cN[rows][judged] - target_cN
+        found.append(ripple_rms(np.interp(even_s, t_s[judged], error_cN)))
+    return float(np.median(found))

@@ -10,7 +10,7 @@ import numpy as np
 from fdvv.model.curve import Stroke
 from fdvv.rendering.noticed import noticed
 from fdvv.rendering.probe_curve import ProbeCurve
-from fdvv.rendering.vibration_presses import RenderedVibration, principal_Hz
+from fdvv.rendering.vibration_presses import NOT_ASKED, RenderedVibration, principal_Hz
 
 ON_TIME_ms, AT_LEVEL_dB, NOTHING_dB = 0.15, 0.5, -20.0
 RETURNED_ratio = 0.97
@@ -134,6 +134,16 @@ def outcome_words(rendered: RenderedVibration) -> str:
     if error.onset_ms is None:
         return f"cannot be found beside the cap's own motion, {own}"
     return f"comes {_late(error.onset_ms)} and {_loud(error.level_dB)}"
+
+
+def short_outcome(rendered: RenderedVibration) -> str:
+    """Return how one vibration came out in a few words, for a title."""
+    error = rendered.error
+    if error is None or not error.played:
+        return "not played" if error else NOT_ASKED
+    if error.onset_ms is None or error.level_dB is None:
+        return "not found"
+    return f"{_late(error.onset_ms)}, {_loud(error.level_dB)}"
 
 
 def _late(onset_ms: float) -> str:

@@ -33,6 +33,7 @@ from fdvv.vibration.compare import (
     VibrationError,
     compare_vibration,
     least_s,
+    without_slow_motion,
 )
 from fdvv.vibration.exciter import KnownExciter
 
@@ -61,6 +62,7 @@ class Playback:
 class ShownVibration:
     """One pair of presses to look at: acceleration of the cap, (n,), over time since the onset's place.
 
+    All without what is slower than half of the vibration's slowest mode.
     with_m_s2 : of a press that played the vibration; None if nothing was played. without_m_s2 : of one that
     did not; the same press otherwise, where a simulated person repeated it.
     """
@@ -181,7 +183,7 @@ def rendered_vibration(
     asked = model.vibration(stroke, velocity_mm_s)
     if asked is None:
         return RenderedVibration(None)
-    if not all(map(_shows_vibration, (*silent, *played))):
+    if not all(map(shows_vibration, (*silent, *played))):
         return RenderedVibration(asked, "not measured: the record does not hold the cap's acceleration")
     cuts = [_Cut.of(press, asked, model.travel_mm) for press in (*silent, *played)]
     if any(cut is None for cut in cuts):
@@ -252,12 +254,10 @@ def _compared(
     base = _motions(paired or silent, since_s, before)
     with_it = _motions(played, since_s, before, paired) if played else None
     error = compare_vibration(asked, base, with_it)
-    shown = ShownVibration(
-        1e3 * since_s,
-        asked.acceleration_m_s2(since_s),
-        base.acceleration_m_s2[0],
-        with_it.acceleration_m_s2[0] if with_it else None,
-    )
+    rows = [asked.acceleration_m_s2(since_s), base.acceleration_m_s2[0]]
+    rows += [with_it.acceleration_m_s2[0]] if with_it else []
+    still = without_slow_motion(asked, since_s, np.array(rows))
+    shown = ShownVibration(1e3 * since_s, still[0], still[1], still[2] if with_it else None)
     return RenderedVibration(asked, "", error, shown)
 
 
@@ -284,7 +284,7 @@ def _partner(cut: _Cut, silent: Sequence[_Cut]) -> _Cut | None:
     return None
 
 
-def _shows_vibration(press: Press) -> bool:
+def shows_vibration(press: Press) -> bool:
     """Return whether a record holds the cap's true displacement, densely enough."""
     rate_Hz = (press.t_s.size - 1) / (press.t_s[-1] - press.t_s[0])
     sensed_only = press.sensed_mm is not None and np.array_equal(press.sensed_mm, press.displacement_mm)

@@ -26,12 +26,14 @@ class RenderedBand:
 
     method : as the legend calls it ("FD only", "FDVV").
     mean_cN, low_cN, high_cN : (n,) at the displacements of the curve; NaN where no press went.
+    noticed_ratio : (n,) part of the presses that a finger would notice there; None if nobody asked.
     """
 
     method: str
     mean_cN: FloatArray
     low_cN: FloatArray
     high_cN: FloatArray
+    noticed_ratio: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +46,7 @@ class RenderedCurve:
     target_cN : (n,) force that the model asks for.
     bands : one per method, in the order of the legend.
     simulated : the presses come from the twin.
+    jnd_cN : (n,) just noticeable difference of the target; None if it is not to be drawn.
 
     Raises ModelError on columns of different length or displacements that do not rise.
     """
@@ -54,14 +57,16 @@ class RenderedCurve:
     target_cN: FloatArray
     bands: tuple[RenderedBand, ...] = ()
     simulated: bool = False
+    jnd_cN: FloatArray | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stroke", Stroke(self.stroke))
         object.__setattr__(self, "bands", tuple(self.bands))
         shape = self.displacement_mm.shape
-        _check_columns(self, ("target_cN",), shape)
+        _check_columns(self, ("target_cN", *(() if self.jnd_cN is None else ("jnd_cN",))), shape)
         for band in self.bands:
-            _check_columns(band, ("mean_cN", "low_cN", "high_cN"), shape, f"{band.method} ")
+            noticed = () if band.noticed_ratio is None else ("noticed_ratio",)
+            _check_columns(band, ("mean_cN", "low_cN", "high_cN", *noticed), shape, f"{band.method} ")
         if len(shape) != 1 or shape[0] < 2 or np.any(np.diff(self.displacement_mm) <= 0):
             raise ModelError(f"displacement_mm must be one strictly rising column, got shape {shape}")
 

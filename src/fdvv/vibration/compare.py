@@ -123,6 +123,25 @@ def compare_vibration(vibration: Vibration, silent: CapMotions, played: CapMotio
     return found.error()
 
 
+def without_slow_motion(vibration: Vibration, since_s: FloatArray, rows: FloatArray) -> FloatArray:
+    """Return signals, (presses, n), without what is slower than half of the vibration's slowest mode."""
+    return _high_passed(rows, 0.5 * _slowest_Hz(vibration), float(since_s[-1] - since_s[0]))
+
+
+def ripple_rms(signal: FloatArray) -> float:
+    """Return the rms of a signal at RATE_Hz, (n,), within 40 to 800 Hz, in its own unit."""
+    still = _high_passed(signal[None, :], BANDS_Hz[0][0], (signal.size - 1) / RATE_Hz)
+    return float(np.sqrt(band_power(still).sum()))
+
+
+def _high_passed(rows: FloatArray, above_Hz: float, length_s: float) -> FloatArray:
+    """Remove a polynomial from every row; one of degree n over T follows what is slower than n / 2T."""
+    degree = max(1, int(2 * above_Hz * length_s))
+    along = np.linspace(-1.0, 1.0, rows.shape[1])
+    motion = np.linalg.qr(np.polynomial.legendre.legvander(along, degree))[0]
+    return np.asarray(rows - (rows @ motion) @ motion.T)
+
+
 def band_power(signals: FloatArray) -> FloatArray:
     """Return the mean square of signals at RATE_Hz, (presses, n), in each of BANDS_Hz: (presses, bands)."""
     count = signals.shape[1]
@@ -138,11 +157,6 @@ class _Comparison:
 
     def __init__(self, vibration: Vibration, silent: CapMotions, played: CapMotions | None) -> None:
         self._vibration, self._since_s = vibration, silent.since_s
-        length_s = self._since_s[-1] - self._since_s[0]
-        # a polynomial of degree n over T follows what is slower than n / 2T
-        degree = max(1, int(_slowest_Hz(vibration) * length_s))
-        along = np.linspace(-1.0, 1.0, self._since_s.size)
-        self._motion = np.linalg.qr(np.polynomial.legendre.legvander(along, degree))[0]
         self._asked = self._still(vibration.acceleration_m_s2(self._since_s)[None, :])
         self._silent = self._still(silent.acceleration_m_s2)
         self._apart = _left_out(self._silent, silent.speed_mm_s)
@@ -160,7 +174,7 @@ class _Comparison:
         return _expected(self._silent, silent.speed_mm_s, played.speed_mm_s)
 
     def _still(self, rows: FloatArray) -> FloatArray:
-        return np.asarray(rows - (rows @ self._motion) @ self._motion.T)
+        return without_slow_motion(self._vibration, self._since_s, rows)
 
     @cached_property
     def _powers(self) -> tuple[FloatArray, FloatArray]:
