@@ -63,7 +63,11 @@ def test_a_rig_learns_a_button_and_the_error_is_seen_to_fall(page: Page) -> None
     assert re.search(r"table\s+mx-clear", kept)
     assert re.search(r"measured on held-out presses\s+mx-clear", kept)
     table = page.get_by_role("table", name="Presses, newest first").locator("tbody tr")
-    expect(table).to_have_count(14)
+    # held-out presses without the button's vibration, and as many with it
+    expect(table).to_have_count(16)
+    expect(page.locator(".outcome").nth(1)).to_contain_text("A finger would not notice the force on")
+    noticed = page.get_by_role("table", name="What a finger would notice").locator("tbody tr")
+    expect(noticed).to_have_count(2)
     assert audit(page) == []
     page.get_by_role("button", name="New job").click()
     page.get_by_label("or only evaluate, with the table").select_option("mx-clear")

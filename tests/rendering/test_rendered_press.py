@@ -6,8 +6,9 @@ import pytest
 from fdvv.device.twin import TwinDevice
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
+from fdvv.model.noticeable import force_jnd_cN
 from fdvv.model.surface import ForceSurface
-from fdvv.rendering.press_check import FORCE_JND_ratio, intended_press, noticeable_cN, rendered_press
+from fdvv.rendering.press_check import intended_press, noticeable_cN, rendered_press
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session_run import PressDone
 
@@ -35,5 +36,5 @@ def test_what_was_intended_is_the_models_force() -> None:
 def test_what_is_noticeable_is_a_part_of_the_mean_force() -> None:
     down, up = noticeable_cN(MODEL, 100.0)
     wanted = intended_press(MODEL, 100.0)
-    assert FORCE_JND_ratio * wanted.press_cN.min() < down < FORCE_JND_ratio * wanted.press_cN.max()
+    assert force_jnd_cN(wanted.press_cN).min() < down < force_jnd_cN(wanted.press_cN).max()
     assert 0 < up < down

@@ -17,6 +17,7 @@ from fdvv.device.recording import read_session, unpack_press, unpack_surface
 from fdvv.errors import InputError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import force_jnd_cN
 from fdvv.model.press import Press
 from fdvv.recording.check import FileCheck, FileProblem, unusable
 from fdvv.rendering.run_summary import RECEIPT, read_run_summary
@@ -108,8 +109,6 @@ def _unpacked(key: str, found: Any) -> None:
 
 
 BIN_mm = 0.05
-FORCE_JND_ratio = 0.07
-"""Just noticeable difference of force, of 2.5 to 10 N at 25 to 160 mm/s (Pang, Tan and Durlach 1991)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,9 +144,9 @@ def intended_press(model: FDVVModel, velocity_mm_s: float) -> RenderedPress:
 
 
 def noticeable_cN(model: FDVVModel, velocity_mm_s: float) -> tuple[float, float]:
-    """Return the just noticeable difference of force, press and release: a part of the mean judged force."""
+    """Return the just noticeable difference of force, press and release: its mean over the judged places."""
     wanted = intended_press(model, velocity_mm_s)
     judged = (wanted.displacement_mm >= FROM_mm) & (wanted.displacement_mm <= model.travel_mm - STOP_GUARD_mm)
     forces = (wanted.press_cN, wanted.release_cN)
-    down, up = (FORCE_JND_ratio * float(abs(row[judged]).mean()) for row in forces)
+    down, up = (float(force_jnd_cN(row[judged]).mean()) for row in forces)
     return down, up

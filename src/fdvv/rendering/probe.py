@@ -89,10 +89,11 @@ class ProbeResult:
     ----------
     method : what made the surface.
     range_mm : displacement judged.
-    presses : made, those that could not be used among them.
+    presses : made without vibrations, those that could not be used among them.
     skipped : the presses that could not be used, each with its reason.
     receipt : how it came about.
     means : what the rig has to render with.
+    vibration_presses : used, with the model's vibrations.
     """
 
     method: str
@@ -105,6 +106,7 @@ class ProbeResult:
     simulated: bool
     receipt: RunSummary
     means: RenderingMeans
+    vibration_presses: int = 0
 
     def to_dict(self) -> dict[str, Any]:
         """Return the report; errors in cN, true displacement, median over presses."""
@@ -119,6 +121,7 @@ class ProbeResult:
             "device": self.device_name,
             "range_mm": list(self.range_mm),
             "presses": self.presses,
+            "vibration_presses": self.vibration_presses,
             "skipped": list(self.skipped),
             "curves": [c.to_dict() for c in self.curves],
             "noticeable": {
@@ -198,14 +201,16 @@ def probe(
         receipt = write_run_summary(session.folder, manifest, log.runs, log.entries, outcomes)
         skipped = tuple(str(entry) for entry in log.entries if not entry.used)
     info, range_mm = device.info(), (FROM_mm, model.travel_mm - STOP_GUARD_mm)
-    presses, names = len(log.entries), (method, model.name, info.name)
+    played = sum(len(vibrating) for *_, vibrating in plan.of(found))
+    presses, names = len(log.entries) - played, (method, model.name, info.name)
     means = RenderingMeans(
         learned=method not in NOT_LEARNED,
         force_loop=tuning.loop is not None,
         exciter=has_exciter(device),
         exciter_known=bool(playback and playback.exciter),
     )
-    return ProbeResult(*names, range_mm, tuple(curves), presses, skipped, info.simulated, receipt, means)
+    result = ProbeResult(*names, range_mm, tuple(curves), presses, skipped, info.simulated, receipt, means)
+    return replace(result, vibration_presses=played)
 
 
 def _all_curves(model: FDVVModel, plan: ProbePlan, found: Found) -> list[ProbeCurve]:

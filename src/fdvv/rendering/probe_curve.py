@@ -30,7 +30,7 @@ BIN_mm = 0.05
 FEWEST_rows = 40
 """Of a record, without which nothing shows whether the force shakes."""
 ENTRY_mm = 0.6
-"""Up to here the press begins, where a rig has had little time; told apart from the rest."""
+"""Up to here the press begins, where a rig has had little time; reported apart from the rest."""
 ALPHA = 0.7
 """Weight of eq. 3, so that the probe's error_k reads like the paper's."""
 

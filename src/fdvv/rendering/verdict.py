@@ -139,8 +139,10 @@ def outcome_words(rendered: RenderedVibration) -> str:
 def short_outcome(rendered: RenderedVibration) -> str:
     """Return how one vibration came out in a few words, for a title."""
     error = rendered.error
+    if rendered.asked is None:
+        return NOT_ASKED
     if error is None or not error.played:
-        return "not played" if error else NOT_ASKED
+        return "not played" if error else "not measured"
     if error.onset_ms is None or error.level_dB is None:
         return "not found"
     return f"{_late(error.onset_ms)}, {_loud(error.level_dB)}"

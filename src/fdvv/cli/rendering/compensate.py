@@ -9,14 +9,16 @@ import click
 
 from fdvv.button.open import open_button
 from fdvv.cli import ui
-from fdvv.cli.options import law_of, method_options
+from fdvv.cli.options import exciter_option, law_of, method_options, opened_exciter
 from fdvv.cli.rendering.session import Pressing, beside, session_options
 from fdvv.compensation.identification.rig_file import save_rig as keep
 from fdvv.compensation.method import Tuning
 from fdvv.rendering.actuation_file import load_actuation, save_actuation
 from fdvv.rendering.compensate import compensate as learn
 from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.probe import ProbeResult
 from fdvv.rendering.probe import probe as judge
+from fdvv.rendering.vibration_presses import Playback
 
 
 @click.command()
@@ -63,6 +65,17 @@ def compensate(
 @session_options
 @ui.option("--presses", type=click.IntRange(1, 200), default=10, help="Per velocity.")
 @ui.option(
+    "--vibration-presses",
+    "vibrating",
+    type=click.IntRange(0, 200),
+    help="Per velocity with the model's vibrations, where there is an exciter; by default as many.",
+)
+@exciter_option
+@ui.option(
+    "--figure", type=ui.PATH, help="Draw force and what is noticed of it into this .svg, .png or .pdf."
+)
+@ui.option("--report", type=ui.PATH, help="Write figures, tables and sources into this .html.")
+@ui.option(
     "--max-mean-error-cN",
     "bound_cN",
     type=ui.Finite(min=0),
@@ -74,6 +87,10 @@ def probe(
     actuation: Path | None,
     pressing: Pressing,
     presses: int,
+    vibrating: int | None,
+    exciter: Path | None,
+    figure: Path | None,
+    report: Path | None,
     bound_cN: float | None,
     as_json: bool,
 ) -> None:
@@ -82,7 +99,14 @@ def probe(
     BUTTON is what should be felt; ACTUATION the file that fdvv compensate wrote (without it what
     learning starts from: the model's own force). Errors are in true displacement, median over the
     presses. Use another --seed than for learning.
+
+    Where the model has vibrations and the rig an exciter, as many presses follow that play them; their onset,
+    strength, spectrum and likeness are measured on the cap. JND is what a finger would just notice; the
+    sources are in the report and in docs/explanation/vibration-rendering.md.
     """
+    ui.check_output(figure, *ui.FIGURES)
+    ui.check_output(report, ".html")
+    playback = Playback(presses if vibrating is None else vibrating, opened_exciter(exciter))
     model = open_button(button)
     learned = load_actuation(actuation) if actuation else None
     method = learned.method if learned else "not compensated"
@@ -92,9 +116,15 @@ def probe(
     with pressing.guided(session, as_json) as (found, view, guide):
         surface = learned.surface if learned else uncompensated(found, model, speeds)
         tuning = learned.outcome.tuning if learned else Tuning()
-        result = judge(found, model, surface, speeds, presses, view.done, method, session, guide, tuning)
+        about = (method, session, guide, tuning, playback if playback.presses else None)
+        result = judge(found, model, surface, speeds, presses, view.done, *about)
     document = {**result.to_dict(), **_receipt(result)}
-    _print(document, as_json)
+    _draw(result, figure, report)
+    if as_json:
+        ui.print_json(document)
+    else:
+        _print_probe(document)
+        ui.print_written(figure, report)
     worst = max(document["curves"], key=lambda c: c["mean_error_cN"])
     if bound_cN is not None and worst["mean_error_cN"] > bound_cN:
         reason = f"mean error of {worst['mean_error_cN']:.2f} cN exceeds the bound of {bound_cN:g} cN"
@@ -105,13 +135,69 @@ def _receipt(result: Any) -> dict[str, Any]:
     return {"receipt": result.receipt.to_dict()} if result.receipt else {}
 
 
+def _draw(result: ProbeResult, figure: Path | None, report: Path | None) -> None:
+    if figure:
+        from fdvv.rendering.figures import plot_rendering
+        from fdvv.rendering.probe_figures import rendered_curves
+
+        curves = rendered_curves({"rendered": result.curves}, result.simulated)
+        ui.save_figure(plot_rendering(curves, title=result.model_name)[0, 0].figure, figure)
+    if report:
+        from fdvv.rendering.probe_report import probe_report
+        from fdvv.report.report import write_report
+
+        write_report(report, probe_report(result))
+
+
+def _print_head(document: dict[str, Any]) -> None:
+    on = f"{document['model']} on {document['device']}{ui.simulated(document['simulated'])}"
+    played = document.get("vibration_presses", 0)
+    more = f", {played} more with the vibration" if played else ""
+    click.echo(f"{on}, {ui.counted(document['presses'], 'press')}{more}")
+    ui.print_wrapped(f"method: {document['method']}")
+
+
+def _print_probe(document: dict[str, Any]) -> None:
+    _print_head(document)
+    columns = [
+        "curve",
+        "mean cN",
+        "max cN",
+        "ripple cN",
+        "> 1 JND",
+        "at achieved",
+        "to 0.6 mm",
+        "with vibration",
+    ]
+    ui.print_table(columns, [_probe_row(c) for c in document["curves"]])
+    asked = [c for c in document["curves"] if "level_JND" in c["vibration"]]
+    if asked:
+        keys = ("onset_ms", "level_dB", "own_dB", "likeness", "total_JND")
+        ui.print_table(
+            ["vibration", "late ms", "level dB", "cap alone dB", "likeness", "JND"],
+            [[ui.curve_name(c), *(c["vibration"][key] for key in keys)] for c in asked],
+            digits={"late ms": 1, "level dB": 1, "cap alone dB": 1},
+        )
+    ui.print_wrapped(document["verdict"])
+    ui.print_wrapped(f"Next: {document['next_step']}")
+    _print_skipped(document)
+
+
+def _probe_row(curve: dict[str, Any]) -> list[Any]:
+    shares = ("force", "force_at_achieved_speed", "force_to_entry", "total")
+    found = curve["noticeable"]
+    return [
+        ui.curve_name(curve),
+        *(curve[key] for key in ("mean_error_cN", "max_error_cN", "force_ripple_cN")),
+        *(f"{100 * found[key]['above_ratio']:.0f} %" for key in shares),
+    ]
+
+
 def _print(document: dict[str, Any], as_json: bool) -> None:
     if as_json:
         ui.print_json(document)
         return
-    on = f"{document['model']} on {document['device']}{ui.simulated(document['simulated'])}"
-    click.echo(f"{on}, {ui.counted(document['presses'], 'press')}")
-    ui.print_wrapped(f"method: {document['method']}")
+    _print_head(document)
     ui.print_table(
         ["curve", "first cN", "last cN", "mean cN", "max cN"],
         [
@@ -126,6 +212,10 @@ def _print(document: dict[str, Any], as_json: bool) -> None:
     )
     if not document["presses"]:
         click.echo("nothing was pressed: the mean is what was left on the button that taught the rig")
+    _print_skipped(document)
+
+
+def _print_skipped(document: dict[str, Any]) -> None:
     if document["skipped"]:
         count, last = ui.counted(len(document["skipped"]), "press"), document["skipped"][-1]
         ui.print_warnings([f"{count} skipped; the last: {last}"])

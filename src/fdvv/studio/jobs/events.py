@@ -96,7 +96,9 @@ class CurveIntended(Message, tag="intended"):
     """What a button asks for at one speed, and how much of a difference is just noticeable.
 
     displacement_mm, press_cN, release_cN : (n,).
-    noticeable_press_cN, noticeable_release_cN : 7 % of each stroke's mean force (Pang, Tan, Durlach 1991).
+    noticeable_press_cN, noticeable_release_cN : just noticeable difference, mean over each stroke; see
+        fdvv.model.noticeable.
+    press_jnd_cN, release_jnd_cN : (n,) the same at every place; empty in older jobs.
     """
 
     velocity_mm_s: float
@@ -105,6 +107,8 @@ class CurveIntended(Message, tag="intended"):
     release_cN: tuple[float, ...]
     noticeable_press_cN: float
     noticeable_release_cN: float
+    press_jnd_cN: tuple[float, ...] = ()
+    release_jnd_cN: tuple[float, ...] = ()
 
 
 class CurveProgress(Message):
@@ -211,9 +215,27 @@ class QuestionAnswered(Message, tag="answered"):
     rankings: tuple[TuneRanking, ...]
 
 
+class CurveNoticed(Message):
+    """What a finger could notice of one curve, judged on presses that nothing was learned from.
+
+    displacement_mm, noticed_ratio : (n,) part of the presses that would be noticed at each place.
+    force_ratio, total_ratio : part of the stroke above one JND, of force and with vibration.
+    vibration : how it came out, in a few words.
+    """
+
+    stroke: StrokeName
+    velocity_mm_s: float
+    displacement_mm: tuple[float, ...]
+    noticed_ratio: tuple[float, ...]
+    force_ratio: float
+    total_ratio: float
+    vibration: str
+
+
 class JobOutcome(Message, tag="outcome"):
     """What came out of a part of the work.
 
+    next_step, noticed : of a probe; empty otherwise, and in older jobs.
     sentence : in words. presses : made in all, or answers. skipped : of them not used.
     curves : error_k as the rig measured it while it learned, or in true displacement as the probe did.
     """
@@ -226,6 +248,8 @@ class JobOutcome(Message, tag="outcome"):
     curves: tuple[CurveProgress, ...] = ()
     rankings: tuple[TuneRanking, ...] = ()
     warnings: tuple[str, ...] = ()
+    next_step: str = ""
+    noticed: tuple[CurveNoticed, ...] = ()
 
 
 class JobEnded(Message, tag="ended"):

@@ -14,11 +14,15 @@ from fdvv.device.bench import BenchInfo
 from fdvv.device.contract import Device, DeviceInfo
 from fdvv.device.open import pressed_by_person
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import force_jnd_cN
 from fdvv.rendering.actuation_file import load_actuation
 from fdvv.rendering.compensate import CompensationResult
+from fdvv.rendering.noticed import noticed
 from fdvv.rendering.press_check import intended_press, noticeable_cN, rendered_press
+from fdvv.rendering.probe_curve import ProbeCurve
 from fdvv.rendering.session import Session
 from fdvv.rendering.session_run import Guide, PressDone
+from fdvv.rendering.verdict import short_outcome
 from fdvv.studio.contract import message_of
 from fdvv.studio.jobs import events
 from fdvv.studio.jobs.file import JobFolder
@@ -52,7 +56,9 @@ class Work:
         for velocity in sorted(velocities_mm_s):
             wanted = intended_press(model, velocity)
             x_mm, down_cN, up_cN = map(rounded, (wanted.displacement_mm, wanted.press_cN, wanted.release_cN))
-            self.tell(events.CurveIntended(velocity, x_mm, down_cN, up_cN, *noticeable_cN(model, velocity)))
+            steps_cN = (rounded(force_jnd_cN(row)) for row in (wanted.press_cN, wanted.release_cN))
+            middles_cN = noticeable_cN(model, velocity)
+            self.tell(events.CurveIntended(velocity, x_mm, down_cN, up_cN, *middles_cN, *steps_cN))
 
     def pressed(self, travel_mm: float) -> Callable[[PressDone], None]:
         return lambda done: self.tell(press_event(done, travel_mm))
@@ -94,6 +100,19 @@ def press_event(done: PressDone, travel_mm: float) -> events.PressEvent:
         events.FeltCurve(finite_row(rendered.press_cN), finite_row(rendered.release_cN))
         if rendered
         else None,
+    )
+
+
+def curve_noticed(curve: ProbeCurve) -> events.CurveNoticed:
+    """Return what a finger could notice of a judged curve."""
+    return events.CurveNoticed(
+        "press" if str(curve.stroke) == "press" else "release",
+        curve.velocity_mm_s,
+        rounded(curve.displacement_mm),
+        rounded((curve.total_JND > 1).mean(axis=0)),
+        round(noticed(curve.force_JND).above_ratio, DIGITS),
+        round(curve.total.above_ratio, DIGITS),
+        short_outcome(curve.vibration),
     )
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 from typing import NamedTuple
 
+from msgspec.structs import replace
+
 from fdvv.compensation.identification.rig_file import load_learned_rig, save_rig
 from fdvv.compensation.method import Tuning
 from fdvv.compensation.paper import PaperLaw
@@ -18,9 +20,10 @@ from fdvv.rendering.actuation_file import save_actuation
 from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session import Session
+from fdvv.rendering.vibration_presses import Playback
 from fdvv.studio.jobs.events import JobOutcome, StageEvent
 from fdvv.studio.jobs.orders import CompensateOrder, ProbeOrder, RigOrder
-from fdvv.studio.jobs.work import Work, curve_progress
+from fdvv.studio.jobs.work import Work, curve_noticed, curve_progress
 
 PROBE_SEED = 1
 """Added to the seed that was learned with: what judges is fresh."""
@@ -79,17 +82,16 @@ def _probe(
     work.tell(StageEvent("probe", "judging on fresh presses, in true displacement"))
     report_press, guide = work.pressed(model.travel_mm), work.guide(order.device)
     speeds = order.velocities_mm_s
-    result = probe(device, model, surface, speeds, presses, report_press, method, session, guide, tuning)
+    about = (method, session, guide, tuning, Playback(presses))
+    result = probe(device, model, surface, speeds, presses, report_press, *about)
     report = {**result.to_dict(), "button": order.button}
     write_atomic(work.folder.result("measured"), json.dumps(report, allow_nan=False) + "\n")
-    worst = max(result.curves, key=lambda c: c.outcome.mean_error_cN).outcome
-    sentence = (
-        f"mean error on fresh presses at most {worst.mean_error_cN:.2f} cN "
-        f"({worst.stroke} at {worst.velocity_mm_s:g} mm/s)"
-    )
     curves = tuple(curve_progress(curve.outcome) for curve in result.curves)
     counts = result.presses, len(result.skipped)
-    work.tell(JobOutcome("probe", sentence, *counts, result.simulated, curves))
+    found = result.to_dict()
+    outcome = JobOutcome("probe", found["verdict"].removesuffix("."), *counts, result.simulated, curves)
+    marks = tuple(map(curve_noticed, result.curves))
+    work.tell(replace(outcome, next_step=found["next_step"], noticed=marks))
 
 
 def _keep(work: Work, result: CompensationResult) -> None:

@@ -109,7 +109,7 @@ export function convergenceLegend(stage: Stage): HTMLElement {
     h(
       "span",
       { class: "muted" },
-      `Error of each press, ${who}. Dotted: 7 % of the mean force, just noticeable (Pang, Tan, Durlach 1991).`,
+      `Error of each press, ${who}. Dotted: the mean just noticeable difference, 7 % of (force + 30 cN) (after Pang, Tan, Durlach 1991).`,
     ),
   );
 }

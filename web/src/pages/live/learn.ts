@@ -1,6 +1,6 @@
 /** The view of a job that learns or evaluates: convergence, rendered forces, every press, the outcome. */
 
-import type { JobOutcome } from "../../net";
+import type { CurveNoticed, JobOutcome } from "../../net";
 import { type Child, computed, h, panel, signal, tabs } from "../../ui";
 import { convergence, convergenceLegend, errorTable } from "./converge";
 import { watched } from "./jobs";
@@ -10,6 +10,7 @@ import { pressTable } from "./presses";
 import { renderedPanel } from "./rendered";
 
 type Part = "learn" | "evaluate";
+const NOT_ASKED = "not asked for";
 /** What a person has chosen to see; null follows the work. */
 const chosen = signal<Part | null>(null);
 
@@ -78,5 +79,45 @@ function outcome(one: JobOutcome): HTMLElement {
     { class: "outcome" },
     h("h3", {}, one.stage === "probe" ? "Evaluated on held-out presses" : "Learned", simulated),
     h("p", {}, `${one.sentence.replace(/\+-/g, "±")}. ${counted}.`),
+    one.next_step ? h("p", {}, h("strong", {}, "Next: "), one.next_step) : null,
+    one.noticed?.length ? noticedTable(one.noticed) : null,
   );
+}
+
+/** How much of each curve a finger would notice, and how the vibration came out. */
+function noticedTable(curves: readonly CurveNoticed[]): HTMLElement {
+  const percent = (ratio: number) => h("td", { class: "number" }, `${Math.round(100 * ratio)} %`);
+  const vibrates = curves.some((curve) => curve.vibration !== NOT_ASKED);
+  const heads = ["force", ...(vibrates ? ["with vibration"] : [])].map((text) =>
+    h("th", { class: "number", scope: "col" }, text),
+  );
+  const about = "Part of the stroke that is off by more than one just noticeable difference:";
+  const table = h(
+    "div",
+    { class: "scroll-x", tabindex: "0", role: "group", "aria-label": "What a finger would notice, table" },
+    h(
+      "table",
+      { "aria-label": "What a finger would notice" },
+      h(
+        "thead",
+        {},
+        h("tr", {}, h("th", { scope: "col" }, "curve"), heads, h("th", { scope: "col" }, "vibration")),
+      ),
+      h(
+        "tbody",
+        {},
+        curves.map((curve) =>
+          h(
+            "tr",
+            {},
+            h("th", { scope: "row" }, `${curve.velocity_mm_s} mm/s ${curve.stroke}`),
+            percent(curve.force_ratio),
+            vibrates ? percent(curve.total_ratio) : null,
+            h("td", {}, curve.vibration),
+          ),
+        ),
+      ),
+    ),
+  );
+  return h("div", {}, h("p", { class: "muted" }, about), table);
 }

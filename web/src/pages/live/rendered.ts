@@ -1,10 +1,11 @@
 /** Target and rendered forces of the last presses at one speed. */
 
-import { type Brush, Plot, type Range, rangeOf, series, type View } from "../../draw";
+import { type Brush, Plot, palette, type Range, rangeOf, series, type View } from "../../draw";
 import { type Child, choice, h, signal } from "../../ui";
 import { listOf, speedsKey, swatch } from "./converge";
 import { watched } from "./jobs";
 import type { NumberedPress } from "./picture";
+import { spans } from "./spans";
 
 const SHOWN = 3;
 /** Speed that is looked at; "last" follows the presses. */
@@ -41,6 +42,7 @@ function view(speeds: readonly number[]): HTMLElement {
     swatch(0, "intended"),
     swatch(1, "rendered, press"),
     swatch(2, "rendered, release"),
+    h("span", { class: "muted" }, "Grey: ± 1 JND of force. Bars: where held-out presses would be noticed."),
   );
   return h("div", { class: "stack" }, h("div", { class: "row spread" }, pick, legend), plot.element);
 }
@@ -75,6 +77,9 @@ function draw(brush: Brush, view_: View): void {
     const y = values.map((cN) => (cN === null ? NaN : view_.y.px(cN)));
     brush.line(x, y, { colour, dash, opacity, width_px });
   };
+  band(brush, view_, x, wanted.press_cN, wanted.press_jnd_cN ?? []);
+  band(brush, view_, x, wanted.release_cN, wanted.release_jnd_cN ?? []);
+  markNoticed(brush, view_, velocity_mm_s);
   const presses = lastPresses(velocity_mm_s);
   presses.forEach(({ press }, i) => {
     const opacity = (i + 1) / presses.length;
@@ -83,4 +88,30 @@ function draw(brush: Brush, view_: View): void {
   });
   line(wanted.press_cN, 0, 1, 2);
   line(wanted.release_cN, 0, 0.6, 2);
+}
+
+/** One just noticeable difference on either side of a curve; nothing for jobs of older versions. */
+function band(
+  brush: Brush,
+  view_: View,
+  x: readonly number[],
+  force_cN: readonly number[],
+  jnd_cN: readonly number[],
+): void {
+  if (jnd_cN.length !== force_cN.length) return;
+  const edge = (sign: number) => force_cN.map((cN, i) => view_.y.px(cN + sign * (jnd_cN[i] as number)));
+  const around = [...edge(-1), ...edge(1).reverse()];
+  brush.area([...x, ...[...x].reverse()], around, { colour: palette().muted, opacity: 0.18 });
+}
+
+/** Bars at the bottom of the plot, press above release, where most held-out presses would be noticed. */
+function markNoticed(brush: Brush, view_: View, velocity_mm_s: number): void {
+  const found = watched().picture.outcomes.find((one) => one.stage === "probe")?.noticed ?? [];
+  const { top, height } = view_.box;
+  for (const curve of found.filter((one) => one.velocity_mm_s === velocity_mm_s)) {
+    const n = curve.stroke === "press" ? 1 : 2;
+    const y = top + height - (n === 1 ? 9 : 3);
+    for (const [from, to] of spans(curve.displacement_mm, curve.noticed_ratio))
+      brush.line([view_.x.px(from), view_.x.px(to)], [y, y], { colour: series(n).colour, width_px: 4 });
+  }
 }
