@@ -49,9 +49,9 @@ DESIGNS: dict[str, tuple[Options, ...]] = {
     "10 kHz, current drive, cell, 12 g": (*FAST, LIGHT_12_g, BARE),
     "10 kHz, current drive, cell, 6 g, encoder": (*FAST, LIGHT_6_g, SENSOR),
 }
+SHARES = ("force", "force_at_achieved_speed", "force_to_entry", "force_beyond_entry")
+"""Of what a probe finds noticeable; fdvv.model.noticeable has the JND and its sources."""
 RECOMMENDED = "10 kHz, current drive, cell, 12 g"
-JUST_NOTICEABLE_cN, JUST_NOTICEABLE_ratio = 3.0, 0.1
-"""An assumption: no study of buttons gives one."""
 
 
 def parts(case: Case, cell: bool) -> tuple[Rig, Finger]:
@@ -64,7 +64,10 @@ def parts(case: Case, cell: bool) -> tuple[Rig, Finger]:
 
 
 def _judged(case: Case, law: str) -> FloatArray:
-    """Return mean, largest, mean at the achieved speed, and share above one JND: (strokes and speeds, 4)."""
+    """Return mean, largest, mean at the achieved speed, and shares of the stroke above one JND.
+
+    Of the speed asked for, of the speed achieved, up to 0.6 mm, and beyond: (strokes and speeds, 7).
+    """
     (rig, finger), model = parts(case, law == "loop"), case.model
     device, fresh = TwinDevice(rig, finger, case.seed), TwinDevice(rig, finger, case.seed + JUDGE)
     method = RigAware() if law != "paper" else tuned_paper_law(20, rig.controller.tick_s, hold_cN=80.0)
@@ -73,10 +76,8 @@ def _judged(case: Case, law: str) -> FloatArray:
     rows = []
     for curve in probed.curves:
         found = curve.to_dict()
-        error = np.abs(curve.target_cN - curve.rendered_cN)
-        noticed = error > np.maximum(JUST_NOTICEABLE_cN, JUST_NOTICEABLE_ratio * curve.target_cN)
         means = found["mean_error_cN"], found["max_error_cN"], found["mean_error_at_achieved_speed_cN"]
-        rows.append((*means, float(np.nanmean(noticed))))
+        rows.append((*means, *(found["noticeable"][key]["above_ratio"] for key in SHARES)))
     return np.array(rows)
 
 
@@ -109,12 +110,17 @@ def main() -> None:
         found = [result for _, result in run_all(work, cases)]
         table = np.array([result for result in found if not isinstance(result, str)])
         print(f"\n{name}: {len(table)} of {len(found)} finished")
-        print("| stroke | mm/s | mean | its 90th percentile | largest | at achieved speed | above one JND |")
+        print(
+            "| stroke | mm/s | mean | its 90th percentile | largest | at achieved speed | above one JND |",
+            end="",
+        )
+        print(" at achieved speed | to 0.6 mm | beyond |")
         for at in range(table.shape[1]):
             stroke = "press" if at < len(SPEEDS_mm_s) else "release"
-            mean, largest, achieved, noticed = np.median(table[:, at], 0)
+            mean, largest, achieved, *shares = np.median(table[:, at], 0)
             high = np.quantile(table[:, at, 0], 0.9)
-            cells = f"{mean:.2f} | {high:.2f} | {largest:.1f} | {achieved:.2f} | {100 * noticed:.0f} %"
+            cells = f"{mean:.2f} | {high:.2f} | {largest:.1f} | {achieved:.2f}"
+            cells += "".join(f" | {100 * share:.0f} %" for share in shares)
             print(f"| {stroke} | {SPEEDS_mm_s[at % len(SPEEDS_mm_s)]:g} | {cells} |", flush=True)
         for reason in sorted({result[:90] for result in found if isinstance(result, str)})[:6]:
             print(f"  not finished: {reason}")

@@ -104,3 +104,33 @@ def test_the_papers_law_is_there_by_its_name(fdvv: Run) -> None:
     literal = fdvv(*paper, "--rounds", "2", "--literal", "--json").json
     assert literal["method"] != ran.json["method"]
     assert literal["receipt"]["used"] == 4
+
+
+def test_a_probe_ends_with_its_verdict_and_the_next_step_and_draws_them(fdvv: Run, tmp_path: Path) -> None:
+    probe = ("probe", "mx-clear", "--velocity", "50", "--presses", "2", "--seed", "5")
+    ran = fdvv(*probe, "--figure", "f.svg", "--report", "r.html")
+    assert ran.status == 0
+    lines = ran.out.splitlines()
+    assert lines[0] == "mx-clear on twin (simulated), 2 presses, 2 more with the vibration"
+    text = " ".join(line.strip() for line in lines)
+    assert "A finger would not notice the force on" in text
+    assert "the 239 Hz vibration at 2.3 mm" in text
+    assert "Next: Learn the actuation with fdvv compensate, then probe again." in lines
+    assert lines[-2:] == ["written to f.svg", "written to r.html"]
+    assert (tmp_path / "f.svg").read_text().startswith("<svg")
+    assert "Just noticeable differences" in (tmp_path / "r.html").read_text()
+    document = fdvv(*probe, "--json").json
+    assert document["verdict"] in text
+    assert (document["presses"], document["vibration_presses"]) == (2, 2)
+    assert 0 <= document["noticeable"]["total"]["above_ratio"] <= 1
+    silent = fdvv(*probe, "--vibration-presses", "0", "--json").json
+    assert silent["vibration_presses"] == 0
+    assert silent["curves"][0]["vibration"]["outcome"] == "not played"
+    for one, other in zip(silent["curves"], document["curves"], strict=True):
+        assert one["mean_error_cN"] == other["mean_error_cN"]
+
+
+def test_a_button_without_a_vibration_asks_for_none(fdvv: Run) -> None:
+    ran = fdvv("probe", "mx-red", "--velocity", "50", "--presses", "1")
+    assert "; no vibration was asked for." in " ".join(ran.out.split())
+    assert "late ms" not in ran.out

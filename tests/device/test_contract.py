@@ -75,6 +75,19 @@ def test_a_speed_beyond_what_a_finger_does_is_refused_with_the_limits() -> None:
 DRAG = {"predictor_q16": 30000, "lead_us": 1000, "brake_lead_us": 1000, "drag_q13": 3000}
 
 
+def test_repeated_presses_of_the_twin_are_those_of_the_program_before() -> None:
+    device = TwinDevice(seed=3)
+    device.upload(plain_surface(), 4.0)
+    made = [device.press(100.0) for _ in range(3)]
+    device.upload(plain_surface(), 4.0)
+    device.repeat_presses()
+    again = [device.press(100.0) for _ in range(4)]
+    for one, other in zip(made, again, strict=False):
+        np.testing.assert_array_equal(one.displacement_mm, other.displacement_mm)
+    fresh = again[3].displacement_mm
+    assert all(fresh.size != one.displacement_mm.size or (fresh != one.displacement_mm).any() for one in made)
+
+
 def test_the_twin_configured_as_it_is_gives_the_same_bits() -> None:
     presses = []
     for again in (False, True):

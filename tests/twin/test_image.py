@@ -97,6 +97,30 @@ def test_vibrations_and_their_slots_lie_between_surfaces_and_forces(tactile: For
     assert held(image)[1] == pytest.approx(tactile.press_cN, abs=1 / 128)
 
 
+def test_each_slot_gets_its_own_samples_behind_the_forces(tactile: ForceSurface) -> None:
+    slots = [
+        Slot(
+            waveform=Waveform.SAMPLED,
+            frequency_Hz16=65_535,
+            duration_samples=10,
+            amplitude_counts=100,
+            decay_q16=0,
+            wave_at=0,
+            wave_samples=0,
+        )
+        for _ in range(2)
+    ]
+    waves = [(1, -128, 127), (7, 8, 9, 10)]
+    image = image_of(tactile, 4.0, (), slots, waves=waves).image
+    at = ImageHeader.length_bytes() + State.length_bytes() + 2 * Surface.length_bytes()
+    for wave in waves:
+        slot = Slot.unpack(image[at : at + Slot.length_bytes()])
+        samples = np.frombuffer(image[slot.wave_at : slot.wave_at + slot.wave_samples], "i1")
+        assert samples.tolist() == list(wave)
+        at += Slot.length_bytes()
+    assert held(image)[1] == pytest.approx(tactile.press_cN, abs=1 / 128)
+
+
 def test_the_one_state_has_neither_key_nor_waveform(tactile: ForceSurface) -> None:
     at = ImageHeader.length_bytes()
     state = State.unpack(image_of(tactile, 4.0).image[at : at + State.length_bytes()])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,11 @@ from fdvv.button.figures import plot_fit, plot_scan
 from fdvv.cli.demo_run import DemoResult
 from fdvv.cli.ui import bump_kept
 from fdvv.rendering.figures import plot_convergence, plot_rendering
+from fdvv.rendering.probe_figures import rendered_curves
+from fdvv.rendering.probe_report import sources_section, vibration_section
+from fdvv.rendering.verdict import verdict
 from fdvv.report.model_figures import plot_model, plot_surface
-from fdvv.report.records import ErrorHistory, RenderedBand, RenderedCurve
+from fdvv.report.records import ErrorHistory
 from fdvv.report.report import Section, Table, render_html
 from fdvv.report.svg import figure_svg
 
@@ -34,7 +38,8 @@ def demo_report(result: DemoResult) -> str:
         f"{errors}."
     )
     footer = f"fdvv {__version__}; {result.time_s:.0f} s; built-in sources and licences: fdvv library --json"
-    sections = [_switch(result), _button(result), _rendering(result), _learning(result)]
+    sections = [_switch(result), _button(result), _rendering(result), _vibration(result), _learning(result)]
+    sections.append(sources_section())
     return render_html("fdvv demo", summary, sections, footer, simulated=source)
 
 
@@ -103,23 +108,19 @@ def _rendering(result: DemoResult) -> Section:
         "full model.",
         "The bands grow with speed because the simulated person varies the pace by a tenth and this rig's "
         "coil brakes in proportion to speed; the paper's law learns one table per speed and cannot know.",
+        *(f"{r.label}: {verdict(r.judged.curves)}" for r in result.renderings),
     )
-    grid = plot_rendering(_rendered(result), title=result.button.name, simulated=True)
+    learned = {r.label: r.judged.curves for r in result.renderings if r.learned}
+    grid = plot_rendering(rendered_curves(learned, simulated=True), title=result.button.name, simulated=True)
     figure = _figure(grid, "Target and rendered force per velocity and stroke")
     return Section("Rendered on the rig", text, (figure,), (Table(columns, tuple(rows), caption),))
 
 
-def _rendered(result: DemoResult) -> list[RenderedCurve]:
-    curves = []
-    learned = [r for r in result.renderings if r.learned]
-    for i, first in enumerate(learned[0].judged.curves):
-        bands = tuple(
-            RenderedBand(r.label, *np.percentile(r.judged.curves[i].rendered_cN, [50, 25, 75], axis=0))
-            for r in learned
-        )
-        where = (first.stroke, first.velocity_mm_s, first.displacement_mm, first.target_cN)
-        curves.append(RenderedCurve(*where, bands, simulated=True))
-    return curves
+def _vibration(result: DemoResult) -> Section:
+    """Show the vibration of the last rendering, which plays it."""
+    played = result.renderings[-1]
+    found = vibration_section(played.judged.curves, simulated=True)
+    return replace(found, title=f"{found.title}, rendered by {played.label}")
 
 
 def _learning(result: DemoResult) -> Section:

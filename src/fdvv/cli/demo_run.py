@@ -18,11 +18,13 @@ from fdvv.model.model import FDVVModel
 from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
 from fdvv.rendering.probe import ProbeResult, fd_only, probe
 from fdvv.rendering.session_run import PressDone
+from fdvv.rendering.vibration_presses import Playback
 
 BUTTON = "mx-clear"
 SWITCH = "cherry-mx-hyperglide-brown.csv"
 VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0)
-PROBE_PRESSES = 30
+PROBE_PRESSES, VIBRATION_PRESSES = 30, 10
+FD_ONLY = "FD only"
 
 Stage = Callable[[str, int, int], None]
 """Called with a label, steps done and steps in all."""
@@ -131,7 +133,7 @@ def _render(
     open_device: Callable[[int], Device], button: FDVVModel, seed: int, stage: Stage
 ) -> tuple[Rendering, ...]:
     learned: dict[str, CompensationResult | None] = {"uncompensated": None}
-    for label, target in (("FD only", fd_only(button)), ("FDVV", button)):
+    for label, target in ((FD_ONLY, fd_only(button)), ("FDVV", button)):
         tell = _on_press(stage, f"learning {label}")
         learned[label] = compensate(open_device(seed), target, VELOCITIES_mm_s, progress=tell)
     return tuple(
@@ -146,7 +148,10 @@ def _judge(
     surface = learned.surface if learned else uncompensated(device, button, VELOCITIES_mm_s)
     tuning = learned.outcome.tuning if learned else Tuning()
     tell = _on_press(stage, f"probing {label}")
-    return probe(device, button, surface, VELOCITIES_mm_s, PROBE_PRESSES, tell, label, tuning=tuning)
+    # force and displacement alone leave the vibration out; the other two play it
+    playback = None if label == FD_ONLY else Playback(VIBRATION_PRESSES)
+    about = (VELOCITIES_mm_s, PROBE_PRESSES, tell, label)
+    return probe(device, button, surface, *about, tuning=tuning, playback=playback)
 
 
 def _on_press(stage: Stage, label: str) -> Callable[[PressDone], None]:

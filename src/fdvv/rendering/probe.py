@@ -21,11 +21,11 @@ from fdvv.rendering.exciter import prepare_exciter
 from fdvv.rendering.noticed import overall
 from fdvv.rendering.probe_curve import ProbeCurve, judged_curves, with_vibrations
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
-from fdvv.rendering.session import Session, plain, table_digest
-from fdvv.rendering.session_log import PressLog
+from fdvv.rendering.session import MANIFEST, Session, plain, read_manifest, table_digest
+from fdvv.rendering.session_log import PressEntry, PressLog
 from fdvv.rendering.session_run import Guide, Progress, SessionPlan, VelocityProgress, run
 from fdvv.rendering.verdict import RenderingMeans, next_step, verdict
-from fdvv.rendering.vibration_presses import Playback, has_exciter, upload_vibrating
+from fdvv.rendering.vibration_presses import Playback, has_exciter, shows_vibration, upload_vibrating
 
 Found = tuple[tuple[Press, ...], ...]
 """Presses of every velocity, in the order of the plan: silent ones, then those that play the vibrations."""
@@ -39,7 +39,8 @@ NOT_LEARNED = ("as uploaded", "not compensated", "uncompensated")
 class ProbePlan:
     """So many presses of one surface under one tuning at every velocity, one velocity after the other.
 
-    vibrating : presses per velocity that also play the model's vibrations, after the silent ones.
+    vibrating : presses per velocity that also play the model's vibrations, after the silent ones; nobody is
+        asked for them on a rig whose records do not show the cap's vibration.
     """
 
     surface: ForceSurface
@@ -70,14 +71,19 @@ class ProbePlan:
         return (*found[:at], (*found[at], press), *found[at + 1 :])
 
     def count(self, found: Found) -> PressCount:
-        wanted = (self.presses + self.vibrating,) * len(self.velocities_mm_s)
+        wanted = (self.presses + self.vibrating_after(found),) * len(self.velocities_mm_s)
         return PressCount(sum(map(len, found)), sum(wanted), wanted)
 
     def explain(self, found: Found) -> str:
         return ""
 
+    def vibrating_after(self, found: Found) -> int:
+        """Return how many presses play vibrations: none once a record has shown that it cannot hold them."""
+        first = next((press for presses in found for press in presses), None)
+        return self.vibrating if first is None or shows_vibration(first) else 0
+
     def _at(self, found: Found) -> int | None:
-        wanted = (self.presses, self.vibrating)
+        wanted = (self.presses, self.vibrating_after(found))
         return next((i for i, presses in enumerate(found) if len(presses) < wanted[i % 2]), None)
 
 
@@ -162,14 +168,14 @@ def probe(
     progress, session, guide : as in ``compensate``. tuning : of the controller, as it was learned with the
     surface; the device keeps it afterwards.
     playback : also press with the model's vibrations, where it has some and the device an exciter; force is
-    judged on the presses without. None: the cap's own motion is compared with them.
+    judged on the presses without. None, and in a session begun without: the cap's own motion is compared.
 
     Raises DeviceError if the device fails or too many presses in a row cannot be used, InputError on bad
     speeds and on a folder that is no session of this probe, KeyboardInterrupt on Ctrl-C.
     """
     session = session or Session()
     check_force_sensor(device, truth_counts=True)
-    if playback and not (model.vibrations and has_exciter(device)):
+    if playback and not (model.vibrations and has_exciter(device) and not _begun_without(session)):
         playback = None
     if playback and playback.exciter:
         prepare_exciter(device, playback.exciter)
@@ -202,7 +208,7 @@ def probe(
         skipped = tuple(str(entry) for entry in log.entries if not entry.used)
     info, range_mm = device.info(), (FROM_mm, model.travel_mm - STOP_GUARD_mm)
     played = sum(len(vibrating) for *_, vibrating in plan.of(found))
-    presses, names = len(log.entries) - played, (method, model.name, info.name)
+    presses, names = _silent(log.entries, plan), (method, model.name, info.name)
     means = RenderingMeans(
         learned=method not in NOT_LEARNED,
         force_loop=tuning.loop is not None,
@@ -211,6 +217,21 @@ def probe(
     )
     result = ProbeResult(*names, range_mm, tuple(curves), presses, skipped, info.simulated, receipt, means)
     return replace(result, vibration_presses=played)
+
+
+def _begun_without(session: Session) -> bool:
+    """Return whether a session in its folder was begun without vibrations, as older versions did."""
+    path = session.folder / MANIFEST if session.folder else None
+    return path is not None and path.is_file() and "playback" not in read_manifest(path).settings
+
+
+def _silent(entries: Sequence[PressEntry], plan: ProbePlan) -> int:
+    """Count the presses made without vibrations: those of each velocity until there were enough."""
+    count, used = 0, dict.fromkeys(plan.velocities_mm_s, 0)
+    for entry in entries:
+        count += used[entry.velocity_mm_s] < plan.presses
+        used[entry.velocity_mm_s] += entry.used
+    return count
 
 
 def _all_curves(model: FDVVModel, plan: ProbePlan, found: Found) -> list[ProbeCurve]:
@@ -237,7 +258,7 @@ def _standings(model: FDVVModel, plan: ProbePlan, found: Found) -> tuple[Velocit
         VelocityProgress(
             speed,
             len(silent) + len(vibrating),
-            plan.presses + plan.vibrating,
+            plan.presses + plan.vibrating_after(found),
             tuple(c for c in curves if c.velocity_mm_s == speed),
         )
         for speed, silent, vibrating in plan.of(found)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +28,7 @@ FAINTEST_m_s2 = 0.01
 """Bands below it are drawn there."""
 
 
-def rendered_curves(methods: dict[str, Sequence[ProbeCurve]], simulated: bool) -> list[RenderedCurve]:
+def rendered_curves(methods: Mapping[str, Sequence[ProbeCurve]], simulated: bool) -> list[RenderedCurve]:
     """Return what several methods rendered of the same curves, in one order, for plot_rendering.
 
     A line is the median of the presses, its band the quartiles.

@@ -68,8 +68,7 @@ def _noticed_row(curve: ProbeCurve) -> tuple[str, ...]:
 
 
 def _name(curve: ProbeCurve) -> str:
-    # no line breaks at such a space
-    return f"{curve.stroke}, {curve.velocity_mm_s:g} mm/s".replace(" ", "\N{NO-BREAK SPACE}")
+    return f"{curve.stroke}, {curve.velocity_mm_s:g} mm/s"
 
 
 def _percent(found: Noticed) -> str:
