@@ -10,7 +10,7 @@ import pytest
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
 from fdvv.twin.files import load_rig
-from fdvv.twin.finger import Finger, bare
+from fdvv.twin.finger import Finger, PressVariability, bare
 from fdvv.twin.gesture import plan
 from fdvv.twin.image import image_of
 from fdvv.twin.noise import draw_noise, silence
@@ -49,6 +49,12 @@ def test_the_force_at_the_finger_never_pulls() -> None:
     trace = simulate_program(RIG, finger, gesture, image_of(TABLE, 4.0).image, noise, 150.0)
     assert trace.force_cN.min() >= 0
     assert trace.force_cN[-1] == 0
+
+
+def test_a_finger_that_hovers_leaves_the_plate_on_the_cap() -> None:
+    plant = RigPlant(RIG, Finger(habit=PressVariability(lift_m=0.003)), seed=None, stop_us=1600)
+    counts = [int(plant.step(0, True, 1600)["force_counts"]) for _ in range(50)]
+    assert np.ptp(counts) <= 1
 
 
 def read_cN(cell: LoadCell, push_N: float) -> float:

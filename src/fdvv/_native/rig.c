@@ -105,6 +105,13 @@ static double read_finger(fdvv_rig *r, double noise_N) {
     return m->sensor_lsb_N > 0.0 ? m->sensor_lsb_N * rounded(value / m->sensor_lsb_N) : value;
 }
 
+/* The filter over one step, exact for what goes straight from one input to the other. */
+static inline void filter_keycap(fdvv_rig *r, double from, double to) {
+    double lag = r->keycap_lag_steps * (to - from);
+    r->keycap = to - lag + r->keycap_keep * (r->keycap - from + lag);
+    r->keycap_input = to;
+}
+
 static uint16_t read_keycap(const fdvv_rig *r, double noise) {
     const fdvv_rig_model *m = &r->model;
     if (m->keycap_kind <= 0.0) return 0;
@@ -164,10 +171,8 @@ static ALWAYS_INLINE void run(fdvv_rig *r, const fdvv_outputs *out, const fdvv_r
         }
         advance(r, t, now, magnet, audit);
         r->magnet_A = next_A;
-        if (r->model.keycap_kind > 0.0) {
-            double measured = r->model.keycap_kind > 1.0 ? now[VC] : cap_contact_force(r, r->y);
-            r->keycap = measured + r->keycap_keep * (r->keycap - measured);
-        }
+        if (r->model.keycap_kind > 1.0) filter_keycap(r, now[VC], now[VC]);
+        else if (r->model.keycap_kind > 0.0) filter_keycap(r, r->keycap_input, cap_contact_force(r, r->y));
         for (double end = (double)(s + 1) + 1e-9; next_read <= end; next_read += g->read_steps) {
             double part = next_read - (double)s, line = h * now[LVDT] * part; /* parabola through both ends */
             double bend = (r->y[LVDT] - before - h * now[LVDT]) * part * part;
@@ -234,6 +239,7 @@ int fdvv_rig_start(fdvv_rig *r, const fdvv_rig_model *m, const fdvv_rig_grid *gr
     r->magnet_keep = exp(-x), r->magnet_mean = -expm1(-x), r->magnet_slope = 1.0 + expm1(-x) / x;
     r->amplifier_keep = exp(-m->amplifier_rate * m->step_s);
     r->keycap_keep = exp(-m->keycap_rate * m->step_s);
+    r->keycap_lag_steps = 1.0 / (m->keycap_rate * m->step_s);
     r->count = FDVV_SYNTH_SILENCE;
     fdvv_synth_init(&r->bank);
     fdvv_synth_stop(&r->voice);
@@ -250,7 +256,9 @@ void fdvv_rig_press(fdvv_rig *r, const fdvv_gesture *gesture, double stiffness_N
     r->drive_mode = FDVV_RIG_GESTURE;
     r->past_steps = 0;
     if (!first) return;
-    r->y[XF] = r->y[XT] = gesture->start_m < 0.0 ? gesture->start_m : 0.0;
+    r->y[XF] = gesture->start_m < 0.0 ? gesture->start_m : 0.0;
+    /* a cone is worn on the finger, the plate of a cell rests on it */
+    r->y[XT] = r->model.cell_damping_N_s_m > 0.0 ? 0.0 : r->y[XF];
     r->energy_J = stored(r, r->y);
 }
 

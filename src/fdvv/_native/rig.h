@@ -124,7 +124,7 @@ typedef struct {
     double heat_K;
     double magnet_1_ohm, magnet_A, magnet_target_A, magnet_keep, magnet_mean, magnet_slope, amplifier_V, amplifier_keep;
     double vibration_s, sample_s;  /* start of the voice; time of its next sample */
-    double hysteresis_N, sensed_N, keycap, keycap_keep, energy_J;
+    double hysteresis_N, sensed_N, keycap, keycap_input, keycap_keep, keycap_lag_steps, energy_J;
     fdvv_synth_bank bank;
     fdvv_synth_voice voice;
     uint16_t count;                /* of the vibration board's DAC */
