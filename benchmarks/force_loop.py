@@ -64,11 +64,16 @@ def parts(case: Case, cell: bool) -> tuple[Rig, Finger]:
 
 
 def _judged(case: Case, law: str) -> FloatArray:
+    """Judge a law on the rig, person and cell of a case, as `judged`."""
+    return judged(case, *parts(case, law == "loop"), law)
+
+
+def judged(case: Case, rig: Rig, finger: Finger, law: str) -> FloatArray:
     """Return mean, largest, mean at the achieved speed, and shares of the stroke above one JND.
 
     Of the speed asked for, of the speed achieved, up to 0.6 mm, and beyond: (strokes and speeds, 7).
     """
-    (rig, finger), model = parts(case, law == "loop"), case.model
+    model = case.model
     device, fresh = TwinDevice(rig, finger, case.seed), TwinDevice(rig, finger, case.seed + JUDGE)
     method = RigAware() if law != "paper" else tuned_paper_law(20, rig.controller.tick_s, hold_cN=80.0)
     learned = compensate(device, model, SPEEDS_mm_s, method)

@@ -1,4 +1,4 @@
-"""Write hardware/circuit (diagrams, netlists, wiring, values) and docs/reference/bill.md from the circuit."""
+"""Write both circuits of hardware/ (diagrams, netlists, wiring, values) and docs/reference/bill.md."""
 
 from __future__ import annotations
 
@@ -6,21 +6,26 @@ from pathlib import Path
 
 from fdvv.io.files import write_atomic
 from fdvv_rig.bill import bill_page, load_bill
-from fdvv_rig.circuit.circuit import load_circuit
+from fdvv_rig.circuit.circuit import RIGS, load_circuit
 from fdvv_rig.circuit.circuit_report import circuit_files
 from fdvv_rig.circuit.rules import require_sound
 
 ROOT = Path(__file__).parents[1]
-CIRCUIT = ROOT / "hardware" / "circuit"
+FOLDERS = {
+    name: ROOT / "hardware" / folder
+    for name, folder in (("paper", "circuit"), ("recommended", "circuit-recommended"))
+}
 BILL = ROOT / "docs" / "reference" / "bill.md"
 
 
 def files() -> dict[Path, str]:
     """Return every file with its text."""
-    circuit = load_circuit()
-    require_sound(circuit, "circuit.toml")
-    made = {CIRCUIT / name: text for name, text in circuit_files(circuit).items()}
-    return {**made, BILL: bill_page(load_bill(circuit))}
+    circuits = {rig: load_circuit(rig=rig) for rig in RIGS}
+    made: dict[Path, str] = {}
+    for rig, circuit in circuits.items():
+        require_sound(circuit, RIGS[rig])
+        made |= {FOLDERS[rig] / name: text for name, text in circuit_files(circuit).items()}
+    return {**made, BILL: bill_page(*(load_bill(circuits[rig]) for rig in ("paper", "recommended")))}
 
 
 if __name__ == "__main__":

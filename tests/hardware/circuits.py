@@ -1,4 +1,4 @@
-"""The rig's circuit, changed."""
+"""The rigs' circuits, and the paper's changed."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from dataclasses import replace
 from fdvv_rig.circuit.circuit import Circuit, Component, Pin, load_circuit
 
 CIRCUIT = load_circuit()
+RECOMMENDED = load_circuit(rig="recommended")
+BOTH = (CIRCUIT, RECOMMENDED)
 
 
 def with_nets(circuit: Circuit = CIRCUIT, **nets: tuple[str, ...]) -> Circuit:

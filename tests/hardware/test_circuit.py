@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError
-from fdvv_rig.circuit.circuit import load_circuit, read_circuit
+from fdvv_rig.circuit.circuit import Circuit, load_circuit, read_circuit
 from fdvv_rig.circuit.levels import PowerState, levels
 from fdvv_rig.circuit.power import power_budget
 from fdvv_rig.circuit.rules import check_circuit, require_sound, undrawn
-from tests.hardware.circuits import CIRCUIT, with_nets, with_pin, with_value, without
+from tests.hardware.circuits import BOTH, CIRCUIT, RECOMMENDED, with_nets, with_pin, with_value, without
 
 BOARDS = Path(__file__).resolve().parents[2] / "firmware" / "boards"
 RESISTORS = sorted(ref for ref, part in CIRCUIT.parts.items() if part.kind.name == "resistor")
@@ -25,10 +25,34 @@ def rules(circuit: object) -> set[str]:
     return {one.rule for one in check_circuit(circuit)}  # type: ignore[arg-type]
 
 
-def test_every_rule_holds_for_the_rigs_own_circuit_and_every_part_is_drawn() -> None:
-    assert check_circuit(CIRCUIT) == ()
-    assert undrawn(CIRCUIT) == []
-    require_sound(CIRCUIT, "circuit.toml")
+@pytest.mark.parametrize("circuit", BOTH, ids=["paper", "cell"])
+def test_every_rule_holds_for_a_rigs_own_circuit_and_every_part_is_drawn(circuit: Circuit) -> None:
+    assert check_circuit(circuit) == ()
+    assert undrawn(circuit) == []
+    require_sound(circuit, "circuit.toml")
+
+
+def test_a_change_of_a_circuit_replaces_what_it_names_and_leaves_the_rest() -> None:
+    assert RECOMMENDED.nets["EXC1"] == CIRCUIT.nets["EXC1"]
+    assert "U9" not in RECOMMENDED.parts
+    assert not any(pin.startswith("U9.") for pins in RECOMMENDED.nets.values() for pin in pins)
+    assert "V12" not in RECOMMENDED.nets
+    assert {sheet.name for sheet in CIRCUIT.sheets} - {s.name for s in RECOMMENDED.sheets} == {"vibration"}
+    with pytest.raises(InputError, match="there is no other"):
+        read_circuit('format = "fdvv-circuit"\nversion = 1\nbase = "other"\n')
+
+
+def test_the_current_drive_lets_go_while_the_controller_is_in_reset() -> None:
+    assert ("rest", "U5.E/S") in {(one.rule, one.place) for one in check_circuit(without("R56", RECOMMENDED))}
+    pulls = [(a, b) for part, a, b in RECOMMENDED.between("resistor") if part.ref == "R47"]
+    assert pulls == [("COMMAND", "MIDDLE_REF")], "the middle asks for no current"
+
+
+def test_the_converters_of_the_m4_are_on_pins_that_have_one_and_the_command_on_its_dac() -> None:
+    # SAMD51 data sheet: DAC0 on PA02; ADC0 on PA02 to PA11 and PB08, PB09
+    chips = {name: RECOMMENDED.parts["U1"].kind.pins[name].chip for name in ("A0", "A2", "A3", "A4", "A5")}
+    assert chips.pop("A0") == "PA02"
+    assert set(chips.values()) <= {f"PA{n:02d}" for n in range(2, 12)} | {"PB08", "PB09"}
 
 
 def test_the_controllers_pins_are_those_of_the_firmware() -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
+from fdvv.twin.files import load_rig
 from fdvv_rig.bought import bought_parts
 from fdvv_rig.check import Assembly, assemble, clearances, meetings, states
 from fdvv_rig.dimensions import Dimensions
@@ -111,6 +112,22 @@ def test_the_sensor_cone_is_the_papers_frustum_less_a_dimple(meshes: dict[str, M
 def test_no_two_parts_meet_at_the_end_of_the_travel(rig: Assembly) -> None:
     travel_mm = D.travel_mm - 0.02
     assert meetings(rig, State(travel_mm, min(travel_mm + 0.05, D.travel_mm))) == []
+
+
+def test_with_a_load_cell_in_the_cap_no_two_parts_meet(meshes: dict[str, Mesh]) -> None:
+    with_cell = assemble(meshes, D, cell=True)
+    for travel_mm in (0.0, D.travel_mm - 0.02):
+        assert meetings(with_cell, State(travel_mm, D.travel_mm)) == []
+
+
+def test_the_plate_touches_nothing_but_the_cell_and_is_as_light_as_the_twins(meshes: dict[str, Mesh]) -> None:
+    with_cell = assemble(meshes, D, cell=True)
+    bodies = with_cell.at(State())
+    assert gap_mm(bodies["cell-plate"], bodies["cell-holder"]) >= D.film_preload_mm - 1e-3
+    assert gap_mm(bodies["cell-plate"], bodies["cell"]) < 0.05
+    assert part_named("cell-plate").mass_g < 1e3 * load_rig("recommended").load_cell.plate_kg
+    rim_mm, plate_mm = (bodies[name].bounding_box()[5] for name in ("cell-holder", "cell-plate"))
+    assert plate_mm - rim_mm > 1.5, "a finger must not press the rim"
 
 
 @pytest.mark.slow

@@ -14,13 +14,16 @@ import pytest
 
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
 from fdvv.protocol.tables import Settings
-from fdvv_rig.bill import PAPER_USD, group_totals, load_bill, read_bill, to_csv
+from fdvv.twin.files import load_rig
+from fdvv_rig.bill import PAPER_USD, group_totals, load_bill, read_bill, summary, to_csv
+from fdvv_rig.circuit.circuit import Circuit
 from fdvv_rig.circuit.circuit_report import circuit_report
+from fdvv_rig.circuit.current import cell_reading, current_drive
 from fdvv_rig.circuit.filters import converter_steps, filter_values, paper_cutoff_Hz, rig_settings
 from fdvv_rig.circuit.netlist import to_document, to_kicad, wiring_rows
 from fdvv_rig.circuit.power import coil_drive
 from fdvv_rig.parts import PARTS, part_named
-from tests.hardware.circuits import CIRCUIT, with_value
+from tests.hardware.circuits import CIRCUIT, RECOMMENDED, with_value
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -90,15 +93,17 @@ def test_the_committed_drawings_netlists_and_pages_are_those_of_the_circuit() ->
     spec.loader.exec_module(tool)
     for path, text in tool.files().items():
         assert path.read_text() == text, f"run python tools/make_circuit.py: {path.name}"
-    assert {p.name for p in tool.CIRCUIT.iterdir()} == {
-        p.name for p in tool.files() if p.parent == tool.CIRCUIT
-    }
+    for folder in tool.FOLDERS.values():
+        assert {p.name for p in folder.iterdir()} == {p.name for p in tool.files() if p.parent == folder}
 
 
-def test_every_part_and_value_stands_in_a_drawing() -> None:
-    drawn = " ".join(path.read_text() for path in (ROOT / "hardware" / "circuit").glob("*.svg"))
+@pytest.mark.parametrize(
+    ("circuit", "folder"), [(CIRCUIT, "circuit"), (RECOMMENDED, "circuit-recommended")], ids=["paper", "cell"]
+)
+def test_every_part_and_value_stands_in_a_drawing(circuit: Circuit, folder: str) -> None:
+    drawn = " ".join(path.read_text() for path in (ROOT / "hardware" / folder).glob("*.svg"))
     drawn = " ".join(re.sub(r"<[^>]*>", " ", drawn).split())
-    for part in CIRCUIT.parts.values():
+    for part in circuit.parts.values():
         assert re.search(rf"\b{part.ref}\b", drawn), part.ref
         assert part.text in drawn
 
@@ -142,23 +147,71 @@ def test_the_wires_join_what_the_nets_join_and_nothing_else() -> None:
     assert stars == {net: set(pins) for net, pins in CIRCUIT.nets.items()}
 
 
-def test_the_bill_and_the_circuit_name_the_same_parts_in_the_same_numbers() -> None:
-    needed = Counter(part.bill for part in CIRCUIT.parts.values())
-    lines = {line.role: line.count for line in load_bill(CIRCUIT).lines}
+@pytest.mark.parametrize(
+    ("circuit", "rig", "beside"),
+    [(CIRCUIT, "paper", set()), (RECOMMENDED, "recommended", {"film", "heat sink"})],
+    ids=["paper", "cell"],
+)
+def test_the_bill_and_the_circuit_name_the_same_parts_in_the_same_numbers(
+    circuit: Circuit, rig: str, beside: set[str]
+) -> None:
+    needed = Counter(part.bill for part in circuit.parts.values())
+    lines = {line.role: line.count for line in load_bill(circuit).lines}
     assert {role: lines[role] for role in needed} == needed
-    printed = {line.role for line in load_bill(CIRCUIT).lines if line.maker == "printed"}
-    assert "keycap-adapter" in printed
-    weighed = {line.role: line.count for line in load_bill(CIRCUIT).lines}
-    assert {part.name: weighed[part.name] for part in PARTS} == {part.name: part.count for part in PARTS}
-    assert set(lines) - set(needed) - printed == {"board and wire", "screws"}
+    printed = {line.role: line.count for line in load_bill(circuit).lines if line.maker == "printed"}
+    assert printed == {part.name: part.count for part in PARTS if part.rig in ("", rig)}
+    assert set(lines) - set(needed) - set(printed) == {"board and wire", "screws"} | beside
 
 
 def test_the_total_is_the_sum_of_its_lines_and_tells_of_estimates() -> None:
     bill = load_bill(CIRCUIT)
-    assert bill.total_USD == pytest.approx(sum(line.packs * line.price_USD for line in bill.lines))
+    assert bill.total_USD == pytest.approx(sum(line.packs * (line.price_USD or 0) for line in bill.lines))
     assert sum(group_totals(bill).values()) == pytest.approx(bill.total_USD)
     assert all(line.estimated and line.priced.year >= 2026 for line in bill.lines)
     assert group_totals(bill)["rig"] > 0.5 * PAPER_USD
+
+
+def test_a_price_that_nobody_knows_is_asked_for_and_not_counted() -> None:
+    bill = load_bill(RECOMMENDED)
+    asked = [line for line in bill.lines if line.asked]
+    assert {"load cell", "power amplifier", "controller M4"} <= {line.role for line in asked}
+    assert all(line.total_USD == 0 and not line.estimated for line in asked)
+    assert f"and {len(asked)} lines without a price" in summary(bill)
+
+
+def test_the_current_loop_is_the_one_that_the_recommended_rig_of_the_twin_has() -> None:
+    drive, coil = current_drive(RECOMMENDED, Settings()), load_rig("recommended").coil
+    assert drive.loop_us == pytest.approx(1e6 * coil.current_loop_s, rel=0.02)
+    assert drive.zero_Hz == pytest.approx(drive.coil_Hz, rel=0.05)
+    assert drive.current_A < drive.full_A < drive.limit_A < 3.0
+    # its converter is finer than the twin's command
+    assert (
+        drive.step_cN
+        < 100 * coil.force_constant_N_A * coil.supply_V / coil.resistance_ohm / 2**coil.command_bits
+    )
+
+
+def test_the_current_of_a_simulated_coil_follows_a_step_with_the_time_constant_that_is_stated() -> None:
+    # the circuit's own amplifiers as equations: error amplifier, bridge, coil, shunt
+    value = {ref: part.value or 0.0 for ref, part in RECOMMENDED.parts.items()}
+    sense_V_A, gain, henry = 50 * value["R41"], 2 * value["R34"] / value["R33"], 1e-3
+    amps, stored_V, step_s, command_V = 0.0, 0.0, 1e-8, 0.1
+    drive = current_drive(RECOMMENDED, Settings())
+    for _ in range(round(1e-6 * drive.loop_us / step_s)):
+        into = (command_V - sense_V_A * amps) / value["R42"]
+        volts = gain * (value["R44"] * into + stored_V)
+        stored_V += step_s * into / value["C20"]
+        amps += step_s * (volts - value["L1"] * amps) / henry
+    assert amps * sense_V_A / command_V == pytest.approx(1 - math.exp(-1), abs=0.02)
+
+
+def test_the_cells_range_step_and_filter_are_those_of_the_recommended_rig() -> None:
+    cell, fitted = cell_reading(RECOMMENDED), load_rig("recommended").load_cell
+    assert cell.cutoff_Hz == pytest.approx(fitted.bandwidth_Hz, rel=0.03)
+    assert cell.high_cN - cell.null_cN > 100 * fitted.full_scale_N
+    assert cell.step_cN == pytest.approx(200 * fitted.full_scale_N / 2**fitted.converter_bits, rel=0.03)
+    assert cell.noise_cN < 100 * fitted.noise_ratio * fitted.full_scale_N
+    assert cell.low_cN + cell.null_cN < 0
 
 
 def test_printed_parts_are_paid_by_their_mass() -> None:

@@ -35,7 +35,7 @@ class BillLine:
     ----------
     role : what the circuit and the drawings call it. group : one of GROUPS.
     count : how many are needed. pack : how many one price buys.
-    price_USD : of a pack; priced says when, price_source where from, or "estimate".
+    price_USD : of a pack, None where one must ask; priced says when, price_source where from, or "estimate".
     alternatives : other parts that serve. note : what to look out for.
     """
 
@@ -44,7 +44,7 @@ class BillLine:
     maker: str
     part_number: str
     count: int
-    price_USD: float
+    price_USD: float | None
     priced: date
     price_source: str = "estimate"
     pack: int = 1
@@ -54,7 +54,7 @@ class BillLine:
     def __post_init__(self) -> None:
         if self.group not in GROUPS:
             raise ModelError(f"{self.role}: group must be one of {', '.join(GROUPS)}, got {self.group}")
-        if self.count < 1 or self.pack < 1 or self.price_USD < 0:
+        if self.count < 1 or self.pack < 1 or (self.price_USD or 0.0) < 0:
             raise ModelError(f"{self.role}: count and pack from 1, price from 0; got {self}")
 
     @property
@@ -64,13 +64,18 @@ class BillLine:
 
     @property
     def total_USD(self) -> float:
-        """What they cost."""
-        return self.packs * self.price_USD
+        """What they cost; nothing where the price must be asked for."""
+        return self.packs * (self.price_USD or 0.0)
+
+    @property
+    def asked(self) -> bool:
+        """Return whether the price must be asked for."""
+        return self.price_USD is None
 
     @property
     def estimated(self) -> bool:
-        """Return whether nobody quoted this price."""
-        return self.price_source == "estimate"
+        """Return whether there is a price that nobody quoted."""
+        return not self.asked and self.price_source == "estimate"
 
 
 @dataclass(frozen=True)
@@ -98,23 +103,26 @@ class Bill:
         ]
 
 
-def load_bill(circuit: Circuit, printed: Iterable[Part] = PARTS) -> Bill:
-    """Return the rig's bill: counts come from the circuit, the plastic from the printed parts.
+def load_bill(circuit: Circuit, printed: Iterable[Part] | None = None) -> Bill:
+    """Return a rig's bill: counts come from its circuit, the plastic from its printed parts.
 
     Raises InputError if the circuit asks for a role that bill.toml does not have, or the other way round.
     """
     text = resources.files("fdvv_rig").joinpath("bill.toml").read_text("utf-8")
-    return read_bill(text, Counter(part.bill for part in circuit.parts.values()), printed)
+    rig = "recommended" if circuit.has_cell else "paper"
+    own = [part for part in PARTS if part.rig in ("", rig)] if printed is None else printed
+    return read_bill(text, Counter(part.bill for part in circuit.parts.values()), own, rig)
 
 
-def read_bill(text: str, needed: Mapping[str, int], printed: Iterable[Part] = ()) -> Bill:
+def read_bill(text: str, needed: Mapping[str, int], printed: Iterable[Part] = (), rig: str = "paper") -> Bill:
     """Read a bill from TOML text.
 
     needed : count of each electrical role. printed : the printed parts, of which the plastic is counted.
+    rig : lines that name another rig are left out.
     Raises InputError if a role is needed that the text does not have, or the other way round.
     """
     document = tomllib.loads(text)
-    lines = [_line(raw, needed) for raw in document["lines"]]
+    lines = [_line(raw, needed) for raw in document["lines"] if raw.get("rig", rig) == rig]
     lacking = sorted(set(needed) - {line.role for line in lines})
     if lacking:
         reason = f"the circuit needs {', '.join(lacking)}"
@@ -138,7 +146,8 @@ def _printed(raw: dict[str, Any], printed: Iterable[Part]) -> list[BillLine]:
 
 
 def _line(raw: dict[str, Any], needed: Mapping[str, int]) -> BillLine:
-    role, body = raw["role"], dict(raw)
+    role, body = raw["role"], {"price_USD": None, **raw}
+    body.pop("rig", None)
     if body.pop("circuit", True):
         if role not in needed:
             reason = f"{role} is not in the circuit"
@@ -177,19 +186,24 @@ ABOUT = {
 }
 
 
-def bill_page(bill: Bill) -> str:
-    """Write the bill as Markdown: a table per group, totals beside the paper's."""
-    groups = [(ABOUT[group], bill.of(group).lines) for group in GROUPS]
-    return page("bill.md.j2", summary=summary(bill), groups=groups)
+def bill_page(paper: Bill, recommended: Bill) -> str:
+    """Write both rigs' bills as Markdown: a table per group with both counts, totals beside the paper's."""
+    counts = [Counter({line.role: line.count for line in bill.lines}) for bill in (paper, recommended)]
+    lines = {line.role: line for line in (*paper.lines, *recommended.lines)}
+    groups = [(ABOUT[group], [one for one in lines.values() if one.group == group]) for group in GROUPS]
+    texts = {"paper": summary(paper), "recommended": summary(recommended)}
+    return page("bill.md.j2", summaries=texts, groups=groups, paper=counts[0], recommended=counts[1])
 
 
 def summary(bill: Bill) -> str:
     """Return the total in a sentence or two, beside the paper's."""
     totals = group_totals(bill)
-    estimates = sum(line.estimated for line in bill.lines)
+    estimates, asked = (sum(getattr(line, name) for line in bill.lines) for name in ("estimated", "asked"))
     built = totals["rig"] + totals["vibration"]
+    lines = [line for line in bill.lines if not line.asked]
+    more = f", and {asked} lines without a price: ask for a quotation" if asked else ""
     return (
-        f"{bill.total_USD:.0f} USD in all; rig and vibration, what the paper built for about "
-        f"{PAPER_USD:.0f} USD, {built:.0f} USD. {estimates} of {len(bill.lines)} prices "
-        f"are estimates of {dates(bill.lines)}, without shipping and tax."
+        f"{bill.total_USD:.0f} USD in all{more}; rig and vibration, what the paper built for about "
+        f"{PAPER_USD:.0f} USD, {built:.0f} USD. {estimates} of {len(lines)} prices "
+        f"are estimates of {dates(lines)}, without shipping and tax."
     )

@@ -11,9 +11,13 @@ from fdvv_rig.placement import Moves
 from fdvv_rig.screws import screws
 
 
-def bought_parts(d: Dimensions) -> tuple[Envelope, ...]:
-    """Return the bought parts of the rig at travel 0, the limiter's angle 0."""
-    return (*_on_axis(d), _servo(d), _horn(d), _exciter(d), _keycap(d), *_boards(d), *screws(d))
+def bought_parts(d: Dimensions, cell: bool = False) -> tuple[Envelope, ...]:
+    """Return the bought parts of the rig at travel 0, the limiter's angle 0.
+
+    cell : of the rig with a load cell, else of the paper's, with exciter and keycap.
+    """
+    head = (_cell(d),) if cell else (_exciter(d), _keycap(d))
+    return (*_on_axis(d), _servo(d), _horn(d), *head, *_boards(d), *screws(d))
 
 
 def _on_axis(d: Dimensions) -> Iterator[Envelope]:
@@ -71,6 +75,15 @@ def _exciter(d: Dimensions) -> Envelope:
     low_mm = Layout(d).roof_low_mm - d.exciter_height_mm
     body = _rod(low_mm, d.exciter_height_mm, d.exciter_diameter_mm)
     return Envelope("exciter", "exciter", Moves.SLIDER, (body,), (), frozenset({"keycap-adapter"}))
+
+
+def _cell(d: Dimensions) -> Envelope:
+    low_mm, x_mm, y_mm = Layout(d).cell_seat_mm, d.cell_width_mm / 2, d.cell_length_mm / 2
+    body = Block((-x_mm, -y_mm, low_mm), (x_mm, y_mm, low_mm + d.cell_height_mm))
+    ball = Rod("z", (0.0, 0.0, body.high_mm[2]), d.cell_ball_out_mm - d.plate_dimple_mm, d.cell_ball_mm)
+    return Envelope(
+        "cell", "load cell", Moves.SLIDER, (body, ball), (), frozenset({"cell-holder", "cell-plate"})
+    )
 
 
 def _keycap(d: Dimensions) -> Envelope:

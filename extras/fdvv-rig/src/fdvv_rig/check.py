@@ -10,7 +10,7 @@ from fdvv_rig.bought import bought_parts
 from fdvv_rig.dimensions import Dimensions
 from fdvv_rig.envelope import Envelope
 from fdvv_rig.mesh import Mesh
-from fdvv_rig.placement import MOVES, RIG, Moves, State, in_rig, moved
+from fdvv_rig.placement import CELL_RIG, MOVES, RIG, Moves, State, in_rig, moved
 from fdvv_rig.solids import Body, body_of, body_of_bought, gap_mm, placed, shared_mm3
 
 SHARED_mm3 = 0.05
@@ -23,6 +23,7 @@ JOINED = frozenset(
     {
         *(frozenset(pair) for pair in (("slider-yoke", "keycap-adapter"), ("coil-mount", "base"))),
         *(frozenset(pair) for pair in (("lvdt-mount", "base"), ("limiter-bracket", "base"))),
+        frozenset(("slider-yoke", "cell-holder")),
     }
 )
 """Printed pairs that touch, screwed together. They may share no room all the same."""
@@ -86,12 +87,15 @@ class Assembly:
         return self.envelopes.get(name, printed)
 
 
-def assemble(meshes: Mapping[str, Mesh], d: Dimensions) -> Assembly:
-    """Put exported parts and bought ones together. Raises ValueError where a mesh is not closed."""
-    bought = bought_parts(d)
+def assemble(meshes: Mapping[str, Mesh], d: Dimensions, cell: bool = False) -> Assembly:
+    """Put exported parts and bought ones together. Raises ValueError where a mesh is not closed.
+
+    cell : the rig with a load cell, else the paper's.
+    """
+    bought = bought_parts(d, cell)
     return Assembly(
         d,
-        {name: body_of(meshes[name]) for name in RIG},
+        {name: body_of(meshes[name]) for name in (CELL_RIG if cell else RIG)},
         {envelope.name: body_of_bought(envelope) for envelope in bought},
         {envelope.name: envelope for envelope in bought},
     )

@@ -91,6 +91,17 @@ class Dimensions:
     driver_length_mm: float = _of(24.4, "coil driver board, length", CLASS)
     driver_width_mm: float = _of(20.4, "coil driver board, width", CLASS)
     spacer_mm: float = _of(5.0, "spacers under the boards, height", CHOSEN)
+    # load cell in the cap, and its plate
+    cell_length_mm: float = _of(8.5, "load cell (Honeywell FSS), body, front to back", CLASS)
+    cell_width_mm: float = _of(5.6, "load cell, body, side to side", CLASS)
+    cell_height_mm: float = _of(2.6, "load cell, body, height", CLASS)
+    cell_ball_mm: float = _of(1.6, "load cell, ball that is pressed, diameter", CLASS)
+    cell_ball_out_mm: float = _of(0.9, "load cell, ball above the body", CLASS)
+    plate_diameter_mm: float = _of(12.0, "plate between finger and cell, diameter", CHOSEN)
+    plate_thickness_mm: float = _of(2.0, "plate, thickness", CHOSEN)
+    plate_dimple_mm: float = _of(0.3, "plate, depth of the dimple over the ball", CHOSEN)
+    film_gap_mm: float = _of(1.0, "film between plate and rim, free width", CHOSEN)
+    film_preload_mm: float = _of(0.1, "plate's underside above the rim, which strains the film", CHOSEN)
     # worn on the finger, and capture
     cone_bottom_mm: float = _of(12.0, "sensor cone, diameter at the sensor", PAPER)
     cone_top_mm: float = _of(5.0, "sensor cone, diameter at the button", PAPER)

@@ -11,6 +11,9 @@ from fdvv_rig.limiter import HOLD_RATIO, Limiter
 from fdvv_rig.screws import WASHER_mm
 from fdvv_rig.tolerance import core_stack
 
+MIN_AIR_mm = 0.4
+"""Between plate and the body of the load cell."""
+
 Miss = tuple[str, str, str]
 """The dimension, what is wrong, what to do."""
 
@@ -26,7 +29,7 @@ def check_fits(d: Dimensions) -> None:
 
 def misses(d: Dimensions) -> Iterator[Miss]:
     """Yield everything that does not fit, in the order in which it should be mended."""
-    for question in (_bearings, _sensor, _walls, _screws, _limiter, _servo, _printer):
+    for question in (_bearings, _sensor, _walls, _screws, _cell, _limiter, _servo, _printer):
         yield from question(d)
 
 
@@ -98,6 +101,21 @@ def _screws(d: Dimensions) -> Iterator[Miss]:
     least_mm = d.m3_insert_mm + 2 * d.thin_wall_mm
     if d.yoke_thickness_mm < least_mm:
         yield "yoke_thickness_mm", "leaves no wall about its insert", f"take {least_mm:g} mm or more"
+
+
+def _cell(d: Dimensions) -> Iterator[Miss]:
+    layout = Layout(d)
+    wall_mm = (layout.body_width_mm - layout.cell_bore_mm) / 2
+    if wall_mm < d.thin_wall_mm:
+        yield "plate_diameter_mm", f"leaves {wall_mm:.2f} mm of rim for the film", "take a smaller plate"
+    room_mm = d.cell_ball_out_mm - d.plate_dimple_mm
+    if room_mm < MIN_AIR_mm or d.plate_dimple_mm > d.cell_ball_mm / 2:
+        yield "plate_dimple_mm", "sets the plate on the cell's body, or over its ball", "make it shallower"
+    if d.cell_length_mm + 2 * d.fit_gap_mm + d.hole_excess_mm > layout.cell_bore_mm:
+        yield "cell_length_mm", "does not fit in the holder", "take a smaller cell"
+    screw_mm = layout.yoke_screw_mm - (d.m2_pilot_mm + d.hole_excess_mm) / 2
+    if d.cell_width_mm / 2 > screw_mm - d.thin_wall_mm:
+        yield "cell_width_mm", "meets the screws of the yoke", "turn the cell, or take a smaller one"
 
 
 def _limiter(d: Dimensions) -> Iterator[Miss]:

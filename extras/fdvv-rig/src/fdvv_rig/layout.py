@@ -115,6 +115,22 @@ class Layout:
         return self.stem_low_mm + 0.5 + self.d.keycap_height_mm
 
     @property
+    def cell_seat_mm(self) -> float:
+        """Get the face that the load cell lies on, at travel 0."""
+        return self.yoke_top_mm + self.adapter_floor_mm
+
+    @property
+    def plate_low_mm(self) -> float:
+        """Get the plate's underside, at travel 0: its dimple lies on the ball."""
+        ball_mm = self.cell_seat_mm + self.d.cell_height_mm + self.d.cell_ball_out_mm
+        return ball_mm - self.d.plate_dimple_mm
+
+    @property
+    def cell_bore_mm(self) -> float:
+        """Get the diameter of the holder's bore about the cell: plate, and film beside it."""
+        return self.d.plate_diameter_mm + 2 * self.d.film_gap_mm
+
+    @property
     def tongue_out_mm(self) -> float:
         """Get the distance of the tongue's inner face from the axis."""
         return self.tower_radius_mm + 3.5 + 2 * self.d.slide_gap_mm

@@ -27,6 +27,7 @@ class Part:
     name : its name in files and bills; title : for people; use : what it does.
     lies : how it lies on the bed; drawn : the dimensions that its drawing tells with their meaning.
     count : how many a rig needs; material : what it is printed of.
+    rig : which one needs it, "" for every rig.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Part:
     drawn: tuple[str, ...]
     count: int = 1
     material: str = "PLA or PETG"
+    rig: str = ""
 
     @property
     def made(self) -> Made:
@@ -103,6 +105,24 @@ PARTS = (
         "Holds the exciter on the axis and an MX keycap above it; two screws join it to the yoke.",
         "upright; its roof is a bridge between three walls",
         ("exciter_diameter_mm", "exciter_height_mm", "stem_arm_mm", "stem_height_mm"),
+        rig="paper",
+    ),
+    Part(
+        "cell-holder",
+        "Cell holder",
+        "Recommended rig: holds the load cell on the axis; on its rim lies the film that guides the plate.",
+        "upright",
+        ("cell_length_mm", "cell_width_mm", "cell_height_mm", "film_gap_mm"),
+        rig="recommended",
+    ),
+    Part(
+        "cell-plate",
+        "Cell plate",
+        "Recommended rig: what the finger presses; its dimple lies on the load cell's ball.",
+        "upside down, the finger's face on the bed",
+        ("plate_diameter_mm", "plate_thickness_mm", "plate_dimple_mm", "cell_ball_mm"),
+        material="PLA, solid",
+        rig="recommended",
     ),
     Part(
         "limiter-arm",

@@ -77,14 +77,20 @@ class Moves(StrEnum):
     LIMITER = "limiter"
 
 
-MOVES = {"slider-yoke": Moves.SLIDER, "keycap-adapter": Moves.SLIDER, "limiter-arm": Moves.LIMITER}
+MOVES = {
+    **dict.fromkeys(("slider-yoke", "keycap-adapter", "cell-holder", "cell-plate"), Moves.SLIDER),
+    "limiter-arm": Moves.LIMITER,
+}
 """Of printed parts; the others are fixed."""
 
 RIG = (
     *("base", "coil-mount", "lvdt-mount", "slider-yoke", "keycap-adapter", "limiter-arm"),
     *("limiter-bracket", "black-box"),
 )
-"""The printed parts that stand in the rig."""
+"""The printed parts that stand in the paper's rig."""
+
+CELL_RIG = (*(name for name in RIG if name != "keycap-adapter"), "cell-holder", "cell-plate")
+"""Those of the recommended rig: a load cell in place of exciter and keycap."""
 
 POSTS_mm = ((-27.5, 18.0), (27.5, 18.0), (-27.5, -10.0))
 """Where marker posts stand on the jig: three different sides, so that a camera knows which is which."""
@@ -117,8 +123,10 @@ def on_bed(name: str, d: Dimensions) -> Pose:
             return Pose(OVER)
         case "slider-yoke":
             return Pose(OVER, (0.0, 0.0, layout.yoke_top_mm))
-        case "keycap-adapter":
+        case "keycap-adapter" | "cell-holder":
             return Pose(shift_mm=(0.0, 0.0, -layout.yoke_top_mm))
+        case "cell-plate":
+            return Pose(OVER, (0.0, 0.0, layout.plate_low_mm + d.plate_thickness_mm))
         case "limiter-arm":
             return Pose(X_UP, (layout.servo_axis_mm, 0.0, -layout.limiter_in_mm))
         case "limiter-bracket":

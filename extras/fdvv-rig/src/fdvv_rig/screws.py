@@ -92,7 +92,7 @@ def _yoke(d: Dimensions) -> Envelope:
     for side in (-1, 1):
         seat = (side * layout.yoke_screw_mm, 0.0, layout.yoke_low_mm + layout.head_room_mm)
         solids += _screw("z", seat, 1, 8.0, 2.0, M2_HEAD_mm)
-    holds, enters = frozenset({"slider-yoke"}), frozenset({"keycap-adapter"})
+    holds, enters = frozenset({"slider-yoke"}), frozenset({"keycap-adapter", "cell-holder"})
     return Envelope("yoke-screws", "M2 × 8 screw", Moves.SLIDER, tuple(solids), (), holds, enters, 2)
 
 

@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from fdvv_rig.cad.carrying import base, coil_mount, lvdt_mount
-from fdvv_rig.cad.moving import keycap_adapter, limiter_arm, limiter_bracket, slider_yoke
+from fdvv_rig.cad.moving import (
+    cell_holder,
+    cell_plate,
+    keycap_adapter,
+    limiter_arm,
+    limiter_bracket,
+    slider_yoke,
+)
 from fdvv_rig.cad.shapes import Solid, kernel
 from fdvv_rig.cad.standing import black_box, capture_jig, marker_post, sensor_cone
 from fdvv_rig.dimensions import Dimensions
@@ -17,6 +24,8 @@ BUILDERS: dict[str, Callable[[Dimensions], Solid]] = {
     "lvdt-mount": lvdt_mount,
     "slider-yoke": slider_yoke,
     "keycap-adapter": keycap_adapter,
+    "cell-holder": cell_holder,
+    "cell-plate": cell_plate,
     "limiter-arm": limiter_arm,
     "limiter-bracket": limiter_bracket,
     "sensor-cone": sensor_cone,

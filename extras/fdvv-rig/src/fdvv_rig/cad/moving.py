@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv_rig.cad.shapes import Solid, block, kernel, prism, rod
+from fdvv_rig.cad.shapes import Solid, ball, block, kernel, prism, rod
 from fdvv_rig.dimensions import Dimensions
 from fdvv_rig.layout import Layout
 from fdvv_rig.limiter import RETURN_DEG, Limiter
 
 INSERT_DEPTH_mm = 5.8
+POCKET_mm = 1.2
+"""How deep the load cell is let in."""
+LEADS_mm = 4.0
+"""Width of the slots for its leads."""
 HORN_SHARE = 0.9
 """Where in the sweep the horn points: towards the spiral's large end, a little before it."""
 
@@ -67,6 +71,30 @@ def keycap_adapter(d: Dimensions) -> Solid:
     arm, along, across = d.stem_arm_mm / 2, d.stem_along_mm / 2, d.stem_across_mm / 2
     cross = block((-arm, -along, foot), (arm, along, top)) + block((-across, -arm, foot), (across, arm, top))
     return made + cross
+
+
+def cell_holder(d: Dimensions) -> Solid:
+    """Make the holder: the load cell's pocket on the axis, a rim for the film, slots for the leads."""
+    layout = Layout(d)
+    half, low, seat = layout.body_width_mm / 2, layout.yoke_top_mm, layout.cell_seat_mm
+    rim = layout.plate_low_mm - d.film_preload_mm
+    made = block((-half, -half, low), (half, half, rim), 1.5)
+    made -= rod("z", (0, 0, seat + POCKET_mm), rim, layout.cell_bore_mm)
+    gap = d.fit_gap_mm + d.hole_excess_mm / 2
+    x, y = d.cell_width_mm / 2 + gap, d.cell_length_mm / 2 + gap
+    made -= block((-x, -y, seat), (x, y, rim + 1))
+    made -= block((-LEADS_mm / 2, -half - 1, seat), (LEADS_mm / 2, half + 1, rim - d.thin_wall_mm))
+    for side in (-1, 1):
+        at = (side * layout.yoke_screw_mm, 0.0, low - 1)
+        made -= rod("z", at, layout.adapter_floor_mm + 0.4, d.m2_pilot_mm + d.hole_excess_mm)
+    return made
+
+
+def cell_plate(d: Dimensions) -> Solid:
+    """Make the plate that the finger presses: a disc with a dimple for the cell's ball."""
+    low, ball_mm = Layout(d).plate_low_mm, d.cell_ball_mm + d.hole_excess_mm
+    made = rod("z", (0, 0, low), d.plate_thickness_mm, d.plate_diameter_mm)
+    return made - ball((0, 0, low + d.plate_dimple_mm - ball_mm / 2), ball_mm)
 
 
 def limiter_arm(d: Dimensions) -> Solid:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import resources
@@ -136,6 +137,11 @@ class Circuit:
     filters: tuple[Filter, ...] = ()
     facts: dict[str, float] = field(default_factory=dict)
 
+    @property
+    def has_cell(self) -> bool:
+        """Return whether this is a rig with a load cell and a linear current drive."""
+        return "cell_mV_N" in self.facts
+
     @cached_property
     def net_of(self) -> dict[str, str]:
         """Return the net of every connected pin."""
@@ -170,18 +176,22 @@ def engineering(value: float, unit: str) -> str:
 FORMAT, VERSION = "fdvv-circuit", 1
 
 TOP = ("format", "version", "title", "kinds", "parts", "nets", "sheets", "filters", "facts")
+CHANGES = ("base", "without", "without_sheets")
+"""What only a circuit has that changes another."""
+
+RIGS = {"paper": "circuit.toml", "recommended": "recommended.toml"}
+"""The rigs whose circuits the package has, each with its file."""
 
 PIN_KEYS = {"is": "type", "from": "feeds"}
 
 
-def load_circuit(path: Path | None = None) -> Circuit:
-    """Read the rig's own circuit, or another from a TOML file.
+def load_circuit(path: Path | None = None, rig: str = "paper") -> Circuit:
+    """Read the circuit of one of RIGS, or another from a TOML file.
 
     Only the form is checked here; check_circuit tells whether it may be built. Raises InputError.
     """
     if path is None:
-        text = resources.files("fdvv_rig.circuit").joinpath("circuit.toml").read_text("utf-8")
-        return read_circuit(text, "circuit.toml")
+        return read_circuit(_packaged(RIGS[rig]), RIGS[rig])
     try:
         return read_circuit(path.read_text("utf-8"), path)
     except UnicodeDecodeError as error:
@@ -190,13 +200,61 @@ def load_circuit(path: Path | None = None) -> Circuit:
         ) from None
 
 
+def _packaged(name: str) -> str:
+    return resources.files("fdvv_rig.circuit").joinpath(name).read_text("utf-8")
+
+
 def read_circuit(text: str, source: object = "circuit") -> Circuit:
-    """Read a circuit from TOML text. Raises InputError with the place."""
+    """Read a circuit from TOML text, or the changes of a base. Raises InputError with the place."""
+    document = _document(text, source)
+    if "base" in document:
+        if document["base"] not in RIGS.values():
+            known = ", ".join(RIGS.values())
+            raise InputError(source, "base", f"there is no {document['base']}", f"use one of {known}")
+        document = changed(_document(_packaged(document["base"]), document["base"]), document)
+    return _Reader(source, document).circuit()
+
+
+def _document(text: str, source: object) -> dict[str, Any]:
     try:
-        document = tomllib.loads(text)
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(source, "whole file", f"is no TOML: {error}", "mend that place") from None
-    return _Reader(source, document).circuit()
+
+
+def changed(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
+    """Return a circuit's document with the changes of another.
+
+    Parts in `without` go, and with them their pins; what has the same name is replaced; an empty net goes.
+    """
+    gone = set(change.get("without", ()))
+    kept = {ref: part for ref, part in base.get("parts", {}).items() if ref not in gone}
+    nets = {
+        net: [pin for pin in pins if pin.partition(".")[0] not in gone]
+        for net, pins in base.get("nets", {}).items()
+    }
+    nets |= change.get("nets", {})
+    made = {**base, **{key: value for key, value in change.items() if key not in CHANGES}}
+    made |= {table: {**base.get(table, {}), **change.get(table, {})} for table in ("kinds", "facts")}
+    made["parts"] = {**kept, **change.get("parts", {})}
+    used = {part.get("kind") for part in made["parts"].values()}
+    made["kinds"] = {name: kind for name, kind in made["kinds"].items() if name in used}
+    made["nets"] = {net: pins for net, pins in nets.items() if pins}
+    for table, left_out in (("sheets", change.get("without_sheets", ())), ("filters", ())):
+        made[table] = _named(base.get(table, []), change.get(table, []), left_out, made["parts"])
+    return made
+
+
+def _named(
+    base: list[dict[str, Any]],
+    change: list[dict[str, Any]],
+    left_out: Collection[str],
+    parts: Collection[str],
+) -> list[dict[str, Any]]:
+    """Return tables by name, the change's in place of the base's; filters without capacitor go."""
+    by_name = {raw["name"]: raw for raw in (*base, *change)}
+    found = [raw for name, raw in by_name.items() if name not in left_out]
+    return [raw for raw in found if raw.get("capacitor") is None or raw["capacitor"] in parts]
 
 
 class _Reader:

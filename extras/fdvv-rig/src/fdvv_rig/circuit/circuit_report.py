@@ -7,14 +7,15 @@ from dataclasses import asdict
 from typing import Any
 
 from fdvv.protocol.tables import Settings
-from fdvv_rig.circuit.circuit import Circuit
+from fdvv_rig.circuit.circuit import RIGS, Circuit
+from fdvv_rig.circuit.current import cell_reading, current_drive
 from fdvv_rig.circuit.diagram import sheet_svgs
 from fdvv_rig.circuit.filters import converter_steps, filter_values, paper_cutoff_Hz, rig_settings
 from fdvv_rig.circuit.netlist import to_document, to_kicad, wiring_rows
 from fdvv_rig.circuit.power import coil_drive, power_budget
 from fdvv_rig.circuit.rules import check_circuit
 
-MADE = "Made from `circuit.toml` of fdvv-rig by `tools/make_circuit.py`; do not edit."
+MADE = "Made from `{}` of fdvv-rig by `tools/make_circuit.py`; do not edit."
 SETTINGS = Settings()
 
 
@@ -33,9 +34,19 @@ def circuit_report(circuit: Circuit, settings: Settings = SETTINGS) -> dict[str,
         "paper_parts_cutoff_Hz": paper_cutoff_Hz(),
         "converter_steps": [asdict(one) for one in converter_steps(circuit)],
         "rails": rails,
-        "coil": asdict(coil_drive(circuit, settings)),
+        **_drive(circuit, settings),
         "settings": rig_settings(circuit, settings.reads),
     }
+
+
+def _drive(circuit: Circuit, settings: Settings) -> dict[str, Any]:
+    if circuit.has_cell:
+        return {"coil": asdict(current_drive(circuit, settings)), "cell": asdict(cell_reading(circuit))}
+    return {"coil": asdict(coil_drive(circuit, settings))}
+
+
+def _made(circuit: Circuit) -> str:
+    return MADE.format(RIGS["recommended" if circuit.has_cell else "paper"])
 
 
 def circuit_files(circuit: Circuit) -> dict[str, str]:
@@ -52,14 +63,25 @@ def circuit_files(circuit: Circuit) -> dict[str, str]:
 def wiring_page(circuit: Circuit) -> str:
     """Write the table that a person wires by: every wire once."""
     free = [pin for pin in circuit.pins() if circuit.pin(pin).type == "free"]
-    return page("wiring.md.j2", made=MADE, wires=wiring_rows(circuit), free=free)
+    return page("wiring.md.j2", made=_made(circuit), wires=wiring_rows(circuit), free=free)
 
 
 def values_page(circuit: Circuit, settings: Settings = SETTINGS) -> str:
     """Write what follows from the values: filters, steps, power, the coil's drive, settings."""
+    if circuit.has_cell:
+        return page(
+            "current.md.j2",
+            made=_made(circuit),
+            facts=circuit.facts,
+            drive=current_drive(circuit, settings),
+            cell=cell_reading(circuit),
+            filters=filter_values(circuit),
+            rails=power_budget(circuit),
+            settings=rig_settings(circuit, settings.reads),
+        )
     return page(
         "values.md.j2",
-        made=MADE,
+        made=_made(circuit),
         facts=circuit.facts,
         parts=circuit.parts,
         filters=filter_values(circuit),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
 from fdvv_rig.circuit.circuit import Circuit, Filter
+from fdvv_rig.circuit.current import cell_reading
 from fdvv_rig.circuit.levels import PowerState, levels
 
 
@@ -107,16 +108,35 @@ def converter_steps(circuit: Circuit) -> tuple[Step, ...]:
     count_V = facts["converter_V"] / 2 ** facts["converter_bits"]
     at = levels(circuit, PowerState())
     span_V = at["POSITION"].V  # of a conditioner that gives 0 to its full 5 V
-    range_mm, high = facts["position_range_mm"], facts["force_high_ratio"]
+    range_mm = facts["position_range_mm"]
     mm_V = range_mm / span_V
-    force_V = at["FORCE"].V / high * (high - facts["force_low_ratio"])
     supply = (circuit.pin("PS1.+").V or 0.0) / at["SUPPLY"].V
     top_V = facts["converter_V"]
     return (
         Step("position", "POSITION", 1e3 * count_V, 1e3 * mm_V * count_V, "um", 1e3 * range_mm),
-        Step("force", "FORCE", 1e3 * count_V, 100 * facts["force_range_N"] / force_V * count_V, "cN", 981.0),
+        _force_step(circuit, count_V),
         Step("supply", "SUPPLY", 1e3 * count_V, 1e3 * supply * count_V, "mV", 1e3 * supply * top_V),
     )
+
+
+def _force_step(circuit: Circuit, count_V: float) -> Step:
+    facts = circuit.facts
+    if circuit.has_cell:
+        cell = cell_reading(circuit)
+        return Step("force", "FORCE", 1e3 * count_V, cell.step_cN, "cN", cell.high_cN)
+    high = facts["force_high_ratio"]
+    force_V = levels(circuit, PowerState())["FORCE"].V / high * (high - facts["force_low_ratio"])
+    return Step(
+        "force", "FORCE", 1e3 * count_V, 100 * facts["force_range_N"] / force_V * count_V, "cN", 981.0
+    )
+
+
+def _zero_V(circuit: Circuit) -> float:
+    """Return the voltage of the force's converter at no force."""
+    if circuit.has_cell:
+        return 1e-3 * cell_reading(circuit).zero_mV
+    facts = circuit.facts
+    return levels(circuit, PowerState())["FORCE"].V * facts["force_low_ratio"] / facts["force_high_ratio"]
 
 
 def rig_settings(circuit: Circuit, reads: int) -> dict[str, int]:
@@ -127,10 +147,9 @@ def rig_settings(circuit: Circuit, reads: int) -> dict[str, int]:
     position, force, _ = converter_steps(circuit)
     facts = circuit.facts
     counts = 2 ** facts["converter_bits"]
-    zero_V = levels(circuit, PowerState())["FORCE"].V * facts["force_low_ratio"] / facts["force_high_ratio"]
     return {
         "position_gain_q14": round(position.value * 1e-3 * UM16_PER_mm * 2**14 / reads),
         "position_offset_um16": round(-facts["position_range_mm"] / 2 * UM16_PER_mm),
         "force_gain_q14": round(force.value * CN64_PER_cN * 2**14),
-        "force_offset_counts": round(zero_V / facts["converter_V"] * counts),
+        "force_offset_counts": round(_zero_V(circuit) / facts["converter_V"] * counts),
     }

@@ -9,11 +9,19 @@ import click
 
 from fdvv.cli import ui
 
+rig_option = ui.option(
+    "--rig",
+    type=click.Choice(["paper", "recommended"]),
+    default="paper",
+    help="The paper's rig, or the recommended one: load cell, current drive, ATSAMD51.",
+)
+
 
 @click.command()
 @ui.option("--csv", "as_csv", is_flag=True, help="Print the lines as CSV and nothing else.")
+@rig_option
 @ui.json_option
-def bill(as_csv: bool, as_json: bool) -> None:
+def bill(as_csv: bool, rig: str, as_json: bool) -> None:
     """List what to buy: makers, part numbers, alternatives, counts, prices, beside the paper's cost.
 
     Counts come from the circuit and the printed parts. Prices are estimates with their date.
@@ -24,7 +32,7 @@ def bill(as_csv: bool, as_json: bool) -> None:
 
     if as_csv and as_json:
         raise InputError("--csv", "with --json", "only one of them can be printed", "leave one out")
-    found = load_bill(load_circuit())
+    found = load_bill(load_circuit(rig=rig))
     if as_csv:
         click.echo(to_csv(found), nl=False)
         return
@@ -34,7 +42,10 @@ def bill(as_csv: bool, as_json: bool) -> None:
         return
     ui.print_table(
         ["role", "maker", "part number", "count", "USD"],
-        [[b.role, b.maker, b.part_number[:34], str(b.count), f"{b.total_USD:.2f}"] for b in found.lines],
+        [
+            [b.role, b.maker, b.part_number[:34], str(b.count), "quote" if b.asked else f"{b.total_USD:.2f}"]
+            for b in found.lines
+        ],
         left=3,
     )
     ui.print_wrapped(summary(found))
@@ -42,6 +53,7 @@ def bill(as_csv: bool, as_json: bool) -> None:
 
 @click.command()
 @ui.option("--file", "file", type=ui.FILE, help="Another circuit's TOML in place of the rig's own.")
+@rig_option
 @ui.option(
     "-o",
     "--output",
@@ -49,20 +61,20 @@ def bill(as_csv: bool, as_json: bool) -> None:
     help="Write diagrams (SVG), netlists (KiCad, JSON), wiring table and values into this folder.",
 )
 @ui.json_option
-def circuit(file: Path | None, output: Path | None, as_json: bool) -> None:
+def circuit(file: Path | None, rig: str, output: Path | None, as_json: bool) -> None:
     """Check the circuit and tell what follows from its values; exit status 1 if a rule is broken.
 
     Cut-offs of the filters, steps of the converters, power of every rail, the coil's current and warmth.
     """
     from fdvv.io.files import write_atomic
-    from fdvv_rig.circuit.circuit import load_circuit
+    from fdvv_rig.circuit.circuit import RIGS, load_circuit
     from fdvv_rig.circuit.circuit_report import circuit_files, circuit_report
     from fdvv_rig.circuit.netlist import to_document
     from fdvv_rig.circuit.rules import require_sound
 
-    found = load_circuit(file)
+    found = load_circuit(file, rig)
     if output:
-        require_sound(found, file or "circuit.toml")
+        require_sound(found, file or RIGS[rig])
         ui.check_folder(output)
         for name, text in circuit_files(found).items():
             write_atomic(output / name, text)
@@ -114,9 +126,14 @@ def _print(report: dict[str, Any]) -> None:
             for r in report["rails"]
         ],
     )
-    coil = report["coil"]
     click.echo("")
-    ui.print_wrapped(
-        f"coil at {coil['force_cN']:.0f} cN: {coil['current_A']:.2f} A, {coil['heat_W']:.1f} W, "
-        f"{coil['rise_K']:.0f} K warmer if held for ever; the bridge chops at {coil['chop_A']:.2f} A"
-    )
+    ui.print_wrapped(_coil(report["coil"]))
+
+
+def _coil(coil: dict[str, Any]) -> str:
+    at = f"coil at {coil['force_cN']:.0f} cN: {coil['current_A']:.2f} A, {coil['heat_W']:.1f} W"
+    if "chop_A" in coil:
+        warm = f"{coil['rise_K']:.0f} K warmer if held for ever"
+        return f"{at}, {warm}; the bridge chops at {coil['chop_A']:.2f} A"
+    step = f"a step of the converter {coil['step_cN']:.2f} cN"
+    return f"{at}; bandwidth of the current {coil['loop_Hz']:.0f} Hz; {step}"
