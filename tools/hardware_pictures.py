@@ -28,6 +28,7 @@ BOUGHT: dict[str, Colour] = {
     "horn": (0.93, 0.93, 0.95),
     "keycap": (0.30, 0.32, 0.36),
     "exciter": (0.55, 0.38, 0.30),
+    "cell": (0.55, 0.38, 0.30),
     "bushing": (0.86, 0.76, 0.34),
     "coupling": (0.85, 0.70, 0.32),
     "core": (0.80, 0.62, 0.30),
@@ -36,7 +37,11 @@ BOUGHT: dict[str, Colour] = {
 }
 METAL: Colour = (0.78, 0.80, 0.83)
 ADDED: Colour = (0.95, 0.80, 0.30)
-COLOURS = {"slider-yoke": MOVING, "keycap-adapter": MOVING, "limiter-arm": STOPPING}
+COLOURS = {
+    **dict.fromkeys(("slider-yoke", "keycap-adapter", "cell-holder"), MOVING),
+    "cell-plate": (0.30, 0.32, 0.36),
+    "limiter-arm": STOPPING,
+}
 APART_mm = {
     "base": (0, 0, -70),
     "main-board": (0, 0, -20),
@@ -66,6 +71,13 @@ APART_mm = {
     "bracket-screws": (62, 0, 14),
     "servo-screws": (114, 0, 20),
 }
+CELL_APART_mm = {
+    "yoke-screws": -10.0,
+    "slider-yoke": 0.0,
+    "cell-holder": 10.0,
+    "cell": 20.0,
+    "cell-plate": 26.0,
+}
 STEPS = (
     ("1", ("base", "lvdt-mount", "mount-screws", "main-board", "driver-board")),
     ("2", ("coil-mount", "tower-screws", "bushing", "coil", "clamp-screw")),
@@ -79,11 +91,11 @@ STEPS = (
 class Rig:
     """Exported and bought parts as meshes, placed in a state."""
 
-    def __init__(self, folder: Path) -> None:
-        """Read the exported parts."""
+    def __init__(self, folder: Path, cell: bool = False) -> None:
+        """Read the exported parts; cell: of the recommended rig."""
         self.d: Dimensions = read_manifest(folder).made_from()
         self.printed = {p.name: read_stl(folder / "parts" / f"{p.name}.stl") for p in PARTS}
-        self.bought = {envelope.name: envelope for envelope in bought_parts(self.d)}
+        self.bought = {envelope.name: envelope for envelope in bought_parts(self.d, cell)}
 
     def names(self) -> list[str]:
         """Return the parts of the rig without its box."""
@@ -125,6 +137,7 @@ def draw_all(folder: Path) -> None:
     save(draw(rig.things(rig.names(), rest, cut=True), Camera(8, 6), (1000, 860)), out / "section.png")
     save(draw(_exploded(rig), Camera(24, 22), (1000, 1240)), out / "exploded.png")
     save(_limiter(rig), out / "limiter.png")
+    save(_cell_cap(folder), out / "cell-cap.png")
     save(_steps(rig), out / "steps.png")
     save(draw(_jig(rig), Camera(28, 34), (900, 620)), out / "capture-jig.png")
     save(draw(_boxed(rig), Camera(24, 18), (860, 820)), out / "black-box.png")
@@ -139,6 +152,18 @@ def _exploded(rig: Rig) -> list[Thing]:
         shift = Pose(shift_mm=tuple(float(v) for v in APART_mm[name]))  # type: ignore[arg-type]
         made.append(Thing(thing.mesh.moved(shift), thing.colour, thing.label))
     return made
+
+
+def _cell_cap(folder: Path) -> Image.Image:
+    """Draw the cap with the load cell: its parts apart, and cut along the axis."""
+    rig = Rig(folder, cell=True)
+    names = ("slider-yoke", "yoke-screws", "cell-holder", "cell", "cell-plate")
+    apart = []
+    for thing, name in zip(rig.things(names, State(0.0)), names, strict=True):
+        shift = Pose(shift_mm=(0.0, 0.0, CELL_APART_mm[name]))
+        apart.append(Thing(thing.mesh.moved(shift), thing.colour, thing.label))
+    cut = rig.things(names, State(0.0), cut=True)
+    return _row([draw(apart, Camera(28, 30), (520, 560)), draw(cut, Camera(8, 10), (520, 560))])
 
 
 def _limiter(rig: Rig) -> Image.Image:

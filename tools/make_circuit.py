@@ -25,6 +25,8 @@ def files() -> dict[Path, str]:
     for rig, circuit in circuits.items():
         require_sound(circuit, RIGS[rig])
         made |= {FOLDERS[rig] / name: text for name, text in circuit_files(circuit).items()}
+    # `fdvv hardware circuit --rig recommended -o FOLDER` writes its table of wires
+    del made[FOLDERS["recommended"] / "wiring.md"]
     return {**made, BILL: bill_page(*(load_bill(circuits[rig]) for rig in ("paper", "recommended")))}
 
 
