@@ -49,10 +49,22 @@ def test_the_current_drive_lets_go_while_the_controller_is_in_reset() -> None:
 
 
 def test_the_converters_of_the_m4_are_on_pins_that_have_one_and_the_command_on_its_dac() -> None:
-    # SAMD51 data sheet: DAC0 on PA02; ADC0 on PA02 to PA11 and PB08, PB09
-    chips = {name: RECOMMENDED.parts["U1"].kind.pins[name].chip for name in ("A0", "A2", "A3", "A4", "A5")}
+    # SAMD51 data sheet: DAC0 on PA02; the converters on PA02 to PA11 and PB08, PB09
+    chips = {name: RECOMMENDED.parts["U1"].kind.pins[name].chip for name in ("A0", "A2", "A3", "A4")}
     assert chips.pop("A0") == "PA02"
     assert set(chips.values()) <= {f"PA{n:02d}" for n in range(2, 12)} | {"PB08", "PB09"}
+
+
+@pytest.mark.skipif(not (BOARDS / "itsybitsy_m4").exists(), reason="there is no firmware for the M4")
+def test_the_m4s_pins_are_those_of_its_firmware() -> None:
+    text = (BOARDS / "itsybitsy_m4" / "pins.h").read_text()
+    declared = re.findall(r"(PIN_\w+) = (\d+),?\s*/\* \((\w+)\)", text)
+    firmware = {
+        (name, f"P{'B' if name.startswith('PIN_B_') else 'A'}{int(number):02d}", board)
+        for name, number, board in declared
+    }
+    pins = RECOMMENDED.parts["U1"].kind.pins.values()
+    assert {(pin.signal, pin.chip, pin.name) for pin in pins if pin.signal} == firmware
 
 
 def test_the_controllers_pins_are_those_of_the_firmware() -> None:

@@ -191,6 +191,13 @@ def test_the_current_loop_is_the_one_that_the_recommended_rig_of_the_twin_has() 
     )
 
 
+def test_the_settings_of_the_current_drive_give_the_force_that_is_asked_for() -> None:
+    found, drive = rig_settings(RECOMMENDED, 25), current_drive(RECOMMENDED, Settings())
+    duty = 100 * CN64_PER_cN * found["duty_gain_q16"] / 2**16 / 2**15  # of 1 N
+    assert duty * drive.reach_A * 3.9 == pytest.approx(1.0, rel=1e-3)
+    assert replace(Settings(), **found).duty_gain_q16 == found["duty_gain_q16"], "the firmware can hold them"
+
+
 def test_the_current_of_a_simulated_coil_follows_a_step_with_the_time_constant_that_is_stated() -> None:
     # the circuit's own amplifiers as equations: error amplifier, bridge, coil, shunt
     value = {ref: part.value or 0.0 for ref, part in RECOMMENDED.parts.items()}

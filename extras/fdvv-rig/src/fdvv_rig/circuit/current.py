@@ -24,7 +24,8 @@ class CurrentDrive:
     ----------
     force_cN, current_A, heat_W : that limit, and the coil there.
     amplifiers_W : heat of both amplifiers together there.
-    full_A, full_cN : at the end of the converter's range. step_cN : of one of its steps.
+    reach_A : at the very ends of the converter, which a duty of 1 means.
+    full_A, full_cN : as far as the converter gets. step_cN : of one of its steps.
     limit_A : of the amplifiers. compliance_V : that the coil can get, either way, at about 1 A.
     slew_A_ms : of the current, at rest. loop_Hz, loop_us : bandwidth and time constant of the current.
     zero_Hz, coil_Hz : corner of the controller, and of the coil, which it cancels.
@@ -34,6 +35,7 @@ class CurrentDrive:
     current_A: float
     heat_W: float
     amplifiers_W: float
+    reach_A: float
     full_A: float
     full_cN: float
     step_cN: float
@@ -85,6 +87,7 @@ def current_drive(circuit: Circuit, settings: Settings) -> CurrentDrive:
         current_A=amps,
         heat_W=amps**2 * ohm,
         amplifiers_W=amps * (supply_V - amps * (ohm + value["R41"])),
+        reach_A=facts["dac_V"] / 2 / sense_V_A,
         full_A=(facts["dac_V"] / 2 - DAC_END_V) / sense_V_A,
         full_cN=100 * k * (facts["dac_V"] / 2 - DAC_END_V) / sense_V_A,
         step_cN=100 * k * facts["dac_V"] / 2 ** facts["converter_bits"] / sense_V_A,

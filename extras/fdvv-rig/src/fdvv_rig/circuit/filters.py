@@ -7,8 +7,9 @@ import math
 from dataclasses import dataclass
 
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
+from fdvv.protocol.tables import Settings
 from fdvv_rig.circuit.circuit import Circuit, Filter
-from fdvv_rig.circuit.current import cell_reading
+from fdvv_rig.circuit.current import cell_reading, current_drive
 from fdvv_rig.circuit.levels import PowerState, levels
 
 
@@ -139,12 +140,23 @@ def _zero_V(circuit: Circuit) -> float:
     return levels(circuit, PowerState())["FORCE"].V * facts["force_low_ratio"] / facts["force_high_ratio"]
 
 
+def _drive_settings(circuit: Circuit) -> dict[str, int]:
+    """Return the settings that follow from what a duty of 1 means to a current drive."""
+    facts, amps = circuit.facts, current_drive(circuit, Settings()).reach_A
+    ohm = circuit.parts["L1"].value or 0.0
+    return {
+        "duty_gain_q16": round(2**31 / (100 * CN64_PER_cN * amps * facts["force_constant_N_A"])),
+        "full_duty_rise_K": round(facts["heat_K_W"] * ohm * amps**2),
+    }
+
+
 def rig_settings(circuit: Circuit, reads: int) -> dict[str, int]:
     """Return the settings of the firmware that follow from the parts, to be refined by calibration.
 
     reads : readings that a tick sums up.
     """
     position, force, _ = converter_steps(circuit)
+    drive = _drive_settings(circuit) if circuit.has_cell else {}
     facts = circuit.facts
     counts = 2 ** facts["converter_bits"]
     return {
@@ -152,4 +164,5 @@ def rig_settings(circuit: Circuit, reads: int) -> dict[str, int]:
         "position_offset_um16": round(-facts["position_range_mm"] / 2 * UM16_PER_mm),
         "force_gain_q14": round(force.value * CN64_PER_cN * 2**14),
         "force_offset_counts": round(_zero_V(circuit) / facts["converter_V"] * counts),
+        **drive,
     }
