@@ -39,6 +39,19 @@ def test_the_circuit_is_checked_and_printed_with_units(fdvv: Run) -> None:
     assert "479.5" in shown
 
 
+def test_the_recommended_rig_has_a_bill_and_a_circuit_of_its_own(fdvv: Run, tmp_path: Path) -> None:
+    bill = fdvv("hardware", "bill", "--rig", "recommended", "--json").json
+    asked = [line["role"] for line in bill["lines"] if line["price_USD"] is None]
+    assert "load cell" in asked
+    assert f"{len(asked)} lines without a price" in " ".join(
+        fdvv("hardware", "bill", "--rig", "recommended").out.split()
+    )
+    circuit = fdvv("hardware", "circuit", "--rig", "recommended", "--json", "-o", str(tmp_path / "made")).json
+    assert circuit["violations"] == []
+    assert circuit["coil"]["loop_Hz"] == pytest.approx(3183, abs=20)
+    assert "U17.OUT" in (tmp_path / "made" / "wiring.md").read_text()
+
+
 def test_a_circuit_that_would_burn_a_pin_ends_with_status_1(fdvv: Run, tmp_path: Path) -> None:
     source = Path(__file__).resolve().parents[2] / "extras/fdvv-rig/src/fdvv_rig/circuit/circuit.toml"
     text = source.read_text().replace("V = 3.135, ohm = 1.0 }\npins.GND", "V = 4.75, ohm = 1.0 }\npins.GND")

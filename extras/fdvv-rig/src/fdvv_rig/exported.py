@@ -72,6 +72,9 @@ def check_exported(folder: Path | str, tell: Tell = lambda _label, _done, _total
     for done, state in enumerate(todo):
         tell("looking for parts that meet", done, len(todo))
         found += meetings(assembly, state)
+    # the other cap: where it is highest and lowest
+    with_cell = assemble(meshes, d, cell=True)
+    found += [met for state in (todo[0], todo[-1]) for met in meetings(with_cell, state) if met not in found]
     gaps = clearances(assembly, lambda done, total: tell("measuring clearances", done, total))
     return FolderCheck(d, tuple(parts), tuple(found), tuple(gaps))
 
