@@ -75,14 +75,14 @@ def closed_core(velocity_mm_s: float) -> Core:
     return core
 
 
-def compiled_press(gesture: Gesture, velocity_mm_s: float, seed: int) -> CellPress:
-    """Press the compiled twin, its loop closed by the core."""
+def compiled_press(gesture: Gesture, velocity_mm_s: float, seed: int, ticks: int | None = None) -> CellPress:
+    """Press the compiled twin, its loop closed by the core; ticks: of the whole press if None."""
     # the finger waits where this gesture begins
     person = Finger(habit=replace(PressVariability(), lift_m=max(-gesture.start_m, 0.0)))
     plant, core = RigPlant(RIG, person, seed, STOP_us), closed_core(velocity_mm_s)
     plant.press(gesture)
     inputs, drive = [], []
-    for _ in range(ticks_of(gesture)):
+    for _ in range(ticks or ticks_of(gesture)):
         inputs.append(plant.inputs)
         out = core.tick(inputs[-1])
         drive.append((int(out["duty_q15"]), bool(out["enable"])))
@@ -99,7 +99,7 @@ def reference_press(
     method: Method = "DOP853",
 ) -> CellPress:
     """Press the reference; drive: duty and enable of each tick to replay, None: the core closes the loop."""
-    n, core = ticks_of(gesture), closed_core(velocity_mm_s)
+    n, core = len(drive or []) or ticks_of(gesture), closed_core(velocity_mm_s)
     plant = CellRig(RIG, Finger(), gesture, STOP_m, noise_of(n, seed), method)
     reading, inputs, given, seen = plant.first_readings(), [], [], np.zeros((n, 2))
     for k in range(n):
