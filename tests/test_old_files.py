@@ -41,7 +41,7 @@ def fdvv(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
             runpy.run_module("fdvv", run_name="__main__")
         out, err = capsys.readouterr()
         assert stop.value.code == status, err
-        return json.loads(out)
+        return err if status else json.loads(out)
 
     return run
 
@@ -97,10 +97,11 @@ def test_a_recording_is_processed_into_the_same_model(fdvv: Run) -> None:
 
 
 def test_what_a_rig_taught_is_used(fdvv: Run) -> None:
-    known = ("--velocity", "100", "--rounds", "0", "--rig-known", "twin.rig.json")
+    known = ("--velocity", "100", "--rounds", "0", "--rig", "default", "--rig-known", "twin.rig.json")
     learned = fdvv("compensate", "mx-red", *known, "-o", "red.actuation.json")
     assert (learned["presses"], len(learned["curves"])) == (0, 2)
-    judged = fdvv("probe", "mx-clear", "learned.actuation.json", "--velocity", "100", "--presses", "1")
+    on = ("--rig", "default", "--velocity", "100", "--presses", "1")
+    judged = fdvv("probe", "mx-clear", "learned.actuation.json", *on)
     assert len(judged["curves"]) == 2
 
 
@@ -111,12 +112,20 @@ def test_receipts_of_sessions_and_tables_are_shown(fdvv: Run) -> None:
 
 
 def test_a_finished_session_is_gone_on_with(fdvv: Run) -> None:
-    about = ("--velocity", "100", "--rounds", "1", "--seed", "4", "--session", "session")
-    fdvv("compensate", "mx-clear", *about, "-o", "again.actuation.json")
-    again, before = (json.loads(Path(f"{name}.actuation.json").read_text()) for name in ("again", "learned"))
+    about = ("--method", "paper", "--velocity", "100", "--rounds", "1", "--presses", "2", "--seed", "4")
+    fdvv("compensate", "mx-clear", *about, "--session", "session-paper", "-o", "again.actuation.json")
+    again, before = (json.loads(Path(f"{name}.actuation.json").read_text()) for name in ("again", "paper"))
     assert again["presses"] == before["presses"]
     for key in ("displacement_mm", "press_cN", "release_cN"):
         assert np.allclose(again[key], before[key], rtol=0, atol=1 / 64)
+
+
+def test_a_session_of_an_earlier_identification_is_refused_in_one_line_and_kept(fdvv: Run) -> None:
+    about = ("--velocity", "100", "--rounds", "1", "--seed", "4", "--session", "session")
+    before = Path("session/presses.jsonl").read_bytes()
+    refused = fdvv("compensate", "mx-clear", *about, status=2)
+    assert "another version of fdvv made it; begin a new session in another folder" in refused
+    assert Path("session/presses.jsonl").read_bytes().startswith(before)
 
 
 def test_answers_of_a_tuning_are_kept(fdvv: Run) -> None:

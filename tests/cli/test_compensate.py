@@ -24,9 +24,11 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     from fdvv.device.twin import TwinDevice
     from fdvv.model.file import load_builtin
     from fdvv.rendering.compensate import compensate
+    from fdvv.twin.files import load_rig as load_plant
 
     path = tmp_path_factory.mktemp("rig") / "bench.rig.json"
-    learned = compensate(TwinDevice(seed=0), load_builtin("mx-clear"), [50.0, 100.0], RigAware(rounds=1))
+    device = TwinDevice(load_plant("recommended"), seed=0)
+    learned = compensate(device, load_builtin("mx-clear"), [50.0, 100.0], RigAware(rounds=1))
     assert learned.learned_rig is not None
     save_rig(learned.learned_rig, path)
     return path.read_bytes()
@@ -37,7 +39,7 @@ def test_a_rig_is_identified_learned_on_and_kept(fdvv: Run, tmp_path: Path, taug
     assert ran.status == 0
     lines = ran.out.splitlines()
     assert lines[0] == "mx-clear on twin (simulated), 6 presses"
-    assert lines[1].startswith("method: rig-aware: a rig identified from 4 presses")
+    assert lines[1].startswith("method: force-loop: the loop at the finger closed on an identified rig")
     assert lines[-2:] == ["written to clear.actuation.json", "written to bench.rig.json"]
     assert "1 of 4 identification presses" in ran.err
     assert re.search(r"drag \d\.\d \+- \d\.\d N s/m", ran.err)
@@ -107,7 +109,7 @@ def test_the_papers_law_is_there_by_its_name(fdvv: Run) -> None:
 
 
 def test_a_probe_ends_with_its_verdict_and_the_next_step_and_draws_them(fdvv: Run, tmp_path: Path) -> None:
-    probe = ("probe", "mx-clear", "--velocity", "50", "--presses", "2", "--seed", "7")
+    probe = ("probe", "mx-clear", "--rig", "default", "--velocity", "50", "--presses", "2", "--seed", "7")
     ran = fdvv(*probe, "--figure", "f.svg", "--report", "r.html")
     assert ran.status == 0
     lines = ran.out.splitlines()

@@ -70,8 +70,6 @@ def test_the_firmware_over_the_wire_learns_what_the_twin_learns(learned: Compens
     assert wanted is not None
     assert gains.mass_kg == pytest.approx(wanted.mass_kg, rel=0.03)
     assert gains.own_N == pytest.approx(wanted.own_N, abs=0.01)
-    # the search for the gains is not smooth: two draws of one rig differ by a tenth
-    assert gains.proportional == pytest.approx(wanted.proportional, rel=0.2)
     result = probe(linked(91), CLEAR, found.surface, SPEEDS, 4, tuning=found.outcome.tuning)
     assert max(means(result)) < 2.0
 

@@ -19,7 +19,7 @@ from fdvv.rendering.tuning import open_device
 @ui.option(
     "--switch", type=ui.FILE, help="A file of measured curves to fit; a shipped Cherry MX Brown by default."
 )
-@ui.option("--rig", type=ui.RIG, help="recommended, light, paper ..., or a TOML file.")
+@ui.option("--rig", type=ui.RIG, default="recommended", help="recommended, light, paper ..., or a TOML file.")
 @ui.option("--finger", type=ui.FILE, help="TOML file of the finger.")
 @ui.option("--seed", type=ui.COUNT, default=1, help="Repeats the twin.")
 @ui.option(

@@ -111,6 +111,8 @@ def stretches(columns: InteractiveTicks, was_down: bool) -> Iterator[tuple[Float
 
 PACE_mm_s = (5.0, 1000.0)
 """Speeds of a press that the next one may be announced with."""
+HEARD_s = 0.01
+"""Presses that ended are looked for this often, however time is cut; the next is announced at their speed."""
 
 
 class LivePress:
@@ -177,12 +179,18 @@ class LivePress:
         # the small number: sums of floats may end just below a whole tick
         ticks = max(0, int((self.due_s - self.time_s) / self._tick_s + 1e-6))
         pieces: list[InteractiveTicks] = []
+        events: list[LiveEvent] = []
         while ticks or not pieces:  # a piece without a tick has columns as well
-            count = self._lead_along(ticks)
+            count = self._until_heard(self._lead_along(ticks))
             pieces.append(self.rig.advance(count))
+            events += self._events(pieces[-1])
             ticks -= count
-        columns = InteractiveTicks.joined(pieces)
-        return columns, self._events(columns)
+        return InteractiveTicks.joined(pieces), tuple(events)
+
+    def _until_heard(self, ticks: int) -> int:
+        """Return how many of the ticks may pass before presses that ended are looked for, as by a clock."""
+        every = max(1, round(HEARD_s / self._tick_s))
+        return min(ticks, every - round(self.time_s / self._tick_s) % every)
 
     def fault(self) -> FaultReport:
         core = self.rig.core

@@ -46,7 +46,7 @@ def compensate(
     ui.check_output(output, ".actuation.json")
     ui.check_output(save_rig, ".rig.json")
     law = law_of(**options, save_rig=save_rig)
-    model = open_button(button)
+    model, pressing = open_button(button), pressing.on_recommended_rig()
     session = pressing.session(beside(output, button, "session"))
     with pressing.guided(session, as_json) as (found, view, guide):
         result = learn(found, model, pressing.velocities_mm_s, law, view.done, session, guide)
@@ -107,7 +107,7 @@ def probe(
     ui.check_output(figure, *ui.FIGURES)
     ui.check_output(report, ".html")
     playback = Playback(presses if vibrating is None else vibrating, opened_exciter(exciter))
-    model = open_button(button)
+    model, pressing = open_button(button), pressing.on_recommended_rig()
     learned = load_actuation(actuation) if actuation else None
     method = learned.method if learned else "not compensated"
     if learned and learned.model_name != model.name:

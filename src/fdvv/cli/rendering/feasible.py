@@ -55,6 +55,7 @@ def feasible(
         click.echo(NO_RIG)
         return
     model, known = open_button(button), load_rig(rig_known)
+    pressing = pressing.on_recommended_rig()
     session = pressing.session(beside(actuation, button, "feasible"))
     measured = _measure(session, pressing, model, actuation, presses, as_json) if actuation else None
     with closing(session.open_device(pressing.device)) as found:

@@ -7,7 +7,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +19,9 @@ from fdvv.cli.options import closing, packed
 from fdvv.compensation.presses import AcceptanceLimits
 from fdvv.device.contract import Device
 from fdvv.device.open import pressed_by_person
-from fdvv.rendering.session import Session
+from fdvv.rendering.session import MANIFEST, Session, read_manifest
 from fdvv.rendering.session_run import Guide, PressDone, PressRequest, VelocityProgress
+from fdvv.twin.files import shipped_rigs
 
 if TYPE_CHECKING:
     from rich.live import Live
@@ -124,6 +125,10 @@ def cells(row: VelocityProgress) -> list[str]:
     return found
 
 
+RECOMMENDED_ON = ("twin", "host")
+"""Devices that simulate whatever rig is named; the others have one."""
+
+
 @dataclass(frozen=True)
 class Pressing:
     """The device that presses, the speeds, and where the presses are kept."""
@@ -135,6 +140,18 @@ class Pressing:
     velocities_mm_s: tuple[float, ...]
     folder: Path | None
     pace_ratio: float
+
+    def on_recommended_rig(self) -> Pressing:
+        """Return the same on the recommended rig, if a device that can simulate it has no other."""
+        if self.rig or self.device not in RECOMMENDED_ON or self._began_without_rig():
+            return self
+        return replace(self, rig=shipped_rigs()["recommended"])
+
+    def _began_without_rig(self) -> bool:
+        """Whether the presses in the folder were made on the twin's own default rig, as before 0.2."""
+        if not (self.folder and (self.folder / MANIFEST).is_file()):
+            return False
+        return "rig_toml_sha256" not in read_manifest(self.folder / MANIFEST).device
 
     def session(self, default: Path) -> Session:
         """Choose where presses are kept; default is the folder for a person's. InputError if it cannot be."""
@@ -157,7 +174,7 @@ session_options = packed(
     "pressing",
     Pressing,
     ui.option("--device", default="twin", help="'twin' is simulated; see fdvv device."),
-    ui.option("--rig", type=ui.RIG, help="Of the twin: recommended, light, paper ..., or a TOML file."),
+    ui.option("--rig", type=ui.RIG, help="Of the twin, a TOML file or name: recommended, for tune default."),
     ui.option("--finger", type=ui.FILE, help="TOML file of the twin's finger."),
     ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the twin."),
     ui.speeds_option("--velocity", "velocities_mm_s", help="mm/s; repeatable."),
