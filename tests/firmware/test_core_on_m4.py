@@ -28,7 +28,7 @@ from ._core_on_arm import M4, CoreOnArm, board_flags, compile_core
 from ._simavr import say
 
 pytestmark = pytest.mark.firmware
-WORST_CYCLES, WORST_CYCLES_DEAREST = 3900, 7900
+WORST_CYCLES, WORST_CYCLES_DEAREST = 3900, 7700
 
 
 @pytest.fixture(scope="module", params=["-Os", "-O2", board_flags()])

@@ -138,14 +138,30 @@ function table(label: string, curves: readonly CurveProgress[]): HTMLElement {
   const sorted = [...curves].sort(
     (a, b) => a.velocity_mm_s - b.velocity_mm_s || a.stroke.localeCompare(b.stroke),
   );
-  const cell = (value: number | null | undefined) =>
-    h("td", { class: "number" }, value === null || value === undefined ? "–" : value.toFixed(2));
-  const heads = ["first", "last", "mean", "largest"].map((text) =>
-    h("th", { class: "number", scope: "col" }, `${text}, cN`),
-  );
+  const figure = (value: number | null | undefined) => value?.toFixed(2) ?? "–";
+  const rows = sorted.map((c) => [
+    curveName(c),
+    c.error_cN.length,
+    figure(c.error_cN[0]),
+    figure(c.error_cN.at(-1)),
+    figure(c.mean_error_cN),
+    figure(c.max_error_cN),
+  ]);
+  return curveTable(label, ["presses", "first, cN", "last, cN", "mean, cN", "largest, cN"], rows);
+}
+
+export const curveName = (curve: { velocity_mm_s: number; stroke: string }) =>
+  `${curve.velocity_mm_s} mm/s ${curve.stroke}`;
+
+/** A row per curve, its name first. */
+export function curveTable(
+  label: string,
+  heads: readonly string[],
+  rows: readonly (readonly (string | number)[])[],
+): HTMLElement {
   return h(
     "div",
-    { class: "scroll-x" },
+    { class: "scroll-x", tabindex: "0", role: "group", "aria-label": `${label}, table` },
     h(
       "table",
       { "aria-label": label },
@@ -155,24 +171,18 @@ function table(label: string, curves: readonly CurveProgress[]): HTMLElement {
         h(
           "tr",
           {},
-          h("th", { scope: "col" }, "curve"),
-          h("th", { class: "number", scope: "col" }, "presses"),
-          heads,
+          ["curve", ...heads].map((text, i) => h("th", { class: i ? "number" : "", scope: "col" }, text)),
         ),
       ),
       h(
         "tbody",
         {},
-        sorted.map((c) =>
+        rows.map(([name, ...values]) =>
           h(
             "tr",
             {},
-            h("th", { scope: "row" }, `${c.velocity_mm_s} mm/s ${c.stroke}`),
-            h("td", { class: "number" }, c.error_cN.length),
-            cell(c.error_cN[0]),
-            cell(c.error_cN.at(-1)),
-            cell(c.mean_error_cN),
-            cell(c.max_error_cN),
+            h("th", { scope: "row" }, name),
+            values.map((value) => h("td", { class: "number" }, value)),
           ),
         ),
       ),

@@ -2,7 +2,7 @@
 
 import type { CurveNoticed, JobOutcome } from "../../net";
 import { type Child, computed, h, panel, signal, tabs } from "../../ui";
-import { convergence, convergenceLegend, errorTable } from "./converge";
+import { convergence, convergenceLegend, curveName, curveTable, errorTable } from "./converge";
 import { watched } from "./jobs";
 import type { Stage } from "./picture";
 import { pressCue } from "./presscue";
@@ -86,38 +86,20 @@ function outcome(one: JobOutcome): HTMLElement {
 
 /** How much of each curve a finger would notice, and how the vibration came out. */
 function noticedTable(curves: readonly CurveNoticed[]): HTMLElement {
-  const percent = (ratio: number) => h("td", { class: "number" }, `${Math.round(100 * ratio)} %`);
+  const percent = (ratio: number) => `${Math.round(100 * ratio)} %`;
   const vibrates = curves.some((curve) => curve.vibration !== NOT_ASKED);
-  const heads = ["force", ...(vibrates ? ["with vibration"] : [])].map((text) =>
-    h("th", { class: "number", scope: "col" }, text),
-  );
+  const rows = curves.map((curve) => [
+    curveName(curve),
+    percent(curve.force_ratio),
+    ...(vibrates ? [percent(curve.total_ratio)] : []),
+    curve.vibration,
+  ]);
+  const heads = ["force", ...(vibrates ? ["with vibration"] : []), "vibration"];
   const about = "Part of the stroke that is off by more than one just noticeable difference:";
-  const table = h(
+  return h(
     "div",
-    { class: "scroll-x", tabindex: "0", role: "group", "aria-label": "What a finger would notice, table" },
-    h(
-      "table",
-      { "aria-label": "What a finger would notice" },
-      h(
-        "thead",
-        {},
-        h("tr", {}, h("th", { scope: "col" }, "curve"), heads, h("th", { scope: "col" }, "vibration")),
-      ),
-      h(
-        "tbody",
-        {},
-        curves.map((curve) =>
-          h(
-            "tr",
-            {},
-            h("th", { scope: "row" }, `${curve.velocity_mm_s} mm/s ${curve.stroke}`),
-            percent(curve.force_ratio),
-            vibrates ? percent(curve.total_ratio) : null,
-            h("td", {}, curve.vibration),
-          ),
-        ),
-      ),
-    ),
+    {},
+    h("p", { class: "muted" }, about),
+    curveTable("What a finger would notice", heads, rows),
   );
-  return h("div", {}, h("p", { class: "muted" }, about), table);
 }
