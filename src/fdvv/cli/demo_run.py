@@ -11,6 +11,7 @@ from typing import Any
 
 from fdvv.button.fit import ModelFit, fit_file, fit_report
 from fdvv.compensation.method import Tuning
+from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.contract import Device
 from fdvv.model.file import load_builtin
 from fdvv.model.fit import CurveFit, FitMethod, fit_curve, scan_sizes
@@ -135,7 +136,7 @@ def _render(
     learned: dict[str, CompensationResult | None] = {"uncompensated": None}
     for label, target in ((FD_ONLY, fd_only(button)), ("FDVV", button)):
         tell = _on_press(stage, f"learning {label}")
-        learned[label] = compensate(open_device(seed), target, VELOCITIES_mm_s, progress=tell)
+        learned[label] = compensate(open_device(seed), target, VELOCITIES_mm_s, RigAware(), progress=tell)
     return tuple(
         Rendering(label, result, _judge(open_device(seed + 1000), button, label, result, stage))
         for label, result in learned.items()
