@@ -4,8 +4,8 @@ Run as ``python -m benchmarks.force_loop [rigs per button] [words of a row's nam
 50 rigs, on two cores. Every rig is identified from four presses, its loop is closed with gains chosen for it,
 and each table is learned in at most three presses per speed. Then four fresh presses per speed are judged,
 both strokes, in true displacement at the finger, from 0.3 mm to 0.1 mm before the stop, against the model at
-the speed asked for. The same is done for the model's own force, without compensation. A known rig was identified
-on another button, and nothing is pressed.
+the speed asked for. The same is done for the model's own force, without compensation. A known rig was
+identified on another button, and nothing is pressed.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ from fdvv.device.twin import TwinDevice
 from fdvv.program.library import make, programs
 from fdvv.program.program import Program
 from fdvv.rendering.compensate import compensate
-from fdvv.rendering.program_probe import StateError, all_errors_cN
+from fdvv.rendering.evaluation.program_probe import StateError, all_errors_cN
 from fdvv.rendering.program_render import ProgramReport, render_program
 
 RIGS = 10

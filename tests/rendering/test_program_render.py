@@ -16,8 +16,8 @@ from fdvv.program.compile import compile_program
 from fdvv.program.library import MAKERS, make
 from fdvv.program.program import Program
 from fdvv.rendering.compensate import compensate
-from fdvv.rendering.probe_curve import judged_curves
-from fdvv.rendering.program_probe import all_errors_cN, intended_cN, judged_states
+from fdvv.rendering.evaluation.probe_curve import judged_curves
+from fdvv.rendering.evaluation.program_probe import all_errors_cN, intended_cN, judged_states
 from fdvv.rendering.program_render import ProgramReport, render_program, rendering_of
 from fdvv.twin.files import load_rig
 from fdvv.twin.rig import LoadCell, Rig

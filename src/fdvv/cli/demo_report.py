@@ -11,10 +11,10 @@ from fdvv import __version__
 from fdvv.button.figures import plot_fit, plot_scan
 from fdvv.cli.demo_run import DemoResult
 from fdvv.cli.ui import bump_kept
+from fdvv.rendering.evaluation.probe_figures import rendered_curves
+from fdvv.rendering.evaluation.probe_report import sources_section, vibration_section
+from fdvv.rendering.evaluation.verdict import verdict
 from fdvv.rendering.figures import plot_convergence, plot_rendering
-from fdvv.rendering.probe_figures import rendered_curves
-from fdvv.rendering.probe_report import sources_section, vibration_section
-from fdvv.rendering.verdict import verdict
 from fdvv.report.model_figures import plot_model, plot_surface
 from fdvv.report.records import ErrorHistory
 from fdvv.report.report import Section, Table, render_html
@@ -104,10 +104,9 @@ def _rendering(result: DemoResult) -> Section:
     )
     text = (
         "FD only renders the slowest curve at every speed, as data sheets describe a button; FDVV renders "
-        "the speed's own curve. Both were learned by the paper's iterative law and are judged against the "
-        "full model.",
-        "The bands grow with speed because the simulated person varies the pace by a tenth and this rig's "
-        "coil brakes in proportion to speed; the paper's law learns one table per speed and cannot know.",
+        "the speed's own curve. Both are learned by the default method and judged against the full model.",
+        "The bands grow with speed because the simulated person varies the pace by a tenth. Bars mark where "
+        "a finger would notice the difference.",
         *(f"{r.label}: {verdict(r.judged.curves)}" for r in result.renderings),
     )
     learned = {r.label: r.judged.curves for r in result.renderings if r.learned}

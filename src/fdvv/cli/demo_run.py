@@ -17,9 +17,9 @@ from fdvv.model.file import load_builtin
 from fdvv.model.fit import CurveFit, FitMethod, fit_curve, scan_sizes
 from fdvv.model.model import FDVVModel
 from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.evaluation.vibration_presses import Playback
 from fdvv.rendering.probe import ProbeResult, fd_only, probe
 from fdvv.rendering.session_run import PressDone
-from fdvv.rendering.vibration_presses import Playback
 
 BUTTON = "mx-clear"
 SWITCH = "cherry-mx-hyperglide-brown.csv"

@@ -26,8 +26,8 @@ from fdvv.model.curve import Stroke, reading_order
 from fdvv.model.model import FDVVModel
 from fdvv.protocol.tables import Settings
 from fdvv.rendering.compensate import check_speeds
+from fdvv.rendering.evaluation.probe_curve import ProbeCurve
 from fdvv.rendering.probe import ProbeResult
-from fdvv.rendering.probe_curve import ProbeCurve
 from fdvv.report.records import FeasibleCurve, RenderedBand
 from fdvv.units import FloatArray
 

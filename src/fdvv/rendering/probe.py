@@ -17,15 +17,20 @@ from fdvv.model.noticeable import SOURCES
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.compensate import check_force_sensor, check_speeds
+from fdvv.rendering.evaluation.noticed import overall
+from fdvv.rendering.evaluation.probe_curve import ProbeCurve, judged_curves, with_vibrations
+from fdvv.rendering.evaluation.verdict import RenderingMeans, next_step, verdict
+from fdvv.rendering.evaluation.vibration_presses import (
+    Playback,
+    has_exciter,
+    shows_vibration,
+    upload_vibrating,
+)
 from fdvv.rendering.exciter import prepare_exciter
-from fdvv.rendering.noticed import overall
-from fdvv.rendering.probe_curve import ProbeCurve, judged_curves, with_vibrations
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
 from fdvv.rendering.session import MANIFEST, Session, plain, read_manifest, table_digest
 from fdvv.rendering.session_log import PressEntry, PressLog
 from fdvv.rendering.session_run import Guide, Progress, SessionPlan, VelocityProgress, run
-from fdvv.rendering.verdict import RenderingMeans, next_step, verdict
-from fdvv.rendering.vibration_presses import Playback, has_exciter, shows_vibration, upload_vibrating
 
 Found = tuple[tuple[Press, ...], ...]
 """Presses of every velocity, in the order of the plan: silent ones, then those that play the vibrations."""

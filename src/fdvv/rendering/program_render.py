@@ -24,7 +24,7 @@ from fdvv.program.compile import compile_program
 from fdvv.program.program import Program
 from fdvv.program.surface import Limits
 from fdvv.rendering.compensate import CompensationResult, check_speeds
-from fdvv.rendering.program_probe import StateError, all_errors_cN, judged_states
+from fdvv.rendering.evaluation.program_probe import StateError, all_errors_cN, judged_states
 from fdvv.rendering.tuning import tune
 
 JUDGED_mm_s = 100.0

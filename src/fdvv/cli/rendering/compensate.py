@@ -16,9 +16,9 @@ from fdvv.compensation.method import Tuning
 from fdvv.rendering.actuation_file import load_actuation, save_actuation
 from fdvv.rendering.compensate import compensate as learn
 from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.evaluation.vibration_presses import Playback
 from fdvv.rendering.probe import ProbeResult
 from fdvv.rendering.probe import probe as judge
-from fdvv.rendering.vibration_presses import Playback
 
 
 @click.command()
@@ -137,13 +137,13 @@ def _receipt(result: Any) -> dict[str, Any]:
 
 def _draw(result: ProbeResult, figure: Path | None, report: Path | None) -> None:
     if figure:
+        from fdvv.rendering.evaluation.probe_figures import rendered_curves
         from fdvv.rendering.figures import plot_rendering
-        from fdvv.rendering.probe_figures import rendered_curves
 
         curves = rendered_curves({"rendered": result.curves}, result.simulated)
         ui.save_figure(plot_rendering(curves, title=result.model_name)[0, 0].figure, figure)
     if report:
-        from fdvv.rendering.probe_report import probe_report
+        from fdvv.rendering.evaluation.probe_report import probe_report
         from fdvv.report.report import write_report
 
         write_report(report, probe_report(result))

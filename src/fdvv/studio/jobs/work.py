@@ -17,12 +17,12 @@ from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import force_jnd_cN
 from fdvv.rendering.actuation_file import load_actuation
 from fdvv.rendering.compensate import CompensationResult
-from fdvv.rendering.noticed import noticed
+from fdvv.rendering.evaluation.noticed import noticed
+from fdvv.rendering.evaluation.probe_curve import ProbeCurve
+from fdvv.rendering.evaluation.verdict import short_outcome
 from fdvv.rendering.press_check import intended_press, noticeable_cN, rendered_press
-from fdvv.rendering.probe_curve import ProbeCurve
 from fdvv.rendering.session import Session
 from fdvv.rendering.session_run import Guide, PressDone
-from fdvv.rendering.verdict import short_outcome
 from fdvv.studio.contract import message_of
 from fdvv.studio.jobs import events
 from fdvv.studio.jobs.file import JobFolder

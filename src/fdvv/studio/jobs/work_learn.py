@@ -18,9 +18,9 @@ from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.actuation_file import save_actuation
 from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.evaluation.vibration_presses import Playback
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session import Session
-from fdvv.rendering.vibration_presses import Playback
 from fdvv.studio.jobs.events import JobOutcome, StageEvent
 from fdvv.studio.jobs.orders import CompensateOrder, ProbeOrder, RigOrder
 from fdvv.studio.jobs.work import Work, curve_noticed, curve_progress

@@ -10,9 +10,9 @@ import numpy as np
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.noticeable import force_jnd_cN
-from fdvv.rendering.probe_curve import ProbeCurve
-from fdvv.rendering.verdict import short_outcome
-from fdvv.rendering.vibration_presses import RenderedVibration
+from fdvv.rendering.evaluation.probe_curve import ProbeCurve
+from fdvv.rendering.evaluation.verdict import short_outcome
+from fdvv.rendering.evaluation.vibration_presses import RenderedVibration
 from fdvv.report import style
 from fdvv.report.records import RenderedBand, RenderedCurve
 from fdvv.vibration.compare import BANDS_Hz

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from fdvv.model.file import load_builtin
 from fdvv.model.noticeable import force_jnd_cN
 from fdvv.model.surface import ForceSurface
-from fdvv.rendering.noticed import Noticed, noticed, overall
+from fdvv.rendering.evaluation.noticed import Noticed, noticed, overall
+from fdvv.rendering.evaluation.probe_curve import ProbeCurve
+from fdvv.rendering.evaluation.vibration_presses import NONE_ASKED, RenderedVibration
 from fdvv.rendering.probe import probe
-from fdvv.rendering.probe_curve import ProbeCurve
-from fdvv.rendering.vibration_presses import NONE_ASKED, RenderedVibration
 from fdvv.testing.scripted import ScriptedDevice
 from fdvv.vibration.compare import VibrationError
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.model.curve import Stroke
-from fdvv.rendering.noticed import noticed
-from fdvv.rendering.probe_curve import ProbeCurve
-from fdvv.rendering.vibration_presses import NOT_ASKED, RenderedVibration, principal_Hz
+from fdvv.rendering.evaluation.noticed import noticed
+from fdvv.rendering.evaluation.probe_curve import ProbeCurve
+from fdvv.rendering.evaluation.vibration_presses import NOT_ASKED, RenderedVibration, principal_Hz
 
 ON_TIME_ms, AT_LEVEL_dB, NOTHING_dB = 0.15, 0.5, -20.0
 RETURNED_ratio = 0.97

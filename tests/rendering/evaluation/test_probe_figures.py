@@ -11,11 +11,11 @@ from fdvv.errors import ModelError
 from fdvv.model.file import load_builtin
 from fdvv.model.noticeable import SOURCES, force_jnd_cN
 from fdvv.model.surface import ForceSurface
+from fdvv.rendering.evaluation.probe_figures import plot_vibrations, rendered_curves, shown_vibrations
+from fdvv.rendering.evaluation.probe_report import probe_report
+from fdvv.rendering.evaluation.vibration_presses import NONE_ASKED, Playback
 from fdvv.rendering.figures import plot_rendering
 from fdvv.rendering.probe import ProbeResult, probe
-from fdvv.rendering.probe_figures import plot_vibrations, rendered_curves, shown_vibrations
-from fdvv.rendering.probe_report import probe_report
-from fdvv.rendering.vibration_presses import NONE_ASKED, Playback
 
 MODEL = load_builtin("mx-clear")
 

@@ -9,10 +9,17 @@ from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
 from fdvv.model.noticeable import force_jnd_cN
 from fdvv.model.surface import ForceSurface
+from fdvv.rendering.evaluation.probe_curve import ProbeCurve
+from fdvv.rendering.evaluation.verdict import (
+    STEPS,
+    RenderingMeans,
+    next_step,
+    outcome_words,
+    short_outcome,
+    verdict,
+)
+from fdvv.rendering.evaluation.vibration_presses import NONE_ASKED, RenderedVibration
 from fdvv.rendering.probe import probe
-from fdvv.rendering.probe_curve import ProbeCurve
-from fdvv.rendering.verdict import STEPS, RenderingMeans, next_step, outcome_words, short_outcome, verdict
-from fdvv.rendering.vibration_presses import NONE_ASKED, RenderedVibration
 from fdvv.testing.scripted import ScriptedDevice
 from fdvv.vibration.compare import VibrationError
 

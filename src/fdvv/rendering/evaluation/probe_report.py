@@ -7,12 +7,12 @@ from typing import Any
 
 from fdvv import __version__
 from fdvv.model.noticeable import SOURCES, JndSource
+from fdvv.rendering.evaluation.noticed import Noticed, noticed
+from fdvv.rendering.evaluation.probe_curve import ENTRY_mm, ProbeCurve
+from fdvv.rendering.evaluation.probe_figures import plot_vibrations, rendered_curves, shown_vibrations
+from fdvv.rendering.evaluation.vibration_presses import NOT_ASKED
 from fdvv.rendering.figures import plot_rendering
-from fdvv.rendering.noticed import Noticed, noticed
 from fdvv.rendering.probe import ProbeResult
-from fdvv.rendering.probe_curve import ENTRY_mm, ProbeCurve
-from fdvv.rendering.probe_figures import plot_vibrations, rendered_curves, shown_vibrations
-from fdvv.rendering.vibration_presses import NOT_ASKED
 from fdvv.report.report import Section, Table, render_html
 from fdvv.report.svg import figure_svg
 

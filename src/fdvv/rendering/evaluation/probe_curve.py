@@ -16,8 +16,8 @@ from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import force_jnd_cN
 from fdvv.model.press import Press
-from fdvv.rendering.noticed import Noticed, noticed
-from fdvv.rendering.vibration_presses import (
+from fdvv.rendering.evaluation.noticed import Noticed, noticed
+from fdvv.rendering.evaluation.vibration_presses import (
     NONE_ASKED,
     RenderedVibration,
     rendered_vibration,

@@ -17,9 +17,14 @@ from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.model.vibration import Mode, Vibration
 from fdvv.protocol.messages import head_of
+from fdvv.rendering.evaluation.vibration_presses import (
+    Playback,
+    RenderedVibration,
+    rendered_vibration,
+    vibrating_image,
+)
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session import Session
-from fdvv.rendering.vibration_presses import Playback, RenderedVibration, rendered_vibration, vibrating_image
 from fdvv.testing.scripted import ScriptedDevice
 from fdvv.twin.files import load_rig
 from fdvv.twin.rig import Rig
@@ -135,7 +140,7 @@ def test_force_is_judged_on_the_silent_presses_as_if_nothing_were_played() -> No
 
 
 def test_a_rig_without_an_exciter_says_what_its_cap_does_by_itself() -> None:
-    rigs = Path(__file__).parents[2] / "src" / "fdvv" / "twin" / "rigs"
+    rigs = Path(__file__).parents[3] / "src" / "fdvv" / "twin" / "rigs"
     device = TwinDevice(load_rig(rigs / "recommended.toml"), seed=4)
     result = probe(device, MODEL, SURFACE, [100.0], 2, playback=Playback(2))
     assert result.vibration_presses == 0
