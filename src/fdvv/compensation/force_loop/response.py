@@ -46,7 +46,7 @@ class LoopResponse:
     def follows(self, frequency_Hz: FloatArray) -> ComplexArray:
         """Return R of every finger, (fingers, frequencies)."""
         s, plant = (2j * np.pi * frequency_Hz).astype(np.complex128), self.plant
-        delayed = np.exp(-s * plant.delay_s) / (1 + s * plant.coil_s) / (1 + s * plant.cell_s)
+        delayed = plant.delayed(s)
         cap = plant.mass_kg * s**2 + delayed * self.controller.on_motion(s)
         felt = cap / (1 + delayed * self.controller.on_force(s))
         cell = plant.cell_N_m + plant.cell_N_s_m * s

@@ -55,6 +55,10 @@ class LoopPlant:
         """From a force at the finger to the coil's answer."""
         return self.delay_s + self.coil_s + self.cell_s
 
+    def delayed(self, s: ComplexArray) -> ComplexArray:
+        """Return D, from a force at the finger to the coil's answer, the shape of s."""
+        return np.exp(-s * self.delay_s) / (1 + s * self.coil_s) / (1 + s * self.cell_s)
+
 
 @dataclass(frozen=True)
 class LoopController:
@@ -101,8 +105,7 @@ class FingerBank:
 
     @cached_property
     def _delayed(self) -> ComplexArray:
-        s, plant = self._s, self.plant
-        return np.exp(-s * plant.delay_s) / (1 + s * plant.coil_s) / (1 + s * plant.cell_s)
+        return self.plant.delayed(self._s)
 
     def loop(self, controller: LoopController) -> ComplexArray:
         """Return the loop's transfer function, (slopes, members, frequencies)."""
@@ -124,6 +127,5 @@ class FingerBank:
     def left(self, controller: LoopController) -> FloatArray:
         """Return the part of the cap's own dynamics that is felt, at the frequencies FELT_Hz."""
         s, plant = 2j * np.pi * FELT_Hz, self.plant
-        delayed = np.exp(-s * plant.delay_s) / (1 + s * plant.coil_s) / (1 + s * plant.cell_s)
         motion = np.abs(1 + controller.on_motion(s) / (plant.mass_kg * s**2))
-        return np.asarray(motion / np.abs(1 + controller.on_force(s) * delayed))
+        return np.asarray(motion / np.abs(1 + controller.on_force(s) * plant.delayed(s)))
