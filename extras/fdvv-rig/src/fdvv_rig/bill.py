@@ -196,14 +196,14 @@ def bill_page(paper: Bill, recommended: Bill) -> str:
 
 
 def summary(bill: Bill) -> str:
-    """Return the total in a sentence or two, beside the paper's."""
+    """Return the total in a few sentences, beside the paper's."""
     totals = group_totals(bill)
     estimates, asked = (sum(getattr(line, name) for line in bill.lines) for name in ("estimated", "asked"))
     built = totals["rig"] + totals["vibration"]
     lines = [line for line in bill.lines if not line.asked]
     more = f", and {asked} lines without a price: ask for a quotation" if asked else ""
     return (
-        f"{bill.total_USD:.0f} USD in all{more}; rig and vibration, what the paper built for about "
-        f"{PAPER_USD:.0f} USD, {built:.0f} USD. {estimates} of {len(lines)} prices "
+        f"{bill.total_USD:.0f} USD in all{more}. Rig and vibration, which the paper built for about "
+        f"{PAPER_USD:.0f} USD, cost {built:.0f} USD. {estimates} of {len(lines)} prices "
         f"are estimates of {dates(lines)}, without shipping and tax."
     )
