@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from fdvv._native import library
-from fdvv.compensation.force_loop.constants import ForceLoopGains
 from fdvv.compensation.force_loop.gains import estimator_gains, rate
+from fdvv.protocol.tables import ForceLoopGains
 
 HEADER = Path(__file__).parents[2] / "firmware" / "force_loop" / "loop_protocol.h"
 TRAVEL_m, MIDDLE = 4e-3, 2048

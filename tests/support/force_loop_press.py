@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.compensation.force_loop.constants import CellSpec
 from fdvv.compensation.force_loop.gains import force_loop_gains
 from fdvv.compensation.force_loop.stability import LoopController
 from fdvv.compensation.identification.rig_model import RigModel
@@ -16,7 +15,7 @@ from fdvv.device.twin import TwinDevice
 from fdvv.firmware.core import INPUTS, OUTPUTS, Core, RecordArray
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
-from fdvv.protocol.tables import Settings
+from fdvv.protocol.tables import CellSpec, Settings
 from fdvv.twin.files import load_rig
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import plan

@@ -7,11 +7,11 @@ from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
-from fdvv.compensation.force_loop.constants import ForceLoopGains
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import ForceLoopGains
 from fdvv.units import FloatArray
 
 

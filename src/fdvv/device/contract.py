@@ -7,11 +7,10 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from fdvv.compensation.force_loop.constants import CellSpec, ForceLoopGains
 from fdvv.errors import DeviceError
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
-from fdvv.protocol.tables import Fault, Settings
+from fdvv.protocol.tables import CellSpec, Fault, ForceLoopGains, Settings
 
 SPEED_LIMITS_mm_s = (0.5, 500.0)
 """From a machine that probes statically, as the paper's did, to more than a finger does."""

@@ -7,7 +7,6 @@ from collections import deque
 
 import numpy as np
 
-from fdvv.compensation.force_loop.constants import CellSpec, ForceLoopGains
 from fdvv.device.contract import DeviceInfo, check_speed, check_table, check_travel
 from fdvv.device.plant import Inputs
 from fdvv.errors import DeviceError, ModelError
@@ -15,7 +14,7 @@ from fdvv.firmware.core import Core
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.messages import CN64_PER_cN, travel_mm_of
-from fdvv.protocol.tables import Mode, Settings
+from fdvv.protocol.tables import CellSpec, ForceLoopGains, Mode, Settings
 from fdvv.twin.finger import Finger, bare
 from fdvv.twin.gesture import Gesture, vary
 from fdvv.twin.image import image_of

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.compensation.force_loop.constants import CellSpec, ForceLoopGains
 from fdvv.compensation.force_loop.gains import force_loop_gains
 from fdvv.compensation.force_loop.method import BANDWIDTH_Hz, RUB_mm_s
 from fdvv.compensation.identification.rig_file import LearnedRig
@@ -23,6 +22,7 @@ from fdvv.program.compensate import commands, learned_surfaces, loop_targets
 from fdvv.program.compile import compile_program
 from fdvv.program.program import Program
 from fdvv.program.surface import Limits
+from fdvv.protocol.tables import CellSpec, ForceLoopGains
 from fdvv.rendering.compensate import CompensationResult, check_speeds
 from fdvv.rendering.evaluation.program_probe import StateError, all_errors_cN, judged_states
 from fdvv.rendering.tuning import tune

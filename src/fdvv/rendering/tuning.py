@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fdvv.button.open import open_button
-from fdvv.compensation.force_loop.constants import ForceLoopGains
 from fdvv.compensation.method import Tuning
 from fdvv.device import open as device_open
 from fdvv.device.contract import Device, ForceLoopDevice
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.messages import CN64_PER_cN, MM_S16_PER_mm_s
-from fdvv.protocol.tables import IMAGE_BYTES, IMAGE_MAGIC, Settings
+from fdvv.protocol.tables import IMAGE_BYTES, IMAGE_MAGIC, ForceLoopGains, Settings
 from fdvv.twin.files import load_finger, load_rig
 from fdvv.units import cN_from_N
 

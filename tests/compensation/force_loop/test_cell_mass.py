@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv.compensation.force_loop.constants import CellSpec
 from fdvv.compensation.force_loop.method import ForceLoop
 from fdvv.compensation.method import CompensationJob
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import CellSpec
 from tests.compensation._plant import Plant
 
 # the plate takes part of the finger's force: what is read is less by its mass times acceleration

@@ -1,15 +1,15 @@
-"""The constants of the firmware's force loop and its cell's data sheet, from protocol/force_loop.toml."""
+"""Numbers of the force loop that its protocol leaves open, and its constants in files of earlier versions."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from fdvv.protocol.tables import CellSpec, ForceLoopGains
+from fdvv.protocol.tables import ForceLoopGains
 
-__all__ = ["OWN_VALUES", "CellSpec", "ForceLoopGains", "of_earlier_version"]
-
-OWN_VALUES = 8
+OWN_VALUES = ForceLoopGains.RUNS["own_N"]
 """Of the rig's own force, over its travel."""
+FRICTION_m = 1e-4
+"""As over reversal_m of the recommended rig: what turns with the stroke turns together."""
 
 
 def of_earlier_version(record: dict[str, Any]) -> dict[str, Any]:
@@ -19,5 +19,5 @@ def of_earlier_version(record: dict[str, Any]) -> dict[str, Any]:
         found |= {"own_N": [-found.pop("weight_N")] * OWN_VALUES, "own_per_m": 1.0}
     if "friction_m_s" in found:
         del found["friction_m_s"]
-        found["friction_m"] = 1e-4
+        found["friction_m"] = FRICTION_m
     return found

@@ -6,14 +6,13 @@ import math
 
 import numpy as np
 
-from fdvv.compensation.force_loop.constants import OWN_VALUES, CellSpec, ForceLoopGains
+from fdvv.compensation.force_loop.constants import OWN_VALUES, FRICTION_m
 from fdvv.compensation.force_loop.design import design_controller
 from fdvv.compensation.force_loop.stability import LoopController, LoopPlant
 from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.protocol.tables import CellSpec, ForceLoopGains
 from fdvv.units import FloatArray, N_from_cN, m_from_mm
 
-FRICTION_m = 1e-4
-"""As over reversal_m of the recommended rig: what turns with the stroke turns together."""
 LEAST_kg = 2e-3
 LEAST_s = 1e-5
 CONTACT_s = 1e-3

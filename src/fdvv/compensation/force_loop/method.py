@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fdvv.compensation.force_loop.constants import CellSpec, ForceLoopGains
 from fdvv.compensation.force_loop.corrections import StrokeCorrection
 from fdvv.compensation.force_loop.design import design_controller
 from fdvv.compensation.force_loop.gains import force_loop_gains, plant_of_rig
@@ -46,6 +45,7 @@ from fdvv.compensation.rig_learning import (
 from fdvv.errors import ModelError
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import CellSpec, ForceLoopGains
 from fdvv.units import FloatArray
 
 LEARNED_ratios = (0.9, 0.7, 0.5)
