@@ -16,6 +16,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import closing
 from functools import partialmethod
 from io import TextIOBase
 from pathlib import Path
@@ -62,13 +63,13 @@ class Taker:
     def call(self, name: str, /, **question: object) -> dict[str, Any]:
         """Ask as who leads the study; return the answer."""
         self._tell(["does", name])
-        line = http.client.HTTPConnection(self.base.partition("//")[2], timeout=PATIENCE_s)
-        line.request(
-            "POST", f"/api/studies.{name}", json.dumps(question),
-            {"content-type": "application/json", "authorization": f"Bearer {self._token}"},
-        )  # fmt: skip
-        found = json.loads(line.getresponse().read())
-        line.close()
+        # a studio killed while a question is sent leaves the connection open
+        with closing(http.client.HTTPConnection(self.base.partition("//")[2], timeout=PATIENCE_s)) as line:
+            line.request(
+                "POST", f"/api/studies.{name}", json.dumps(question),
+                {"content-type": "application/json", "authorization": f"Bearer {self._token}"},
+            )  # fmt: skip
+            found = json.loads(line.getresponse().read())
         assert "error" not in found, found
         return dict(found)
 
