@@ -12,7 +12,6 @@ import click
 from fdvv.cli import ui
 from fdvv.errors import InputError
 from fdvv.library.library import Library
-from fdvv.studio.auth import saved_token
 from fdvv.studio.server import serve
 from fdvv.studio.studio import Studio
 
@@ -63,8 +62,7 @@ def studio(
         if not no_browser:
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
-    token = saved_token(project) if keep_address else ""
-    serve(Studio(project, folders, libraries), host, port, ready, token)
+    serve(Studio(project, folders, libraries), host, port, ready, keep_address)
     ui.print_stderr("the studio is closed; everything is kept")
 
 

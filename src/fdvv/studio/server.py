@@ -23,9 +23,10 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
 from fdvv.errors import BuildError, FdvvError, InputError
-from fdvv.studio.auth import AuthMiddleware, ServerAddress, new_token
+from fdvv.studio.auth import AuthMiddleware, ServerAddress, new_token, saved_token
 from fdvv.studio.contract import Call, error_line
 from fdvv.studio.live import LiveConnection
+from fdvv.studio.lock import note_address, project_lock
 from fdvv.studio.parts import PartLoader
 from fdvv.studio.studio import Studio
 
@@ -180,24 +181,39 @@ def bound_socket(host: str, port: int) -> socket.socket:
 
 def address_of(host: str, port: int, token: str | None = None) -> ServerAddress:
     """Make the door of a studio at a port. token : that opens it; none: a fresh one."""
-    names = {"127.0.0.1", "localhost", "[::1]", f"[{host}]" if ":" in host else host}
+    names = {"127.0.0.1", "localhost", "[::1]", _shown(host)}
     return ServerAddress(frozenset(f"{name}:{port}" for name in names), token or new_token(), f"fdvv-{port}")
 
 
-def serve(studio: Studio, host: str, port: int, ready: Callable[[str], None], token: str = "") -> None:
-    """Serve a studio until Ctrl-C or SIGTERM.
+def serve(
+    studio: Studio, host: str, port: int, ready: Callable[[str], None], keep_address: bool = False
+) -> None:
+    """Serve a studio until Ctrl-C or SIGTERM, the only one of its project.
 
-    ready : called with the address to open, once it can be opened. token : that opens it; empty: a fresh
-    one. Raises InputError, BuildError.
+    ready : called with the address to open, once it can be opened. keep_address : the token is that of the
+    project, else a fresh one. Raises InputError if the port is taken or another studio has the project,
+    BuildError.
     """
+    with project_lock(studio.project) as lock, bound_socket(host, port) as taken:
+        token = saved_token(studio.project) if keep_address else new_token()
+        note_address(lock, f"http://{_shown(host)}:{taken.getsockname()[1]}")
+        _serve(studio, host, taken, ready, token)
+
+
+def _shown(host: str) -> str:
+    return f"[{host}]" if ":" in host else host
+
+
+def _serve(studio: Studio, host: str, taken: socket.socket, ready: Callable[[str], None], token: str) -> None:
     import uvicorn
 
-    taken = bound_socket(host, port)
+    from fdvv.studio.connections import BoundedProtocol
+
     port = taken.getsockname()[1]
     door = address_of(host, port, token)
-    shown = f"[{host}]" if ":" in host else host
     config = uvicorn.Config(
         create_app(studio, door),
+        http=BoundedProtocol,
         log_level="warning",
         ws="websockets-sansio",
         ws_max_size=LARGEST_MESSAGE_bytes,
@@ -208,7 +224,7 @@ def serve(studio: Studio, host: str, port: int, ready: Callable[[str], None], to
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             await super().startup(sockets)
-            ready(f"http://{shown}:{port}/?token={door.token}")
+            ready(f"http://{_shown(host)}:{port}/?token={door.token}")
 
     # uvicorn ends in order and then raises Ctrl-C once more; here that is how a studio ends
     with suppress(KeyboardInterrupt):
