@@ -51,6 +51,7 @@ def bad(tmp_path: Path) -> Path:
         (tmp_path / f"{name}.fdvv.json").write_text(json.dumps({**record, **change}))
     (tmp_path / "cut.actuation.json").write_text('{"format": "fdvv-actuation", "version": 1, "meth')
     (tmp_path / "rig.toml").write_text("this is no toml\n")
+    (tmp_path / "deep.toml").write_text(f"a = {'[' * 50_000}{']' * 50_000}\n")
     save_rig(RigModel(), tmp_path / "good.rig.json")
     return tmp_path
 
@@ -110,6 +111,8 @@ REFUSED = {
     "a segment of nan": (("assign", "mx-blue", "mx-red:press", *ASSIGN, "--segment", "nan", "1"), "finite"),
     "an unknown device": (("compensate", "mx-blue", "--device", "serial"), "use one of twin"),
     "a missing rig": (("compensate", "mx-blue", "--rig", "gone.toml"), "'gone.toml' does not exist"),
+    "a rig nested too deeply": (("compensate", "mx-blue", "--rig", "deep.toml"), "deep.toml: TOML: is nest"),
+    "a device in place of a file": (("fit", "/dev/zero"), "/dev/zero: whole file: is a device or a pipe"),
     "a rig that is no TOML": (("compensate", "mx-blue", "--rig", "rig.toml"), "rig.toml: TOML"),
     "a speed twice": (("compensate", "mx-blue", "--velocity", "50", "--velocity", "50"), "a speed repeats"),
     "the paper's presses for another method": (

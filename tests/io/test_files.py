@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -7,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.io.files import read_limited, sync_folder, write_atomic
+from fdvv.io.files import LONGEST_NAME_bytes, open_plain, read_limited, sync_folder, write_atomic
 
 
 def test_a_written_file_holds_the_content_and_leaves_no_other_file(tmp_path: Path) -> None:
@@ -25,6 +26,23 @@ def test_a_failed_write_leaves_the_old_file_and_no_temporary_one(tmp_path: Path)
         write_atomic(target, 12)  # type: ignore[arg-type]
     assert target.read_text() == "old"
     assert [p.name for p in tmp_path.iterdir()] == ["a.txt"]
+
+
+@pytest.mark.parametrize("name", ["a" * LONGEST_NAME_bytes, "𠀀" * (LONGEST_NAME_bytes // 4)])
+def test_the_longest_name_that_the_system_takes_can_be_written(tmp_path: Path, name: str) -> None:
+    write_atomic(tmp_path / name, "kept")
+    assert (tmp_path / name).read_text() == "kept"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="this system has no such files")
+def test_a_pipe_or_a_device_is_refused_at_once_and_in_one_line(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", Path("/dev/zero")):
+        with pytest.raises(InputError, match="is a device or a pipe, not a file") as error:
+            open_plain(path)
+        assert "\n" not in str(error.value)
+        with pytest.raises(InputError, match="is a device or a pipe"):
+            read_limited(path, 1000, "take a smaller one")
 
 
 def test_a_process_killed_while_writing_leaves_the_old_file_whole(tmp_path: Path) -> None:

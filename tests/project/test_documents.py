@@ -297,6 +297,7 @@ def test_a_deleted_button_is_in_the_trash_with_its_history(drafts: DocumentStore
         ("a ", "must not end with a space or a point"),
         ("a.", "must not end with a space or a point"),
         ("NUL", "is reserved by an operating system"),
+        ("𠀀" * 51, "is longer than 200 bytes"),
         ("com1.x", "is reserved by an operating system"),
         ("TAKEN", "there is a button 'taken' already"),
     ],
@@ -323,7 +324,14 @@ def test_a_name_that_was_never_listed_is_never_a_path(drafts: DocumentStore, tmp
 
 @pytest.mark.parametrize(
     ("wanted", "name"),
-    [("mx/clear?", "mx-clear"), ("..", "button"), ("NUL", "button NUL"), ("a", "a 2"), ("é" * 99, "é" * 54)],
+    [
+        ("mx/clear?", "mx-clear"),
+        ("..", "button"),
+        ("NUL", "button NUL"),
+        ("a", "a 2"),
+        ("é" * 99, "é" * 54),
+        ("𠀀" * 99, "𠀀" * 48),
+    ],
 )
 def test_a_free_name_is_near_the_wanted_one_and_can_be_created(
     drafts: DocumentStore, wanted: str, name: str

@@ -35,7 +35,7 @@ def own_studio(tmp_path: Path) -> Studio:
 @pytest.fixture
 def stranger(own_studio: Studio) -> Iterator[TestClient]:
     """Someone on this machine who does not have the token."""
-    app = create_app(own_studio, address_of(HOST, PORT, TOKEN))
+    app = create_app(own_studio, address_of([HOST], PORT, TOKEN))
     with TestClient(app, base_url=ORIGIN, follow_redirects=False) as client:
         yield client
 

@@ -198,7 +198,7 @@ def _say(line: str) -> None:
 
 def serve_life(into: int, project: str, port: str) -> None:
     """Serve a project until somebody kills this process."""
-    serve(Studio(Path(project)), HOST, int(port), lambda address: _tell(into, address))
+    serve(Studio(Path(project)), HOST, int(port), lambda addresses: _tell(into, addresses[0]))
 
 
 def take_life(into: int, address: str, study: str, person: str, code: str) -> None:

@@ -34,7 +34,7 @@ def client(tmp_path_factory: pytest.TempPathFactory, bench: Path) -> Iterator[Te
     """A studio whose index has read everything."""
     project = tmp_path_factory.mktemp("library") / "project"
     save_model(load_builtin("mx-red"), project / "buttons" / f"mine{MODEL_SUFFIX}")
-    app = create_app(Studio(project, (bench,)), address_of("127.0.0.1", 8377, TOKEN))
+    app = create_app(Studio(project, (bench,)), address_of(["127.0.0.1"], 8377, TOKEN))
     with TestClient(app, base_url=ORIGIN, headers={"origin": ORIGIN}) as client:
         client.get("/", params={"token": TOKEN})
         with client.websocket_connect(LIVE, headers={"origin": ORIGIN}) as live:

@@ -12,7 +12,8 @@ from pathlib import Path
 import httpx2
 import pytest
 
-from fdvv.studio.server import bound_socket
+from fdvv.errors import InputError
+from fdvv.studio.server import address_of, bound_socket, reachable_hosts
 from tests.studio.running import RunningStudio
 
 
@@ -70,6 +71,19 @@ def test_what_it_cannot_do_is_refused_in_one_line(arguments: list[str], word: st
     assert ended.returncode == 2
     assert ended.stderr.count("\n") == 1
     assert word in ended.stderr
+
+
+def test_a_studio_for_other_machines_prints_addresses_that_they_can_open() -> None:
+    try:
+        first, *others = reachable_hosts("0.0.0.0")
+    except InputError:
+        pytest.skip("this machine has no address that others could reach")
+    assert first == "127.0.0.1"
+    for name in others:
+        # what others can reach is an address of this machine
+        bound_socket(name, 0).close()
+        assert f"{name}:8377" in address_of((first, *others), 8377, "").hosts
+    assert reachable_hosts("127.0.0.1") == ("127.0.0.1",)
 
 
 def test_what_is_answered_is_sent_at_once() -> None:

@@ -68,7 +68,7 @@ def test_the_light_rig_renders_a_press_in_the_time_its_firmware_has() -> None:
 
 
 def test_a_name_that_is_not_shipped_is_a_path() -> None:
-    with pytest.raises(InputError, match="nothing: whole file: cannot be read"):
+    with pytest.raises(InputError, match="nothing: whole file: No such file"):
         load_rig("nothing")
 
 

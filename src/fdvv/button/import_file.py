@@ -15,7 +15,7 @@ from fdvv.button.open import open_button
 from fdvv.errors import FitError, InputError, ModelError
 from fdvv.formats.exchange.exchange_format import VibrationFormat, VibrationRead
 from fdvv.io.documents import own_kind
-from fdvv.io.files import read_limited
+from fdvv.io.files import open_plain, read_limited
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel, Provenance
 from fdvv.model.vibration import Mode, Vibration
@@ -108,7 +108,7 @@ def import_file(path: Path | str, settings: ImportSettings | None = None) -> Imp
 def _format(path: Path) -> str | None:
     """Detect a vibration's format by its first bytes; None for what may be curves."""
     try:
-        with path.open("rb") as stream:
+        with open_plain(path) as stream:
             head = stream.read(HEAD_bytes)
     except OSError as error:
         raise InputError(path, "whole file", error.strerror or str(error), "check the path") from error

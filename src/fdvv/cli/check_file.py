@@ -8,6 +8,7 @@ from pathlib import Path
 
 from fdvv.compensation.identification.rig_file import load_rig
 from fdvv.errors import BuildError, FdvvError, InputError
+from fdvv.io.files import open_plain
 from fdvv.model.file import load_model
 from fdvv.program.check import check_program
 from fdvv.program.describe import describe
@@ -45,7 +46,7 @@ def check_file(path: Path | str) -> FileCheck:
 
 def _head(path: Path) -> bytes:
     try:
-        with path.open("rb") as stream:
+        with open_plain(path) as stream:
             return stream.read(HEAD_bytes)
     except OSError as error:
         reason = error.strerror or str(error)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ipaddress
 import threading
 import webbrowser
+from collections.abc import Sequence
 from pathlib import Path
 
 import click
@@ -56,8 +57,11 @@ def studio(
     for library in libraries:
         Library(library)
 
-    def ready(address: str) -> None:
+    def ready(addresses: Sequence[str]) -> None:
+        address, *others = addresses
         click.echo(f"the studio is open at {address}")
+        for other in others:
+            click.echo(f"from other machines at {other}")
         ui.print_stderr("Ctrl-C ends it")
         if not no_browser:
             threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()

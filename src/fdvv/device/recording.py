@@ -23,6 +23,7 @@ import numpy as np
 from fdvv.device.contract import Device, DeviceInfo, FaultReport, ProgramDevice, check_speed, check_table
 from fdvv.errors import DeviceError, InputError
 from fdvv.io.columns import pack_column, unpack_column
+from fdvv.io.files import open_plain
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import Fault, Settings
@@ -140,7 +141,8 @@ class Recorder:
 def read_session(path: Path) -> list[dict[str, Any]]:
     """Read the lines of the last session of a file; a cut last line is left out. InputError."""
     try:
-        text = Path(path).read_text(encoding="ascii")
+        with open_plain(path) as stream:
+            text = stream.read().decode("ascii")
     except UnicodeDecodeError:
         raise InputError(path, "whole file", "is no text", "name a file that --record wrote") from None
     lines: list[dict[str, Any]] = []

@@ -6,6 +6,7 @@ import inspect
 import json
 import math
 import re
+import tomllib
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +15,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from fdvv.errors import InputError
-from fdvv.io.files import read_limited
+from fdvv.io.files import open_plain, read_limited
 
 Read = TypeVar("Read")
 NEWLINE = b"\n"
@@ -92,6 +93,18 @@ def read_record(path: Path, kind: Kind, record: type[Read], largest_bytes: int) 
     return read_document(text, path, kind, msgspec.json.Decoder(record).decode, lambda _place: None)
 
 
+def read_toml(text: bytes, source: object, remedy: str) -> dict[str, Any]:
+    """Read the text of a TOML file. InputError that names source and, where it can, the line."""
+    try:
+        return tomllib.loads(text.decode())
+    except UnicodeDecodeError as error:
+        raise InputError(source, f"byte {error.start}", "is not UTF-8 text", "save it as UTF-8") from error
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(source, "TOML", str(error), remedy) from error
+    except RecursionError as error:
+        raise InputError(source, "TOML", "is nested too deeply", remedy) from error
+
+
 def _place(data: bytes, reason: str) -> str:
     """Return line and column from the byte a decoder stumbled over; without one the text ended early."""
     found = re.search(r"\(byte (\d+)\)", reason)
@@ -150,8 +163,8 @@ def own_kind(path: Path) -> str | None:
     if path.suffix.lower() != ".json":
         return None
     try:
-        with path.open("rb") as stream:
+        with open_plain(path) as stream:
             head = stream.read(HEAD_bytes)
-    except OSError:
+    except (OSError, InputError):
         return None
     return next((kind for mark, kind in MARKS.items() if mark in head), None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import stat
 import sys
 import tempfile
 import threading
@@ -17,6 +18,11 @@ from fdvv.errors import InputError
 
 FAR_byte = 1 << 40
 """Where Windows is asked to lock: what it locks nobody else can read, and no file of ours grows so long."""
+
+LONGEST_NAME_bytes = 255
+"""Of a file, on all common file systems."""
+TEMPORARY_bytes = 14
+"""What the name of a temporary file has more than that of its file: two points, eight letters, .tmp."""
 
 
 def write_atomic(path: Path, content: str | bytes) -> None:
@@ -34,7 +40,9 @@ def write_atomic(path: Path, content: str | bytes) -> None:
 @contextmanager
 def atomic_stream(path: Path) -> Iterator[BinaryIO]:
     """Open a stream whose content becomes the file when the block ends, and is dropped if it fails."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".tmp")
+    short = len(os.fsencode(path.name)) <= LONGEST_NAME_bytes - TEMPORARY_bytes
+    prefix = f".{path.name}." if short else ".fdvv."
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=prefix, suffix=".tmp")
     temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as stream:
@@ -105,14 +113,26 @@ def sync_folder(folder: Path) -> None:
         os.close(handle)
 
 
+def open_plain(path: Path | str) -> BinaryIO:
+    """Open a file to read. A device or a pipe could have no end, or keep its reader waiting: InputError.
+
+    Raises OSError, a folder's among them.
+    """
+    mode = Path(path).stat().st_mode
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        reason = "is a device or a pipe, not a file"
+        raise InputError(path, "whole file", reason, "save what it holds in a file first")
+    return Path(path).open("rb")
+
+
 def read_limited(path: Path | str, limit_bytes: int, remedy: str) -> bytes:
     """Read a file that should be small. InputError where it cannot be read or is larger than the limit.
 
     remedy : what to pass instead of a file that is too large.
     """
     try:
-        with Path(path).open("rb") as stream:
-            # a reader asked for more than there is takes that much memory at once; of a pipe no size is known
+        with open_plain(path) as stream:
+            # a reader asked for more than there is takes that much memory at once; /proc knows no sizes
             size = os.fstat(stream.fileno()).st_size or limit_bytes
             content = stream.read(min(size, limit_bytes) + 1)
     except OSError as error:

@@ -54,8 +54,9 @@ def new_model(name: str, template: ModelTemplate | str) -> FDVVModel:
     )
 
 
-LONGEST = 60
-"""Characters; with a suffix and in any script it stays below the 255 bytes of file systems."""
+LONGEST, LONGEST_bytes = 60, 200
+"""Characters, and bytes of UTF-8: with a suffix and in any script a name stays below the 255 bytes of file
+systems."""
 
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _SAFE = re.compile(r"\w[\w .+()-]*", re.UNICODE)
@@ -81,6 +82,8 @@ def _wrong(name: str) -> str:
         return "is empty"
     if len(name) > LONGEST:
         return f"is longer than {LONGEST} characters"
+    if len(name.encode(errors="replace")) > LONGEST_bytes:
+        return f"is longer than {LONGEST_bytes} bytes; letters of this script take up to four each"
     if not _SAFE.fullmatch(name) or name[0] == "_":
         return "must begin with a letter or digit and have only letters, digits, spaces and . + - _ ( )"
     if name[-1] in " .":
@@ -93,11 +96,16 @@ def free_name(wanted: str, there: Iterable[str]) -> str:
     taken = {name.casefold() for name in there}
     base = re.sub(r"[^\w .+()-]+", "-", unicodedata.normalize("NFC", wanted)).strip(" ._-+()")
     # six characters are left for a number
-    base = base[: LONGEST - 6].rstrip(" .") or "button"
+    base = _cut(base, LONGEST_bytes - 6)[: LONGEST - 6].rstrip(" .") or "button"
     if _wrong(base):
-        base = f"button {base}"[: LONGEST - 6]
+        base = _cut(f"button {base}", LONGEST_bytes - 6)[: LONGEST - 6]
     number, name = 1, base
     while name.casefold() in taken:
         number += 1
         name = f"{base} {number}"
     return name
+
+
+def _cut(name: str, most_bytes: int) -> str:
+    """Return as many letters as fit into these bytes of UTF-8."""
+    return name.encode(errors="replace")[:most_bytes].decode(errors="ignore")

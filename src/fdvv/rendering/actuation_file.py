@@ -14,7 +14,7 @@ from fdvv.compensation.force_loop.constants import of_earlier_version
 from fdvv.compensation.method import CurveOutcome, Outcome, Tuning
 from fdvv.errors import InputError, ModelError
 from fdvv.io.documents import ACTUATION, own_kind
-from fdvv.io.files import write_atomic
+from fdvv.io.files import read_limited, write_atomic
 from fdvv.model.curve import Stroke
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.compensate import CompensationResult
@@ -24,6 +24,7 @@ FORMAT = "fdvv-actuation"
 VERSION, LOOP_VERSION = 2, 3
 """The second only where the force loop is closed: older versions of fdvv read the other files."""
 READ = (1, 2, 3)
+LARGEST_bytes = 20_000_000
 """Version 1 had no receipt."""
 SUFFIX = ".actuation.json"
 
@@ -79,16 +80,13 @@ def load_actuation(path: Path | str) -> CompensationResult:
     """Read an ``*.actuation.json`` file. Raises InputError, also where the file cannot be read."""
     remedy = "learn it again with fdvv compensate"
     try:
-        record = msgspec.json.decode(Path(path).read_bytes(), type=dict)
+        record = msgspec.json.decode(read_limited(path, LARGEST_bytes, remedy), type=dict)
         if record.get("format") != FORMAT or record.get("version") not in READ:
             got = f"{record.get('format')!r} version {record.get('version')!r}"
             reason = f"expected {FORMAT!r} version {' or '.join(map(str, READ))}, got {got}"
             raise InputError(path, "$.format", reason, remedy)
         return _result(msgspec.convert(record, ActuationRecord))
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise InputError(path, "whole file", reason, "check the path and its permissions") from error
-    except (msgspec.MsgspecError, UnicodeDecodeError, ModelError) as error:
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError, ModelError) as error:
         reason, _, place = str(error).partition(" - at ")
         raise InputError(path, place.strip("`") or "whole file", reason, remedy) from error
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import gzip
 import hashlib
+import ipaddress
 import logging
 import socket
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from importlib import resources
@@ -179,38 +180,61 @@ def bound_socket(host: str, port: int) -> socket.socket:
     return taken
 
 
-def address_of(host: str, port: int, token: str | None = None) -> ServerAddress:
-    """Make the door of a studio at a port. token : that opens it; none: a fresh one."""
-    names = {"127.0.0.1", "localhost", "[::1]", _shown(host)}
-    return ServerAddress(frozenset(f"{name}:{port}" for name in names), token or new_token(), f"fdvv-{port}")
+def reachable_hosts(host: str) -> tuple[str, ...]:
+    """Return the hosts that a listening address answers to: itself, or for 0.0.0.0 and :: this machine's own.
+
+    Raises InputError if this machine's addresses cannot be found.
+    """
+    if host == "localhost" or not ipaddress.ip_address(host).is_unspecified:
+        return (host,)
+    family, unused = (socket.AF_INET6, "2001:db8::1") if ":" in host else (socket.AF_INET, "192.0.2.1")
+    found: list[str] = []
+    with suppress(OSError), socket.socket(family, socket.SOCK_DGRAM) as probe:
+        # connecting sends nothing; it asks the system which of its addresses would be used
+        probe.connect((unused, 9))
+        found.append(str(probe.getsockname()[0]))
+    with suppress(OSError):
+        found += [str(entry[4][0]) for entry in socket.getaddrinfo(socket.gethostname(), None, family)]
+    others = [name for name in dict.fromkeys(found) if not ipaddress.ip_address(name).is_loopback]
+    if not others:
+        reason = "no address of this machine was found that others could reach"
+        raise InputError("--host", host, reason, "name the address, such as --host 192.168.1.20")
+    return ("::1" if ":" in host else "127.0.0.1", *others)
+
+
+def address_of(hosts: Sequence[str], port: int, token: str) -> ServerAddress:
+    """Make the door of a studio at a port. token : that opens it."""
+    names = {"127.0.0.1", "localhost", "[::1]", *map(_shown, hosts)}
+    return ServerAddress(frozenset(f"{name}:{port}" for name in names), token, f"fdvv-{port}")
 
 
 def serve(
-    studio: Studio, host: str, port: int, ready: Callable[[str], None], keep_address: bool = False
+    studio: Studio, host: str, port: int, ready: Callable[[Sequence[str]], None], keep_address: bool = False
 ) -> None:
     """Serve a studio until Ctrl-C or SIGTERM, the only one of its project.
 
-    ready : called with the address to open, once it can be opened. keep_address : the token is that of the
-    project, else a fresh one. Raises InputError if the port is taken or another studio has the project,
-    BuildError.
+    ready : called with the addresses that open it, once they do; the first is for this machine.
+    keep_address : the token is that of the project, else a fresh one. Raises InputError if the port is taken
+    or another studio has the project, BuildError.
     """
+    hosts = reachable_hosts(host)
     with project_lock(studio.project) as lock, bound_socket(host, port) as taken:
         token = saved_token(studio.project) if keep_address else new_token()
-        note_address(lock, f"http://{_shown(host)}:{taken.getsockname()[1]}")
-        _serve(studio, host, taken, ready, token)
+        door = address_of(hosts, taken.getsockname()[1], token)
+        places = [f"http://{_shown(name)}:{taken.getsockname()[1]}" for name in hosts]
+        note_address(lock, places[0])
+        _serve(studio, door, taken, lambda: ready([f"{place}/?token={token}" for place in places]))
 
 
 def _shown(host: str) -> str:
     return f"[{host}]" if ":" in host else host
 
 
-def _serve(studio: Studio, host: str, taken: socket.socket, ready: Callable[[str], None], token: str) -> None:
+def _serve(studio: Studio, door: ServerAddress, taken: socket.socket, ready: Callable[[], None]) -> None:
     import uvicorn
 
     from fdvv.studio.connections import BoundedProtocol
 
-    port = taken.getsockname()[1]
-    door = address_of(host, port, token)
     config = uvicorn.Config(
         create_app(studio, door),
         http=BoundedProtocol,
@@ -224,7 +248,7 @@ def _serve(studio: Studio, host: str, taken: socket.socket, ready: Callable[[str
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             await super().startup(sockets)
-            ready(f"http://{_shown(host)}:{port}/?token={door.token}")
+            ready()
 
     # uvicorn ends in order and then raises Ctrl-C once more; here that is how a studio ends
     with suppress(KeyboardInterrupt):

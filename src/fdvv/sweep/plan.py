@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import itertools
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +17,7 @@ from msgspec import Meta, Struct
 from fdvv.button.fit import one_line
 from fdvv.button.open import open_button
 from fdvv.errors import InputError, ModelError
+from fdvv.io.documents import read_toml
 from fdvv.io.files import read_limited
 from fdvv.model.file import builtin_names
 from fdvv.model.model import FDVVModel
@@ -109,11 +109,7 @@ class SweepPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
 def read_sweep_plan(path: Path) -> SweepPlan:
     """Read a plan. Raises InputError that names the place and what is allowed there."""
-    text = read_limited(path, LARGEST_bytes, REMEDY)
-    try:
-        data = tomllib.loads(text.decode())
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(path, "TOML", str(error), REMEDY) from error
+    data = read_toml(read_limited(path, LARGEST_bytes, REMEDY), path, REMEDY)
     if data.get("format") != FORMAT or data.get("version") != 1:
         reason = 'not a plan of a sweep (it begins with format = "fdvv-sweep" and version = 1)'
         raise InputError(path, "format", reason, REMEDY)

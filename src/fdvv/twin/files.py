@@ -6,7 +6,6 @@ import dataclasses
 import difflib
 import json
 import math
-import tomllib
 from collections.abc import Callable, Mapping
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -17,6 +16,8 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
+from fdvv.io.documents import read_toml
+from fdvv.io.files import read_limited
 from fdvv.twin.button import BUILT, BuiltCam, ButtonPhysics
 from fdvv.twin.finger import Finger
 from fdvv.twin.quantity import About, about, check_value
@@ -120,16 +121,12 @@ def _load(path: Path, kind: type[Record], readers: Mapping[str, Reader] = Mappin
         raise InputError(path, "whole file", str(error), "change one of the two") from error
 
 
+LARGEST_bytes = 1_000_000
+
+
 def _parse(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise InputError(path, "whole file", f"cannot be read ({reason})", "check the path") from error
-    except UnicodeDecodeError as error:
-        raise InputError(path, f"byte {error.start}", "is not UTF-8 text", "save it as UTF-8") from error
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(path, "TOML", str(error), "correct it; see the shipped default.toml") from error
+    remedy = "correct it; see the shipped default.toml"
+    return read_toml(read_limited(path, LARGEST_bytes, remedy), path, remedy)
 
 
 def _section(path: Path, name: str, field: dataclasses.Field[Any], values: object) -> object:

@@ -19,6 +19,7 @@ from fdvv.formats.force.split import hand_over_turn, orient, split_run
 from fdvv.formats.force.tester_json import is_tester_json, read_tester_json
 from fdvv.formats.force.text import LEAST_SAMPLES, decode, refusal
 from fdvv.formats.force.types import Cycle, ForceFile, Notes, RawCycle, Reading, Track, pair_up
+from fdvv.io.files import open_plain
 from fdvv.model.curve import MeasuredCurve, Stroke
 
 _ENDING = re.compile(r"(?P<mark>[._])(?P<stroke>downstroke|upstroke|press|release)\Z", re.IGNORECASE)
@@ -158,7 +159,8 @@ def _content(path: Path) -> bytes:
         size = path.stat().st_size
         if size > LARGEST_FILE:
             raise refusal(path, "whole file", f"it has {size / 2**20:.0f} MiB; at most 64 are read")
-        return path.read_bytes()
+        with open_plain(path) as stream:
+            return stream.read()
     except OSError as error:
         raise InputError(path, "whole file", f"cannot be read ({error.strerror})", "check the path") from None
     except ValueError as error:
