@@ -12,7 +12,7 @@ LIBRARY := $(if $(filter Darwin,$(shell uname -s)),libfdvv.dylib,libfdvv.so)
 # matrices here are small: threads of BLAS would only wait for each other
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help demo quick test test-slow test-browser check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools newcomer clean
+.PHONY: help demo quick test test-slow test-browser check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools lowest newcomer clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -102,6 +102,9 @@ build/tools/.ready:
 zig-tools: ## Install the compiler that pip has, for builds on machines without one and for other systems
 	test -x build/zig/bin/python || $(PYTHON) -m venv build/zig
 	build/zig/bin/python -m pip install --quiet --disable-pip-version-check ziglang
+
+lowest: setup ## Test with the lowest versions of what fdvv depends on
+	bash tools/lowest_versions.sh "$(PYTHON)"
 
 newcomer: ## Type what the README says, in an empty folder and a clean environment
 	PYTHON="$(PYTHON)" bash tools/newcomer.sh
