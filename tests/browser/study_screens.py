@@ -118,6 +118,27 @@ def wait_for_part(page: Page) -> None:
     )
 
 
+ASK = """async ([name, question]) => (await fetch('./api/studies.' + name, {method: 'POST',
+headers: {'content-type': 'application/json'}, body: JSON.stringify(question)})).json()"""
+
+
+def ask(operator: Page, name: str, **question: str) -> dict[str, Any]:
+    """Ask as the operator's page."""
+    return dict(operator.evaluate(ASK, [name, {"study": NAME, **question}]))
+
+
+def open_sessions(operator: Page) -> None:
+    """Open the sessions as the key holder does, unless they are open."""
+    if not ask(operator, "detail")["open"]:
+        assert ask(operator, "open", passphrase=PASSPHRASE)["open"]
+
+
+def invitation(operator: Page) -> str:
+    """Return a fresh seat."""
+    open_sessions(operator)
+    return str(ask(operator, "seat")["seat"])
+
+
 @dataclass
 class TrialAnswer:
     """What a sitter answered in a trial. places : labels there were."""
@@ -142,12 +163,7 @@ class Sitter:
 
     def sit(self, operator: Page, language: str = "") -> None:
         """Open the link of a fresh seat, begin, and note what stands on the card."""
-        found = operator.evaluate(
-            """async (study) => (await fetch('./api/studies.seat', {method: 'POST',
-            headers: {'content-type': 'application/json'}, body: JSON.stringify({study})})).json()""",
-            NAME,
-        )
-        self.page.goto(f"{operator.url.partition('#')[0]}#/study/{NAME}?seat={found['seat']}")
+        self.page.goto(f"{operator.url.partition('#')[0]}#/study/{NAME}?seat={invitation(operator)}")
         self.page.wait_for_selector("#study-title")
         if language:
             self.page.select_option("select", language)

@@ -34,6 +34,9 @@ def study(page: Page, studio: RunningStudio) -> Study:
     wait_for_part(page)
     to(page, f"studies/{NAME}")
     page.wait_for_selector("[aria-label=People]")
+    page.fill("#sts-run", PASSPHRASE)
+    page.get_by_role("button", name="Open the sessions").click()
+    page.wait_for_selector("[aria-label=Invitation]")
     return found
 
 

@@ -18,7 +18,9 @@ from tests.browser.study_screens import (
     InputMethod,
     Sitter,
     frozen_study,
+    invitation,
     names_in,
+    open_sessions,
     plan_text,
     recorded_answers,
     wait_for_part,
@@ -124,11 +126,7 @@ def test_a_session_is_done_by_keyboard_alone(study: Study, page: Page, context: 
     screen = context.new_page()
     sitter = Sitter(screen)
     keys = screen.keyboard
-    seat = page.evaluate(
-        """async () => (await (await fetch('./api/studies.seat', {method: 'POST',
-        headers: {'content-type': 'application/json'}, body: '{"study": "mine"}'})).json()).seat"""
-    )
-    screen.goto(f"{page.url.partition('#')[0]}#/study/{NAME}?seat={seat}")
+    screen.goto(f"{page.url.partition('#')[0]}#/study/{NAME}?seat={invitation(page)}")
 
     def tab_to(selector: str) -> None:
         screen.wait_for_selector(selector)
@@ -184,6 +182,8 @@ def test_a_killed_server_costs_no_answer_and_the_screen_goes_on_by_itself(
         opened = context.new_page()
         opened.goto(again.address)
         wait_for_part(opened)
+        sitter.page.wait_for_selector("text=The study pauses")
+        open_sessions(opened)
         expect(sitter.page.locator(".study-veil").first).to_be_hidden()
         sitter.wait_for(2, 3)
         expect(sitter.page.locator(".study-rating[aria-label$=' A'] input[value='6']")).to_be_checked()

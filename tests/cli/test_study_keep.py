@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fdvv.study.admin.study import Study
-from tests.support.studies import CHEAP, PASSPHRASE, answered, chosen, in_haste, plan_file
+from tests.support.studies import CHEAP, PASSPHRASE, answered, attended, chosen, in_haste, plan_file
 
 from .conftest import Run
 
@@ -31,7 +31,7 @@ def started_study(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def study(started_study: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Study:
     """Return that study in s, with the passphrase in words.txt."""
     monkeypatch.setattr("os.fsync", lambda _file: None)
-    study = Study.open(shutil.copytree(started_study, tmp_path / "s"))
+    study = attended(shutil.copytree(started_study, tmp_path / "s"))
     (tmp_path / "words.txt").write_text(PASSPHRASE + "\n")
     (tmp_path / "wrong.txt").write_text("other words of no sense")
     return study
@@ -76,6 +76,7 @@ def test_a_whole_study_verifies(fdvv: Run, study: Study) -> None:
         "whole; people: 1",
         f"fingerprint: {study.fingerprint}",
         f"the record ends in: {study.record_end}",
+        "blind: no code opens it without the key holder",
     ]
     assert fdvv("study", "verify", "s", "--json").json == {
         "folder": "s",
@@ -83,6 +84,7 @@ def test_a_whole_study_verifies(fdvv: Run, study: Study) -> None:
         "problems": [],
         "marks": False,
         "simulated": False,
+        "code_alone": [],
     }
 
 

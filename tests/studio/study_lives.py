@@ -82,6 +82,8 @@ class Taker:
             if self.call("plan", study=study)["text"] != self._text:
                 self.call("write", study=study, text=self._text, keep=True)
             self._tell(["frozen", self.call("freeze", study=study, passphrase=PASSPHRASE)["fingerprint"]])
+        elif not self.call("detail", study=study)["open"]:
+            self.call("open", study=study, passphrase=PASSPHRASE)
 
     def wait_for_nobody(self, study: str) -> None:
         """Wait until the studio has noticed that every page is gone."""

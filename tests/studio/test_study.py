@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import secrets
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from functools import partialmethod
@@ -12,6 +14,7 @@ from typing import Any
 import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 
+from fdvv.errors import InputError
 from fdvv.studio.api.study import StudyResume, StudyScreen
 from fdvv.studio.studies import Studies
 from fdvv.studio.studio import Studio
@@ -85,8 +88,10 @@ def _in_haste(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def study(own_studio: Studio) -> Study:
-    """A frozen study of four trials."""
-    return frozen_study(own_studio.project, plan_text(2, 2, reference=True, switch_s=0.0))
+    """A frozen study of four trials; its sessions are open in the studio."""
+    study = frozen_study(own_studio.project, plan_text(2, 2, reference=True, switch_s=0.0))
+    own_studio.part(Studies).open_sessions(NAME, PASSPHRASE, None)
+    return study
 
 
 @pytest.fixture
@@ -244,13 +249,51 @@ def test_a_pause_outlives_the_studio_and_is_on_record(
     own_studio.close()  # and what it knew with it
     with client.websocket_connect(LIVE) as socket:
         screen = Screen(socket)
-        screen.resume(card)
+        screen.say("resume", study=NAME, person=card["person"], code=card["code"])
+        assert screen.hear("paused")["on"]
+        ask("open", passphrase=PASSPHRASE)
+        screen.step = screen.hear("step")
         assert {"type": "paused", "on": True} in screen.heard
         screen.show()
         assert "pauses" in screen.answer()["error"]
     assert ask("detail")["paused"]
-    assert ask("detail")["history"][-1].endswith("paused")
+    assert [line.split()[-1] for line in ask("detail")["history"][-2:]] == ["paused", "opened"]
     assert study.verify() == ()
+
+
+def test_without_the_key_holder_a_restarted_studio_seats_nobody_and_no_code_opens_the_blind(
+    study: Study, ask: Callable[..., Any], client: TestClient, own_studio: Studio
+) -> None:
+    with client.websocket_connect(LIVE) as socket:
+        card = Screen(socket).sit(ask("seat")["seat"])
+    own_studio.close()
+    assert not ask("detail")["open"]
+    refused = client.post("/api/studies.seat", json={"study": NAME}).json()
+    assert "sessions are not open" in refused["error"]
+    with pytest.raises(InputError, match="sessions are not open"):
+        Study.open(study.folder).schedule(card["person"], card["code"])
+    wrong = client.post("/api/studies.open", json={"study": NAME, "passphrase": "guess"}).json()
+    assert "passphrase" in wrong["error"]
+    keeper = (study.folder / "keeper.json").rename(study.folder.parent / "moved.json")
+    assert (
+        "keeper.json" in client.post("/api/studies.open", json={"study": NAME, "passphrase": PASSPHRASE}).text
+    )
+    assert ask("open", passphrase=PASSPHRASE, keeper=keeper.read_text())["open"]
+    assert ask("seat")["seat"]
+    assert study.history()[-1].keys() == {"opened"}
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems cannot hide it")
+def test_a_studio_that_holds_a_run_key_hides_its_memory(own_studio: Studio) -> None:
+    study = frozen_study(own_studio.project, plan_text(2, 2, reference=True, switch_s=0.0))
+    program = (
+        "import sys, ctypes; from pathlib import Path; from fdvv.studio.studio import Studio\n"
+        "from fdvv.studio.studies import Studies\n"
+        "Studio(Path(sys.argv[1])).part(Studies).open_sessions(sys.argv[2], sys.argv[3], None)\n"
+        "print(ctypes.CDLL(None).prctl(3, 0, 0, 0, 0))"
+    )
+    command = [sys.executable, "-c", program, str(own_studio.project), study.folder.name, PASSPHRASE]
+    assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == "0\n"
 
 
 def test_a_button_that_breaks_is_set_up_anew_and_the_trial_goes_on(

@@ -10,7 +10,16 @@ import pytest
 
 from fdvv.errors import InputError
 from fdvv.study.admin.study import Study
-from tests.support.studies import CHEAP, PASSPHRASE, all_files, answered, chosen, in_haste, small_study
+from tests.support.studies import (
+    CHEAP,
+    PASSPHRASE,
+    all_files,
+    answered,
+    attended,
+    chosen,
+    in_haste,
+    small_study,
+)
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 
@@ -31,7 +40,7 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def study(done: Path, tmp_path: Path) -> Study:
     shutil.copytree(done, tmp_path / "study")
-    return Study.open(tmp_path / "study")
+    return attended(tmp_path / "study")
 
 
 def test_a_study_that_nobody_changed_is_whole(study: Study) -> None:

@@ -16,6 +16,7 @@ from fdvv.errors import DeviceError, InputError
 from fdvv.study.admin.operator_view import operator_view
 from fdvv.study.admin.study import Study
 from fdvv.study.files.people import Schedule, open_schedule
+from fdvv.study.files.run_key import RunKey
 from fdvv.study.files.seal import KeyHolder, unlock_with_code
 from fdvv.study.plan.trial import StudyTrial
 from fdvv.study.session.participant import Participant
@@ -66,8 +67,7 @@ class Running:
         stage = StillStage(lambda: next(uses) == 6)
         one, code = enrolled(self.study, stage, clock=Clock())
         self.codes[one.person] = code
-        path = self.study.person_folder(one.person) / "schedule.json"
-        self.schedules[one.person] = open_schedule(path, code)
+        self.schedules[one.person] = self.study.schedule(one.person, code)
         self.sessions.append(one)
         self.said[one.person] = []
         while one.step().number < 4:
@@ -197,18 +197,25 @@ def test_an_error_tells_the_same_whatever_was_rendered(running: Running) -> None
     assert "went away" in running.said["P01"][0]
 
 
-def test_nothing_that_the_operator_has_opens_a_schedule(running: Running) -> None:
+def test_nothing_that_the_operator_has_and_no_code_opens_a_schedule(running: Running) -> None:
     study = running.study
     texts = {
         text for data in everything(study).values() for line in data.splitlines() for text in words_in(line)
     }
     # the operator took part too: their own code, key and schedule are theirs to know
     mine = running.schedules["P01"]
-    words = [running.codes["P01"], mine.key[:12], study.fingerprint[:14], *(text[:12] for text in texts)]
-    locked = json.loads((study.person_folder("P02") / "schedule.json").read_text())["locked"]
+    guessed = [base64.b64decode(study.seal.text), bytes.fromhex(mine.key)]
+    words = [*running.codes.values(), mine.key[:12], study.fingerprint[:14], *(text[:12] for text in texts)]
+    path = study.person_folder("P02") / "schedule.json"
+    locked = json.loads(path.read_text())["locked"]
     for word in dict.fromkeys(words):
-        with pytest.raises(InputError):
-            unlock_with_code(locked, word)
+        for key in (None, RunKey.drawn(), *(RunKey(data, study.seal.text) for data in guessed)):
+            with pytest.raises(InputError):
+                unlock_with_code(locked, word, run_key=key)
+            with pytest.raises(InputError):
+                open_schedule(path, word, key)
+    with pytest.raises(InputError, match="sessions are not open"):
+        Study.open(study.folder).schedule("P02", running.codes["P02"])
     keeper_text = (study.folder / "keeper.json").read_text()
     for word in [study.fingerprint, mine.key, study.seal.text, *running.codes.values()]:
         with pytest.raises(InputError, match="does not open it"):

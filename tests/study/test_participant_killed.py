@@ -20,6 +20,7 @@ from fdvv.study.plan.plan import Stimulus
 from fdvv.study.plan.session import ENDS, Step
 from fdvv.study.plan.trial import TrialAnswer
 from fdvv.study.session.participant import Participant
+from tests.support.studies import attended
 from tests.support.study_people import (
     CHEAP,
     CONSENT,
@@ -60,7 +61,7 @@ def hatch() -> None:
         output, into = os.pipe()
         child = os.fork()
         if child == 0:
-            live(Study.open(Path(folder)), person, code, into)
+            live(attended(Path(folder), PASSPHRASE), person, code, into)
         os.close(into)
         with os.fdopen(output) as stream:
             said = "".join(stream.readline() for _ in range(int(after)))

@@ -20,7 +20,8 @@ from fdvv.study.files.seal import (
 )
 from tests.support.studies import CHEAP, PASSPHRASE
 
-SEAL, KEEPER = new_key_holder(PASSPHRASE, CHEAP)
+HOLDER, KEEPER = new_key_holder(PASSPHRASE, CHEAP)
+SEAL = HOLDER.seal
 
 
 @settings(max_examples=20)
@@ -56,8 +57,8 @@ def test_a_wrong_passphrase_is_refused_in_one_line(wrong: str) -> None:
 
 
 def test_a_passphrase_is_the_same_however_its_accents_are_typed() -> None:
-    seal, text = new_key_holder("vier Wörter ohne Sinn", CHEAP)
-    assert KeyHolder.open(text, "vier Wo\u0308rter ohne Sinn").unlock(seal.lock(b"x")) == b"x"
+    made, text = new_key_holder("vier Wörter ohne Sinn", CHEAP)
+    assert KeyHolder.open(text, "vier Wo\u0308rter ohne Sinn").unlock(made.seal.lock(b"x")) == b"x"
 
 
 def test_a_wrong_code_is_refused_in_one_line() -> None:

@@ -14,6 +14,7 @@ from fdvv.errors import InputError, ModelError
 from fdvv.study.admin.study import Study
 from fdvv.study.analysis.analyse import analyse
 from fdvv.study.files import people as _study_people
+from fdvv.study.files.run_key import RunKey
 from fdvv.study.files.seal import lock_with_code
 from fdvv.study.plan.claim import claim_p, claim_scores
 from fdvv.study.plan.plan import Claim
@@ -28,8 +29,8 @@ pytestmark = pytest.mark.usefixtures("hasty_disk")
 def cheap_codes(monkeypatch: pytest.MonkeyPatch) -> None:
     """Stretch codes cheaply."""
 
-    def lock(data: bytes, code: str, room_bytes: int, _cost: object = None) -> str:
-        return lock_with_code(data, code, room_bytes, CHEAP)
+    def lock(data: bytes, code: str, room_bytes: int, _cost: object, run_key: RunKey | None) -> str:
+        return lock_with_code(data, code, room_bytes, CHEAP, run_key)
 
     monkeypatch.setattr(_study_people, "lock_with_code", lock)
 

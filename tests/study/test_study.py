@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,9 @@ from fdvv.io.files import write_atomic
 from fdvv.model.file import load_builtin, model_to_json, save_model
 from fdvv.study.admin.review import review_study
 from fdvv.study.admin.study import Study
+from fdvv.study.files.layout import Frozen
 from fdvv.study.files.people import Schedule, lock_schedule, room_bytes
+from fdvv.study.files.run_key import RunKey
 from fdvv.study.files.seal import KeyHolder, new_key_holder
 from fdvv.study.stimulus.renderer import stimulus_model
 from tests.support.studies import (
@@ -277,8 +280,8 @@ def test_the_room_of_a_schedule_does_not_depend_on_what_was_drawn(kind: str, tmp
     drawn = [draw_schedule(plan, 0, np.random.default_rng(seed)) for seed in range(40)]
     schedules = [Schedule("0" * 64, "P01", "0" * 64, trials) for trials in drawn]
     assert len({room_bytes(schedule) for schedule in schedules}) == 1
-    seal, _ = new_key_holder(PASSPHRASE, CHEAP)
-    assert len({len(lock_schedule(one, seal, "0" * 12, CHEAP)) for one in schedules[:6]}) == 1
+    holder, _ = new_key_holder(PASSPHRASE, CHEAP)
+    assert len({len(lock_schedule(one, holder.seal, "0" * 12, CHEAP)) for one in schedules[:6]}) == 1
 
 
 def test_a_keepers_file_may_lie_elsewhere(tmp_path: Path) -> None:
@@ -322,3 +325,69 @@ def test_a_built_in_button_that_another_version_ships_is_noticed(
     assert "built-in button mx-clear: is not the one" in study.verify()[0]
     with pytest.raises(InputError, match="mx-clear"):
         study.enrol(cost=CHEAP)
+
+
+def test_a_study_that_was_frozen_before_run_keys_runs_as_before_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("fdvv.study.admin.study.Frozen", partial(Frozen, version=1))
+    study = Study.open(small_study(tmp_path).folder)
+    person, code = study.enrol(cost=CHEAP)
+    assert study.schedule(person, code).person == person
+    assert study.code_alone == (person,)
+    study.open_sessions(PASSPHRASE)
+    later, code = study.enrol(cost=CHEAP)
+    assert study.code_alone == (person,)
+    with pytest.raises(InputError, match="sessions are not open"):
+        Study.open(study.folder).schedule(later, code)
+    assert study.verify(passphrase=PASSPHRASE) == ()
+
+
+def put_schedule(study: Study, run_key: RunKey | None) -> tuple[str, str]:
+    """Enrol somebody as a forger does who knows the program and all files: with another run key, or none."""
+    right, study.run_key = study.run_key, run_key
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Study, "_run_key", lambda _study, _simulated: run_key)
+        found = study.enrol(cost=CHEAP)
+    study.run_key = right
+    return found
+
+
+def test_a_schedule_that_somebody_else_drew_is_noticed_and_not_run(tmp_path: Path) -> None:
+    study = small_study(tmp_path)
+    person, code = put_schedule(study, RunKey(b"a guess", study.seal.text))
+    assert study.verify() == ()
+    problem = f"people/{person}/schedule.json: was made without the key of this study"
+    assert study.verify(passphrase=PASSPHRASE) == (problem,)
+    with pytest.raises(InputError, match="was made without the key"):
+        study.schedule(person, code)
+
+
+def test_a_schedule_that_a_code_alone_opens_is_noticed_and_not_run(tmp_path: Path) -> None:
+    study = small_study(tmp_path)
+    person, code = put_schedule(study, None)
+    problem = f"people/{person}/schedule.json: is opened by a code alone"
+    assert study.verify()[0].startswith(problem)
+    with pytest.raises(InputError, match="by a code alone"):
+        study.schedule(person, code)
+
+
+def test_without_the_run_key_nobody_begins_and_opening_is_on_record(tmp_path: Path) -> None:
+    study = Study.open(small_study(tmp_path).folder)
+    assert not study.sessions_open
+    with pytest.raises(InputError, match="sessions are not open"):
+        study.enrol(cost=CHEAP)
+    assert not (study.folder / "people").exists()
+    study.open_sessions(PASSPHRASE)
+    assert study.history()[-1].keys() == {"opened"}
+    person, code = study.enrol(cost=CHEAP)
+    assert study.schedule(person, code).person == person
+    assert PASSPHRASE not in repr(study.run_key)
+
+
+def test_the_run_key_of_another_study_opens_nothing(tmp_path: Path) -> None:
+    one, other = small_study(tmp_path / "one"), small_study(tmp_path / "other")
+    one.run_key = other.run_key
+    assert not one.sessions_open
+    with pytest.raises(InputError, match="sessions are not open"):
+        one.enrol(cost=CHEAP)

@@ -87,6 +87,13 @@ def small_study(folder: Path, kind: str = "realism", rounds: int = 2, more: str 
     return study
 
 
+def attended(folder: Path, passphrase: str = PASSPHRASE) -> Study:
+    """Open a study and its sessions, as the key holder does; that is not recorded."""
+    study = Study.open(folder)
+    study.run_key = study.key_holder(passphrase).run_key
+    return study
+
+
 def chosen(name: str, ratings: dict[str, float] | None = None) -> Judge:
     """Return who always chooses the label that hides a stimulus, and rates by stimulus."""
     points = ratings or {"FD": 3.0, "FDVV": 5.0}

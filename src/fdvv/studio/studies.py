@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import secrets
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,12 +15,14 @@ from msgspec import Struct
 
 from fdvv.errors import InputError
 from fdvv.io.files import write_atomic
+from fdvv.io.memory import hide_memory
 from fdvv.studio.contract import Message, Watchers
 from fdvv.studio.devices import require_listed
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.review import device_problems
 from fdvv.study.admin.study import Study
 from fdvv.study.files.people import EVERYBODY
+from fdvv.study.files.run_key import CLOSED, OPEN_FIRST, RunKey
 
 if TYPE_CHECKING:
     from fdvv.studio.api.study import StudyScreen
@@ -64,6 +66,8 @@ class Studies:
         self._invitations: dict[str, Invitation] = {}
         self._screens: dict[tuple[str, str], StudyScreen] = {}
         self._person_locks: dict[tuple[str, str], Lock] = {}
+        self._run_keys: dict[str, RunKey] = {}
+        self._waiting_for_key: dict[str, list[Callable[[], None]]] = {}
         # held briefly only: the thread of a screen may take it
         self._lock = RLock()
 
@@ -80,7 +84,44 @@ class Studies:
         return self.folder / name
 
     def study(self, name: str) -> Study:
-        return Study.open(self.path(name))
+        """Open a study, with its run key while its sessions are open. InputError."""
+        study = Study.open(self.path(name))
+        study.run_key = self._run_keys.get(name)
+        return study
+
+    def freeze(self, name: str, passphrase: str) -> None:
+        """Freeze a study; its sessions are open then. InputError, OSError."""
+        study = self.study(name)
+        study.freeze(passphrase)
+        self._keep_key(name, study)
+
+    def open_sessions(self, name: str, passphrase: str, keeper: bytes | None) -> None:
+        """Let sessions run until this studio ends. keeper : keeper.json, if it was moved.
+
+        InputError, OSError.
+        """
+        study = self.study(name)
+        study.open_sessions(passphrase, keeper)
+        self._keep_key(name, study)
+
+    def _keep_key(self, name: str, study: Study) -> None:
+        assert study.run_key is not None
+        hide_memory()
+        with self._lock:
+            self._run_keys[name] = study.run_key
+            waiting = self._waiting_for_key.pop(name, [])
+        self.announce(name)
+        for go_on in waiting:
+            go_on()
+
+    def when_open(self, name: str, go_on: Callable[[], None]) -> None:
+        """Call a function once the sessions of a study are open."""
+        with self._lock:
+            there = name in self._run_keys
+            if not there:
+                self._waiting_for_key.setdefault(name, []).append(go_on)
+        if there:
+            go_on()
 
     def device(self, name: str) -> str:
         """Return what renders a study: the twin, or a device by its `fdvv.device` name."""
@@ -101,11 +142,14 @@ class Studies:
 
     def invite(self, name: str) -> Invitation:
         """Make an invitation for one person. InputError where nobody can begin."""
-        state = state_of(self.study(name))
+        study = self.study(name)
+        state = state_of(study)
         if state == "draft":
             raise InputError("study", name, "is not frozen", "freeze it before the first person")
         if state == "unsealed":
             raise InputError("study", name, "was unsealed, nobody can begin it any more", "declare a new one")
+        if study.needs_run_key and not study.sessions_open:
+            raise InputError("study", "sessions", CLOSED, OPEN_FIRST)
         invitation = Invitation(name, secrets.token_urlsafe(9))
         with self._lock:
             self._invitations[invitation.word] = invitation

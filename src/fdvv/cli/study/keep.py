@@ -34,7 +34,8 @@ def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
     """Freeze the study in FOLDER before the first person: from now on every change is noticed.
 
     Asks for a passphrase. Whoever has it and keeper.json is the keeper, who alone can tell what the labels
-    hide; nobody can restore it. The fingerprint goes into the preregistration.
+    hide, and who opens the sessions whenever fdvv studio was started; nobody can restore it. The fingerprint
+    goes into the preregistration.
     """
     study = Study.open(folder)
     fingerprint = study.freeze(_passphrase(passphrase_file, new=True))
@@ -67,7 +68,8 @@ def verify(folder: Path, marks: bool, passphrase_file: Path | None, as_json: boo
         whole = {"whole": not problems, "problems": list(problems), "marks": bool(passphrase)}
         # of people whose record was tampered with nothing is sure
         simulated = study.simulated if not problems else None
-        ui.print_json({"folder": str(folder), **whole, "simulated": simulated})
+        alone = list(study.code_alone) if not problems else None
+        ui.print_json({"folder": str(folder), **whole, "simulated": simulated, "code_alone": alone})
     else:
         for problem in problems:
             click.echo(problem)
@@ -75,6 +77,7 @@ def verify(folder: Path, marks: bool, passphrase_file: Path | None, as_json: boo
             click.echo(f"whole; people: {len(study.people())}{_simulated(study.simulated)}")
             click.echo(f"fingerprint: {study.fingerprint}")
             click.echo(f"the record ends in: {study.record_end}")
+            ui.print_wrapped(f"blind: {_scheme(study)}")
     if problems:
         raise ui.failed(f"{folder}: {ui.counted(len(problems), 'problem')}")
 
@@ -167,6 +170,13 @@ def _passphrase(file: Path | None, new: bool = False) -> str:
         return text.decode(errors="replace").partition("\n")[0].rstrip("\r")
     answer: str = click.prompt("Passphrase of the keeper", hide_input=True, confirmation_prompt=new, err=True)
     return answer
+
+
+def _scheme(study: Study) -> str:
+    alone = ", ".join(study.code_alone)
+    if alone:
+        return f"the code alone of {alone} opens it, for an earlier fdvv enrolled them; keep their cards away"
+    return "no code opens it without the key holder"
 
 
 def _simulated(simulated: bool) -> str:

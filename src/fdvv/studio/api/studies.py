@@ -57,6 +57,16 @@ class StudiesFreeze(StudiesAsk):
     passphrase: Secret
 
 
+class StudiesOpen(StudiesAsk):
+    """Let sessions run until the studio ends, for the record.
+
+    passphrase : the key holder's, stored nowhere. keeper : keeper.json's text if it was moved, else empty.
+    """
+
+    passphrase: Secret
+    keeper: Annotated[str, Meta(max_length=10_000)] = ""
+
+
 class StudiesPerson(Message):
     """A person's progress. here : at a screen now. answered, trials : that count. note : may be empty."""
 
@@ -88,6 +98,8 @@ class StudiesDetail(Message):
 
     history : what was done with it, one line each. waiting : open invitations.
     device : what renders it, one of those that `studies.devices` tells.
+    open : people can begin and come back; else the key holder opens the sessions first.
+    code_alone : people whose code alone opens the blind, for an earlier fdvv enrolled them.
     """
 
     row: StudiesRow
@@ -98,6 +110,8 @@ class StudiesDetail(Message):
     paused: bool
     history: list[str]
     device: str
+    open: bool
+    code_alone: list[str]
 
 
 class StudiesUse(StudiesAsk):
@@ -186,6 +200,8 @@ def study_detail(studies: Studies, name: str) -> StudiesDetail:
         EVERYBODY in paused,
         [history_line(record) for record in study.history()],
         studies.device(name),
+        frozen is not None and (study.sessions_open or not study.needs_run_key),
+        list(study.code_alone) if frozen else [],
     )
 
 
@@ -241,8 +257,13 @@ def _row(studies: Studies, name: str) -> StudiesRow:
 
 @call("studies.freeze")
 def freeze(studies: Studies, ask: StudiesFreeze) -> StudiesDetail:
-    studies.study(ask.study).freeze(ask.passphrase)
-    studies.announce(ask.study)
+    studies.freeze(ask.study, ask.passphrase)
+    return study_detail(studies, ask.study)
+
+
+@call("studies.open")
+def open_sessions(studies: Studies, ask: StudiesOpen) -> StudiesDetail:
+    studies.open_sessions(ask.study, ask.passphrase, ask.keeper.encode() or None)
     return study_detail(studies, ask.study)
 
 

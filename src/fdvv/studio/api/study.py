@@ -7,7 +7,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from fdvv.errors import DeviceError, InputError, ModelError
+from fdvv.errors import DeviceError, FdvvError, InputError, ModelError
 from fdvv.studio.api.press import Count, Number
 from fdvv.studio.api.study_steps import (
     StudyBroke,
@@ -18,7 +18,7 @@ from fdvv.studio.api.study_steps import (
     step_message,
     unnamed_sound,
 )
-from fdvv.studio.contract import ChannelKind, Here, Message, Tell
+from fdvv.studio.contract import ChannelKind, Here, Message, Tell, error_line
 from fdvv.studio.studies import Invitation, Studies
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.study import Study
@@ -228,6 +228,10 @@ class StudyScreen:
                 self._tell(StudyAbout(ask.study, plan.title, list(plan.languages), free))
             case JoinSession():
                 self._join(ask)
+            case StudyResume() if self._studies.study(ask.study).waits_for_key(ask.person):
+                # as when the operator pauses: after a restart of the studio the page goes on by itself
+                self._tell(StudyPaused(True))
+                self._studies.when_open(ask.study, lambda: self._resume_late(ask))
             case StudyResume():
                 self._leave_session()
                 self._resume(self._studies.study(ask.study), ask.study, ask.person, ask.code)
@@ -253,6 +257,12 @@ class StudyScreen:
                 self._take(ask.study, participant, stage)
             self._invitation = invitation
         self._begin(invitation.code)
+
+    def _resume_late(self, ask: StudyResume) -> None:
+        try:
+            self.receive(ask)
+        except FdvvError as error:
+            self._tell(StudyStopped(error_line(error)))
 
     def _go_on(self, ask: Message, participant: Participant, stage: ScreenRenderer) -> None:
         match ask:

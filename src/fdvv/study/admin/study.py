@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import secrets
 import shutil
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -30,7 +28,10 @@ from fdvv.study.files.people import (
     pause_person,
     people_of,
     person_of,
+    read_locked,
 )
+from fdvv.study.files.person_folder import keep_person, wipe
+from fdvv.study.files.run_key import CLOSED, OPEN_FIRST, RunKey
 from fdvv.study.files.seal import CODE_COST, PASSPHRASE_COST, Cost, KeyHolder, new_code, new_key_holder
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.plan_file import STUDY_FILE, check_plan, read_plan_text
@@ -42,8 +43,10 @@ class Study(StudyFolder):
 
     Attributes
     ----------
-    folder : of the study.
+    folder : of the study. run_key : in memory while sessions are open, see `open_sessions`; else None.
     """
+
+    run_key: RunKey | None = None
 
     @classmethod
     def declare(cls, folder: Path, plan_file: Path) -> Study:
@@ -89,8 +92,9 @@ class Study(StudyFolder):
     def freeze(self, passphrase: str, cost: Cost = PASSPHRASE_COST) -> str:
         """Freeze the study, and return its fingerprint: from now on every change is noticed.
 
-        passphrase : the key holder's; it is not stored. Files beside the plan that it names are copied into
-        the study first: what is frozen is what is rendered. InputError on a plan with problems, a study that
+        passphrase : the key holder's; it is not stored. Sessions are open in this object from then on.
+        Files beside the plan that it names are copied into the study first: what is frozen is rendered.
+        InputError on a plan with problems, a study that
         was frozen before, a short passphrase. BuildError: no PyNaCl. OSError.
         """
         folder, plan = self.folder, self.plan
@@ -105,12 +109,15 @@ class Study(StudyFolder):
         layout.keep_files(plan, folder)
         paths = [folder / STUDY_FILE, *(layout.kept_path(folder, name) for name in layout.named_files(plan))]
         files = {path.relative_to(folder).as_posix(): digest(layout.content(path)) for path in paths}
-        seal, keeper = new_key_holder(passphrase, cost)
+        holder, keeper = new_key_holder(passphrase, cost)
         write_atomic(folder / layout.KEEPER_FILE, keeper)
         files[layout.KEEPER_FILE] = digest(keeper)
         builtins = {name: layout.builtin_digest(name) for name in layout.named_builtins(plan)}
-        frozen = Frozen(files=files, builtins=builtins, seal=seal.text, fdvv=fdvv.__version__, when=now())
-        return self._begin_log(frozen)
+        frozen = Frozen(
+            files=files, builtins=builtins, seal=holder.seal.text, fdvv=fdvv.__version__, when=now()
+        )
+        fingerprint, self.run_key = self._begin_log(frozen), holder.run_key
+        return fingerprint
 
     def _begin_log(self, frozen: Frozen) -> str:
         log_path, sha256 = self.folder / LOG_FILE, digest(frozen.text)
@@ -123,15 +130,42 @@ class Study(StudyFolder):
         sync_folder(self.folder)
         return layout.fingerprint_of(sha256)
 
+    @property
+    def sessions_open(self) -> bool:
+        """Whether this object holds the run key of the study."""
+        return self.run_key is not None and self.run_key.seal == self.seal.text
+
+    @property
+    def needs_run_key(self) -> bool:
+        """Whether people can begin only while sessions are open: in studies that were frozen since 0.1.0."""
+        return self.require_frozen().version > 1
+
+    def waits_for_key(self, person: str) -> bool:
+        """Whether a person can come back only once sessions are open. InputError."""
+        path = self.person_folder(person) / layout.SCHEDULE_FILE
+        return not self.sessions_open and path.is_file() and read_locked(path).version > 1
+
+    def open_sessions(self, passphrase: str, keeper: Path | bytes | None = None) -> None:
+        """Let sessions run with this object: keep the run key in its memory. That is recorded first.
+
+        keeper : keeper.json, or where it is, if it was moved. InputError on a wrong passphrase, OSError.
+        """
+        holder = self.key_holder(passphrase, keeper)
+        with self._log() as log:
+            log.write({"opened": {"when": now()}})
+        self.run_key = holder.run_key
+
     def enrol(
         self, language: str = "", consent: str = "", simulated: bool = False, cost: Cost = CODE_COST
     ) -> tuple[str, str]:
         """Enrol a person: draw their whole schedule and lock it. Return their name and their code.
 
         The code is shown to that person alone and not stored. consent : how it was given, if not on a page.
-        InputError where the study is not frozen, was changed or was unsealed. OSError.
+        InputError where the study is not frozen, was changed or was unsealed, where sessions are not open.
+        OSError.
         """
         self.require_whole()
+        run_key = self._run_key(simulated)
         language = language or self.plan.languages[0]
         if language not in self.plan.languages:
             known = ", ".join(self.plan.languages)
@@ -143,11 +177,18 @@ class Study(StudyFolder):
             # seeded by the operating system, anew for everybody: one schedule must not predict the next
             trials = draw_schedule(self.plan, place, np.random.default_rng())
             schedule, code = Schedule(log.about["study"], person, secrets.token_hex(32), trials), new_code()
-            text = lock_schedule(schedule, self.seal, code, cost)
-            _keep_person(self.folder / PEOPLE / person, schedule, text, consent)
+            text = lock_schedule(schedule, self.seal, code, cost, run_key)
+            keep_person(self.folder / PEOPLE / person, schedule, text, consent)
             about = {"language": language, "place": place, "simulated": simulated}
             log.write({"enrolled": {"person": person, **about, "when": now(), "schedule": digest(text)}})
         return person, code
+
+    def _run_key(self, simulated: bool) -> RunKey | None:
+        """Return what a new person's schedule is locked with beside their code; None where that is all."""
+        if not simulated and not self.sessions_open and self.needs_run_key:
+            raise InputError("study", "sessions", CLOSED, OPEN_FIRST)
+        # simulated people have nothing to be blind to, and are run without a key holder
+        return self.run_key if self.sessions_open and not simulated else None
 
     def _check_enrolment(self, log: ChainedLog, simulated: bool) -> None:
         if any("unsealed" in record for record in log.records):
@@ -158,14 +199,15 @@ class Study(StudyFolder):
             raise InputError(self.folder, "study", reason, "declare another study for them")
 
     def schedule(self, person: str, key: str | KeyHolder) -> Schedule:
-        """Open a person's schedule with their code, or the key holder's key. **Secret.**
+        """Open a schedule with its person's code in open sessions, or the key holder's key. **Secret.**
 
-        InputError on a wrong code, a person who withdrew, a study that was changed.
+        InputError on a wrong code, a person who withdrew, a study that was changed, closed sessions.
         """
         if self.person(person).state in ("withdrawn", "deleted"):
             raise InputError(person, "person", "has withdrawn", "enrol somebody else")
         self.require_whole(person)
-        return open_schedule(self.person_folder(person) / layout.SCHEDULE_FILE, key)
+        run_key = self.run_key if self.sessions_open else None
+        return open_schedule(self.person_folder(person) / layout.SCHEDULE_FILE, key, run_key)
 
     def session_log(self, schedule: Schedule) -> ChainedLog:
         """Open the plain log of a person's session, to read and append. InputError, OSError."""
@@ -211,7 +253,7 @@ class Study(StudyFolder):
                 # first on record: a process that is killed in between leaves files that verify reports
                 log.write({"withdrawn": {"when": now(), "person": person, "deleted": delete}})
             for left in (own, self.folder / layout.UNSEALED) if delete else ():
-                _wipe(left)
+                wipe(left)
 
     def unseal(
         self, passphrase: str, who: str, why: str, keeper: Path | None = None, despite: bool = False
@@ -243,34 +285,3 @@ def _put_plan(folder: Path, text: str, beside: Path, source: object) -> None:
     """Write a plan, behind all files that it names. InputError where one is not there, OSError."""
     layout.copy_files(read_plan_text(text, source), Path(beside), folder)
     write_atomic(folder / STUDY_FILE, text)
-
-
-def _keep_person(folder: Path, schedule: Schedule, text: str, consent: str) -> None:
-    """Make the folder of a person, whole or not at all: the locked schedule and two empty logs."""
-    building = folder.with_name(f".{schedule.person}.new")
-    for left in (building, folder):  # of an enrolment that was killed before it was logged
-        shutil.rmtree(left, ignore_errors=True)
-    write_atomic(building / layout.SCHEDULE_FILE, text)
-    logs: dict[str, Mapping[str, str]] = {
-        SESSION_FILE: {"log": "session", "consent": consent},
-        layout.SEALED_FILE: {"log": "sealed"},
-    }
-    for name, own in logs.items():
-        about = {"study": schedule.study, "person": schedule.person, **own}
-        ChainedLog.create(building / name, about, bytes.fromhex(schedule.key)).close()
-    building.replace(folder)
-    sync_folder(folder.parent)
-
-
-def _wipe(folder: Path) -> None:
-    """Overwrite every file below a folder, and remove them all; nothing if it is not there. OSError."""
-    if not folder.exists():
-        return
-    for path in folder.rglob("*"):
-        if path.is_file() and not path.is_symlink():
-            with path.open("r+b") as stream:
-                stream.write(bytes(path.stat().st_size))
-                stream.flush()
-                os.fsync(stream.fileno())
-    shutil.rmtree(folder)
-    sync_folder(folder.parent)

@@ -10,7 +10,7 @@ from fdvv.errors import InputError
 from fdvv.study.files import layout
 from fdvv.study.files.chained_log import ChainRead, read_chained
 from fdvv.study.files.layout import FROZEN_FILE, KEEPER_FILE, LOG_FILE, PEOPLE, SCHEDULE_FILE, Frozen
-from fdvv.study.files.people import Person, open_schedule, paused_of, people_of, person_of
+from fdvv.study.files.people import Person, open_schedule, paused_of, people_of, person_of, read_locked
 from fdvv.study.files.seal import KeyHolder, SealingKey
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
@@ -73,6 +73,16 @@ class StudyFolder:
         return people_of(self.history())
 
     @property
+    def code_alone(self) -> tuple[str, ...]:
+        """The people whose code alone opens the blind: they were enrolled before run keys existed.
+
+        Simulated ones are not among them. InputError.
+        """
+        there = [one for one in self.people() if not one.simulated and one.state != "deleted"]
+        paths = {one.name: self.folder / PEOPLE / one.name / SCHEDULE_FILE for one in there}
+        return tuple(name for name, path in paths.items() if read_locked(path).version == 1)
+
+    @property
     def simulated(self) -> bool:
         """Whether its people are simulated: a study has these, or people, and never both."""
         return any(person.simulated for person in self.people())
@@ -115,10 +125,16 @@ class StudyFolder:
         for problem in study_problems(self.folder, people=(person,) if person else ()):
             raise InputError(self.folder, "study", problem, layout.REMEDY)
 
-    def key_holder(self, passphrase: str, path: Path | None = None) -> KeyHolder:
-        """Open keeper.json. path : where it is, if it was moved. InputError on a wrong passphrase."""
-        path = path or self.folder / KEEPER_FILE
-        holder = KeyHolder.open(layout.content(path), passphrase, path)
+    def key_holder(self, passphrase: str, keeper: Path | bytes | None = None) -> KeyHolder:
+        """Open keeper.json. keeper : its content, or where it is, if it was moved.
+
+        InputError on a wrong passphrase.
+        """
+        path = keeper if isinstance(keeper, Path) else self.folder / KEEPER_FILE
+        if not isinstance(keeper, bytes) and not path.is_file():
+            raise InputError(path, KEEPER_FILE, "No such file here", "name where it was moved to")
+        text = keeper if isinstance(keeper, bytes) else layout.content(path)
+        holder = KeyHolder.open(text, passphrase, path)
         if holder.seal != self.seal:
             reason = "is the keeper's file of another study"
             raise InputError(path, "$.seal", reason, "name that of this study")
@@ -149,10 +165,13 @@ def study_problems(
         enrolled = people_of(log.records) if not log.problems else ()
     except InputError as error:
         return (*problems, f"{LOG_FILE}: {error.place} {error.reason}")
+    if len({person.simulated for person in enrolled}) > 1:
+        problems.append(f"{LOG_FILE}: has people and simulated ones")
     for person in enrolled:
         if people is None or person.name in people:
             where = f"{PEOPLE}/{person.name}"
-            problems += [where + problem for problem in _person(folder, person, sha256, holder, log)]
+            keyed = frozen.version > 1 and not person.simulated
+            problems += [where + problem for problem in _person(folder, person, sha256, holder, log, keyed)]
     return tuple(problems)
 
 
@@ -186,7 +205,7 @@ def _log(log: ChainRead, sha256: str, record: str) -> Iterator[str]:
 
 
 def _person(
-    folder: Path, person: Person, sha256: str, holder: KeyHolder | None, log: ChainRead
+    folder: Path, person: Person, sha256: str, holder: KeyHolder | None, log: ChainRead, keyed: bool
 ) -> Iterator[str]:
     own = folder / PEOPLE / person.name
     if person.state == "deleted":
@@ -198,6 +217,9 @@ def _person(
         yield f"/{SCHEDULE_FILE}: is missing or was changed"
         return
     try:
+        if keyed and read_locked(schedule).version == 1:
+            yield f"/{SCHEDULE_FILE}: is opened by a code alone, and the study was frozen with a run key"
+            return
         key = bytes.fromhex(open_schedule(schedule, holder).key) if holder else b""
     except InputError as error:
         yield f"/{SCHEDULE_FILE}: {error.reason}"

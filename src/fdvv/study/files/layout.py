@@ -22,7 +22,7 @@ Record = TypeVar("Record")
 LARGEST_bytes = 64_000_000
 SMALLER = "name a smaller file"
 REMEDY = "take the study's folder from a backup, or declare a new study"
-FROZEN = Kind("fdvv-frozen", 1, "what is frozen of a study", REMEDY)
+FROZEN = Kind("fdvv-frozen", 2, "what is frozen of a study", REMEDY, oldest=1)
 
 
 class Frozen(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -30,13 +30,14 @@ class Frozen(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     Attributes
     ----------
+    version : 1: a person's code alone opens their schedule. 2: the run key is needed too.
     files : SHA-256 of the plan, of every file that it names and of keeper.json, by path in the folder.
     builtins : SHA-256 of every built-in button that it names, for a new fdvv may ship others.
     seal : the public half of the keys. fdvv : version. when : UTC.
     """
 
     format: Literal["fdvv-frozen"] = "fdvv-frozen"
-    version: Literal[1] = 1
+    version: Literal[1, 2] = 2
     files: dict[str, str]
     builtins: dict[str, str]
     seal: str

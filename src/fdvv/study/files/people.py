@@ -14,11 +14,12 @@ from fdvv.io.documents import Kind, pretty
 from fdvv.rendering.session import now
 from fdvv.study.files.chained_log import ChainedLog
 from fdvv.study.files.layout import LOG_FILE, REMEDY, content, read_record
+from fdvv.study.files.run_key import CLOSED, OPEN_FIRST, RunKey
 from fdvv.study.files.seal import CODE_COST, Cost, KeyHolder, SealingKey, lock_with_code, unlock_with_code
 from fdvv.study.plan.trial import Rendered, StudyTrial
 
 PersonState = Literal["enrolled", "finished", "withdrawn", "deleted"]
-SCHEDULE = Kind("fdvv-schedule", 1, "a locked schedule", REMEDY)
+SCHEDULE = Kind("fdvv-schedule", 2, "a locked schedule", REMEDY, oldest=1)
 STEP_bytes = 1024
 PAUSED, CONTINUED = "paused", "continued"
 EVERYBODY = ""
@@ -68,13 +69,31 @@ class SealedTrial(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class LockedSchedule(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Content of schedule.json: the schedule locked for the key holder, and with the person's code."""
+    """Content of schedule.json: the schedule locked for the key holder, and for the person's sessions.
+
+    Attributes
+    ----------
+    version : 1: a code alone unlocks it. 2: the code and the study's run key do.
+    mark : of version 2: nobody without the run key has made this file.
+    """
 
     format: Literal["fdvv-schedule"] = "fdvv-schedule"
-    version: Literal[1] = 1
+    version: Literal[1, 2]
     person: str
     sealed: str
     locked: str
+    mark: str = ""
+
+    @property
+    def text(self) -> str:
+        fields = msgspec.to_builtins(self)
+        if self.version == 1:
+            del fields["mark"]
+        return pretty(fields) + "\n"
+
+    def made_with(self, run_key: RunKey) -> bool:
+        """Whether the run key made this file; of version 1 nobody knows."""
+        return self.version == 1 or run_key.made(self.mark, msgspec.structs.replace(self, mark="").text)
 
 
 def people_of(records: Iterable[Mapping[str, Any]]) -> tuple[Person, ...]:
@@ -108,13 +127,21 @@ def free_place(people: Iterable[Person]) -> int:
     return next(place for place in range(len(taken) + 1) if place not in taken)
 
 
-def lock_schedule(schedule: Schedule, seal: SealingKey, code: str, cost: Cost = CODE_COST) -> str:
-    """Return the text of schedule.json: the schedule locked for the key holder and with the person's code."""
+def lock_schedule(
+    schedule: Schedule, seal: SealingKey, code: str, cost: Cost = CODE_COST, run_key: RunKey | None = None
+) -> str:
+    """Return the text of schedule.json: the schedule locked for the key holder and for the person's sessions.
+
+    run_key : that their code opens it with; None, of simulated people: their code alone opens it.
+    """
     data, room = msgspec.json.encode(schedule), room_bytes(schedule)
-    locked = LockedSchedule(
-        person=schedule.person, sealed=seal.lock(data, room), locked=lock_with_code(data, code, room, cost)
+    found = LockedSchedule(
+        version=2 if run_key else 1,
+        person=schedule.person,
+        sealed=seal.lock(data, room),
+        locked=lock_with_code(data, code, room, cost, run_key),
     )
-    return pretty(msgspec.to_builtins(locked)) + "\n"
+    return (msgspec.structs.replace(found, mark=run_key.mark(found.text)) if run_key else found).text
 
 
 def room_bytes(schedule: Schedule) -> int:
@@ -136,12 +163,26 @@ def room_bytes(schedule: Schedule) -> int:
     return whole + -whole % STEP_bytes
 
 
-def open_schedule(path: Path, key: str | KeyHolder) -> Schedule:
-    """Open a schedule with its person's code, or with the key holder's key. InputError on a wrong one."""
-    found = read_record(content(path), path, SCHEDULE, LockedSchedule)
-    if isinstance(key, str):
-        return msgspec.json.decode(unlock_with_code(found.locked, key, path), type=Schedule)
-    return msgspec.json.decode(key.unlock(found.sealed, path), type=Schedule)
+def read_locked(path: Path) -> LockedSchedule:
+    """Read a locked schedule. InputError."""
+    return read_record(content(path), path, SCHEDULE, LockedSchedule)
+
+
+def open_schedule(path: Path, key: str | KeyHolder, run_key: RunKey | None = None) -> Schedule:
+    """Open a schedule with its person's code and the run key, or with the key holder's key.
+
+    InputError on a wrong code, where the run key is needed and not there, on a file made without it.
+    """
+    found = read_locked(path)
+    run_key = key.run_key if isinstance(key, KeyHolder) else run_key
+    if found.version > 1 and run_key is None:
+        raise InputError("study", "sessions", CLOSED, OPEN_FIRST)
+    if run_key and not found.made_with(run_key):
+        raise InputError(path, "mark", "was made without the key of this study", REMEDY)
+    if isinstance(key, KeyHolder):
+        return msgspec.json.decode(key.unlock(found.sealed, path), type=Schedule)
+    opened = unlock_with_code(found.locked, key, path, run_key if found.version > 1 else None)
+    return msgspec.json.decode(opened, type=Schedule)
 
 
 def person_of(records: Iterable[Mapping[str, Any]], name: str) -> Person:

@@ -1,8 +1,8 @@
-"""Encryption of what is secret in a study, for its key holder or with a person's own code.
+"""Encryption of what is secret in a study, for its key holder or for a person's sessions.
 
 A **sealing key** locks and cannot unlock (libsodium's sealed box: X25519, XSalsa20-Poly1305). The private
-half is the key holder's, locked with a passphrase (Argon2id, then a secret box). A **code** is a person's own
-key to their schedule. Everything is padded before it is locked, so that its length reveals nothing.
+half is the key holder's, locked with a passphrase (Argon2id, then a secret box). A **code** is a person's; it
+opens their schedule with the **run key**. What is locked is padded: its length reveals nothing.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from msgspec import Meta, Struct
 from fdvv.errors import BuildError, InputError
 from fdvv.io.documents import Kind, pretty
 from fdvv.study.files.layout import read_record
+from fdvv.study.files.run_key import RunKey
 
 ROOM_bytes = 8192
 """Data are padded to a multiple of it by default."""
@@ -89,11 +90,17 @@ class SealingKey:
 
 
 class KeyHolder:
-    """The private key of a study, opened with the passphrase by `open`."""
+    """The private key of a study, opened with the passphrase by `open`.
+
+    Attributes
+    ----------
+    seal, run_key : of the study; both follow from the private key.
+    """
 
     def __init__(self, private: bytes) -> None:
         key = _nacl("public").PrivateKey(private)
         self.seal = SealingKey(base64.b64encode(bytes(key.public_key)).decode())
+        self.run_key = RunKey.of(private, self.seal.text)
         self._box = _nacl("public").SealedBox(key)
 
     @classmethod
@@ -120,16 +127,16 @@ class KeyHolder:
         return _bare(found)
 
 
-def new_key_holder(passphrase: str, cost: Cost = PASSPHRASE_COST) -> tuple[SealingKey, str]:
-    """Make a pair of keys: the seal, and the text of keeper.json. InputError on a short passphrase."""
+def new_key_holder(passphrase: str, cost: Cost = PASSPHRASE_COST) -> tuple[KeyHolder, str]:
+    """Make a pair of keys, and the text of keeper.json. InputError on a short passphrase."""
     if len(passphrase) < SHORTEST_PASSPHRASE:
         reason = f"has {len(passphrase)} characters, {SHORTEST_PASSPHRASE} are needed"
         raise InputError("passphrase", "whole", reason, "take four words that do not belong together")
     private = bytes(_nacl("public").PrivateKey.generate())
-    seal = KeyHolder(private).seal
+    holder = KeyHolder(private)
     locked = _locked(private, _words(passphrase), cost)
-    record = {"format": KEEPER.format, "version": KEEPER.version, "seal": seal.text, "locked": locked}
-    return seal, pretty(record) + "\n"
+    record = {"format": KEEPER.format, "version": KEEPER.version, "seal": holder.seal.text, "locked": locked}
+    return holder, pretty(record) + "\n"
 
 
 def new_code() -> str:
@@ -147,32 +154,44 @@ def plain_code(code: str) -> str:
     return plain
 
 
-def lock_with_code(data: bytes, code: str, room_bytes: int = ROOM_bytes, cost: Cost = CODE_COST) -> str:
-    """Lock data with a person's code, padded to a multiple of the room. InputError, BuildError."""
-    return _locked(_padded(data, room_bytes), plain_code(code).encode(), cost)
+def lock_with_code(
+    data: bytes,
+    code: str,
+    room_bytes: int = ROOM_bytes,
+    cost: Cost = CODE_COST,
+    run_key: RunKey | None = None,
+) -> str:
+    """Lock data with a person's code, padded to a multiple of the room. InputError, BuildError.
+
+    run_key : what it takes besides the code to unlock them; None: nothing.
+    """
+    return _locked(_padded(data, room_bytes), plain_code(code).encode(), cost, run_key)
 
 
-def unlock_with_code(text: str, code: str, source: object = "schedule") -> bytes:
-    """Return what was locked with a code. InputError on a wrong one."""
-    found = _unlocked(text, plain_code(code).encode(), source)
+def unlock_with_code(
+    text: str, code: str, source: object = "schedule", run_key: RunKey | None = None
+) -> bytes:
+    """Return what was locked with a code, and a run key where one is passed. InputError on a wrong one."""
+    found = _unlocked(text, plain_code(code).encode(), source, run_key)
     if found is None:
         raise InputError("code", "whole", "is not the code of this person", "type it as the card has it")
     return _bare(found)
 
 
-def _locked(data: bytes, words: bytes, cost: Cost) -> str:
+def _locked(data: bytes, words: bytes, cost: Cost, run_key: RunKey | None = None) -> str:
     salt = secrets.token_bytes(16)
-    box = bytes(_nacl("secret").SecretBox(_stretched(words, salt, cost)).encrypt(data))
+    key = _stretched(words, salt, cost)
+    box = bytes(_nacl("secret").SecretBox(run_key.joined(key) if run_key else key).encrypt(data))
     record = msgspec.json.encode(Locked(cost.passes, cost.memory_bytes, salt, box))
     return base64.b64encode(record).decode()
 
 
-def _unlocked(text: str, words: bytes, source: object) -> bytes | None:
+def _unlocked(text: str, words: bytes, source: object, run_key: RunKey | None = None) -> bytes | None:
     """Return what words lock; None where they are wrong. InputError on a text that nothing locked."""
     try:
         found = msgspec.json.decode(_decoded(text), type=Locked)
         key = _stretched(words, found.salt, Cost(found.passes, found.memory_bytes))
-        opened: bytes = _nacl("secret").SecretBox(key).decrypt(found.box)
+        opened: bytes = _nacl("secret").SecretBox(run_key.joined(key) if run_key else key).decrypt(found.box)
     except _nacl("exceptions").CryptoError:
         return None
     except (ValueError, TypeError) as error:

@@ -3,7 +3,8 @@
 import { address } from "../../app/route";
 import { call } from "../../net";
 import type { StudiesDevice, StudiesPerson } from "../../net/messages";
-import { button, type Child, choice, empty, h, signal, tell, toast, toggle } from "../../ui";
+import { button, type Child, choice, computed, empty, h, signal, tell, toast, toggle } from "../../ui";
+import { secret } from "./plan";
 import type { StudyStore } from "./store";
 
 const TWIN = "twin";
@@ -17,10 +18,12 @@ export function peopleView(store: StudyStore, toPlan: () => void): HTMLElement {
       button({ label: "To the plan", kind: "main", act: toPlan }),
     );
   const leaving = signal<string>("");
+  // not anew with every change of the study: a link that was made stays
+  const open = computed(() => store.detail()?.open ?? false);
   return h(
     "div",
     { class: "sts-page" },
-    state === "frozen" ? seats(store) : null,
+    state === "frozen" ? () => (open() ? seats(store) : openSessions(store)) : null,
     h(
       "section",
       { class: "panel", "aria-label": "People" },
@@ -28,6 +31,44 @@ export function peopleView(store: StudyStore, toPlan: () => void): HTMLElement {
       () => table(store, leaving.set),
     ),
     () => (leaving() ? withdrawal(store, leaving(), () => leaving.set("")) : null),
+  );
+}
+
+/** The key holder lets sessions run, after every start of the studio. */
+function openSessions(store: StudyStore): HTMLElement {
+  const pass = secret("sts-run", "Passphrase of the key holder");
+  const file = h("input", { id: "sts-keeper", type: "file", accept: ".json" });
+  const busy = signal(false);
+  const submit = async (event: Event) => {
+    event.preventDefault();
+    busy.set(true);
+    const keeper = (await file.files?.[0]?.text()) ?? "";
+    const ask = { study: store.study, passphrase: pass.input.value, keeper };
+    await store.act(() => call("studies.open", ask));
+    busy.set(false);
+  };
+  return h(
+    "form",
+    { class: "panel", "aria-label": "Open the sessions", on: { submit: (event) => void submit(event) } },
+    h("h2", {}, "Open the sessions"),
+    h(
+      "p",
+      { class: "muted" },
+      "No code opens what the labels hide. The key holder lets sessions run until this studio ends: participants can begin, and those who wait go on. It is recorded.",
+    ),
+    h(
+      "div",
+      { class: "sts-fields" },
+      pass.element,
+      h("span", { class: "field" }, h("label", { for: "sts-keeper" }, "keeper.json, if it was moved"), file),
+    ),
+    h(
+      "div",
+      { class: "row" },
+      h("button", { type: "submit", class: "button main", disabled: busy }, () =>
+        busy() ? "Opening …" : "Open the sessions",
+      ),
+    ),
   );
 }
 

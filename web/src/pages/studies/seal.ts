@@ -31,8 +31,19 @@ function fingerprint(store: StudyStore): HTMLElement {
       { class: "muted" },
       () => `Frozen ${store.detail()?.frozen ?? ""}. Put it in the preregistration: it identifies this plan.`,
     ),
+    () => codeAlone(store.detail()?.code_alone ?? []),
     h("div", { class: "row" }, button({ label: "Verify", act: verify, hint: "Check for changes since" })),
     h("div", { role: "status" }, () => verified(found())),
+  );
+}
+
+/** People whom an earlier fdvv enrolled. */
+function codeAlone(people: readonly string[]): Child {
+  if (!people.length) return null;
+  return h(
+    "p",
+    { class: "muted" },
+    `The code alone of ${people.join(", ")} opens what their labels hide, for an earlier fdvv enrolled them: keep their cards away.`,
   );
 }
 
