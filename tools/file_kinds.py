@@ -28,8 +28,9 @@ from fdvv.rendering.session import Manifest
 from fdvv.rendering.session_log import AnswerRecord, PressEntry, SessionRun
 from fdvv.studio.jobs.file import JobRecord
 from fdvv.study.analysis.code_book import CodeBook
-from fdvv.study.files.chained_log import LogHead
+from fdvv.study.files.counts import Counts
 from fdvv.study.files.layout import Frozen
+from fdvv.study.files.log_head import LogHead
 from fdvv.study.files.people import LockedSchedule, Schedule, SealedTrial
 from fdvv.study.files.seal import KeyHolderFile
 from fdvv.study.plan.events import Event
@@ -146,10 +147,15 @@ FILES = (
     ),
     FileKind(
         "Frozen study",
-        "`frozen.json`, `keeper.json`, `*.head`",
-        "What was frozen, the key holder's half of the key, and the length of a log "
-        "([how](../explanation/blinding.md)).",
-        {"frozen.json": Frozen, "keeper.json": KeyHolderFile, "*.head": LogHead},
+        "`frozen.json`, `keeper.json`, `counts.json`, `*.head`",
+        "What was frozen, the key holder's half of the key, how much was written for everybody, and the "
+        "length of a log ([how](../explanation/blinding.md)).",
+        {
+            "frozen.json": Frozen,
+            "keeper.json": KeyHolderFile,
+            "counts.json": Counts,
+            "*.head": LogHead,
+        },
     ),
     FileKind(
         "Participant",

@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 from fdvv.errors import InputError
 from fdvv.eventlog import line_of
-from fdvv.study.files.chained_log import ChainedLog, head_path, next_chain, read_chained
+from fdvv.study.files.chained_log import ChainedLog, next_chain, read_chained
+from fdvv.study.files.log_head import LogHead, head_path
 from tests.support.studies import Killed, kill_at
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
@@ -134,7 +135,7 @@ def test_who_forges_a_whole_chain_lacks_the_key(tmp_path: Path) -> None:
     lines[4] = forged(lines[4], change)
     path.write_bytes(b"".join(lines))
     last = json.loads(lines[4])["record"]["entry"]["chain"]
-    head_path(path).write_text(json.dumps({"lines": 5, "chain": last, "next": ""}) + "\n")
+    head_path(path).write_text(LogHead(5, last).marked(bytes(32)).text)
     assert problems(path) == ()
     assert problems(path, KEY) == ("line 5 was changed, moved or added",)
     with pytest.raises(InputError, match="line 5 was changed"):

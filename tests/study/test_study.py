@@ -356,10 +356,13 @@ def put_schedule(study: Study, run_key: RunKey | None) -> tuple[str, str]:
 def test_a_schedule_that_somebody_else_drew_is_noticed_and_not_run(tmp_path: Path) -> None:
     study = small_study(tmp_path)
     person, code = put_schedule(study, RunKey(b"a guess", study.seal.text))
-    assert study.verify() == ()
-    problem = f"people/{person}/schedule.json: was made without the key of this study"
-    assert study.verify(passphrase=PASSPHRASE) == (problem,)
-    with pytest.raises(InputError, match="was made without the key"):
+    assert Study.open(study.folder).verify() == ()
+    wanted = [
+        "counts.json: was changed by somebody without the key of this study",
+        f"people/{person}/schedule.json: was made without the key of this study",
+    ]
+    assert list(study.verify(passphrase=PASSPHRASE)) == wanted
+    with pytest.raises(InputError, match="without the key"):
         study.schedule(person, code)
 
 

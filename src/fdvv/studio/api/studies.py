@@ -19,6 +19,7 @@ from fdvv.study.admin.study import Study
 from fdvv.study.analysis.analyse import analyse
 from fdvv.study.analysis.read_answers import read_answers
 from fdvv.study.analysis.report import study_html
+from fdvv.study.files.counts import COUNTED
 from fdvv.study.files.people import EVERYBODY
 
 Name = Annotated[str, Meta(max_length=60)]
@@ -198,7 +199,7 @@ def study_detail(studies: Studies, name: str) -> StudiesDetail:
         [_person(one, studies.screen(name, one.person) is not None, one.person in paused) for one in people],
         studies.waiting(name),
         EVERYBODY in paused,
-        [history_line(record) for record in study.history()],
+        [history_line(record) for record in study.history() if COUNTED not in record],
         studies.device(name),
         frozen is not None and (study.sessions_open or not study.needs_run_key),
         list(study.code_alone) if frozen else [],

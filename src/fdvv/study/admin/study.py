@@ -16,9 +16,11 @@ from fdvv.rendering.session import now
 from fdvv.study.admin.review import review_plan, twin_problems
 from fdvv.study.analysis.unseal import unseal_folder
 from fdvv.study.files import layout
-from fdvv.study.files.chained_log import ChainedLog, head_path, open_when_free, read_chained
+from fdvv.study.files.chained_log import ChainedLog, open_when_free, read_chained
+from fdvv.study.files.counts import Counter, read_counts
 from fdvv.study.files.folder import StudyFolder, study_problems
 from fdvv.study.files.layout import LOG_FILE, PEOPLE, SESSION_FILE, Frozen, digest
+from fdvv.study.files.log_head import head_path
 from fdvv.study.files.people import (
     EVERYBODY,
     Schedule,
@@ -45,8 +47,6 @@ class Study(StudyFolder):
     ----------
     folder : of the study. run_key : in memory while sessions are open, see `open_sessions`; else None.
     """
-
-    run_key: RunKey | None = None
 
     @classmethod
     def declare(cls, folder: Path, plan_file: Path) -> Study:
@@ -131,11 +131,6 @@ class Study(StudyFolder):
         return layout.fingerprint_of(sha256)
 
     @property
-    def sessions_open(self) -> bool:
-        """Whether this object holds the run key of the study."""
-        return self.run_key is not None and self.run_key.seal == self.seal.text
-
-    @property
     def needs_run_key(self) -> bool:
         """Whether people can begin only while sessions are open: in studies that were frozen since 0.1.0."""
         return self.require_frozen().version > 1
@@ -152,7 +147,7 @@ class Study(StudyFolder):
         """
         holder = self.key_holder(passphrase, keeper)
         with self._log() as log:
-            log.write({"opened": {"when": now()}})
+            log.write({"opened": {"when": now(), **self._counted()}})
         self.run_key = holder.run_key
 
     def enrol(
@@ -178,7 +173,9 @@ class Study(StudyFolder):
             trials = draw_schedule(self.plan, place, np.random.default_rng())
             schedule, code = Schedule(log.about["study"], person, secrets.token_hex(32), trials), new_code()
             text = lock_schedule(schedule, self.seal, code, cost, run_key)
-            keep_person(self.folder / PEOPLE / person, schedule, text, consent)
+            heads = keep_person(self.folder / PEOPLE / person, schedule, text, consent)
+            if run_key:
+                Counter(self.folder, schedule.study, person, run_key).count_alone(heads, 0)
             about = {"language": language, "place": place, "simulated": simulated}
             log.write({"enrolled": {"person": person, **about, "when": now(), "schedule": digest(text)}})
         return person, code
@@ -224,7 +221,20 @@ class Study(StudyFolder):
         folder = self.person_folder(person)
         ends = {name: read_chained(folder / name).chain for name in (SESSION_FILE, layout.SEALED_FILE)}
         with self._log() as log:
-            log.write({"finished": {"when": now(), "person": person, "ends": ends}})
+            log.write({"finished": {"when": now(), "person": person, "ends": ends, **self._counted()}})
+
+    def _counted(self) -> dict[str, int]:
+        """Return how often the counts were written, for a line of the study's log."""
+        found = read_counts(self.folder)
+        return {"counted": found.written} if found else {}
+
+    def counter(self, schedule: Schedule, key: str | KeyHolder) -> Counter | None:
+        """Return what counts the lines of a person's logs; None of people that an earlier fdvv enrolled."""
+        if read_locked(self.person_folder(schedule.person) / layout.SCHEDULE_FILE).version == 1:
+            return None
+        run_key = key.run_key if isinstance(key, KeyHolder) else self.run_key
+        assert run_key is not None  # else the schedule was not opened
+        return Counter(self.folder, schedule.study, schedule.person, run_key)
 
     def pause(self, person: str = EVERYBODY, on: bool = True) -> None:
         """Pause a person, or everybody; recorded, so that it holds after every crash. on : else continue.

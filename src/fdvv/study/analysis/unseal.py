@@ -16,7 +16,7 @@ from fdvv.io.files import write_atomic
 from fdvv.rendering.session import now
 from fdvv.study.analysis.code_book import csv_text, write_answers
 from fdvv.study.files.chained_log import ChainedLog, read_chained
-from fdvv.study.files.layout import PEOPLE, SCHEDULE_FILE, SEALED_FILE, SESSION_FILE, UNSEALED
+from fdvv.study.files.layout import COUNTS_FILE, PEOPLE, SCHEDULE_FILE, SEALED_FILE, SESSION_FILE, UNSEALED
 from fdvv.study.files.people import Person, SealedTrial, open_schedule, people_of
 from fdvv.study.files.seal import KeyHolder
 from fdvv.study.plan.answers import Answers, screen
@@ -105,11 +105,14 @@ class UnsealedPerson:
     pages: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
 
 
-def _person(folder: Path, plan: StudyPlan, person: Person, keeper: KeyHolder) -> UnsealedPerson | None:
+def _person(
+    folder: Path, plan: StudyPlan, person: Person, keeper: KeyHolder, suspect: bool
+) -> UnsealedPerson | None:
     """Join a person's schedule with the records of both logs.
 
-    None of whom nothing is kept, or whose schedule is not there to be read. Where the logs are not as they
-    were written, nothing of them counts. InputError on a record that none of the study's programs wrote.
+    None of whom nothing is kept, or whose schedule is not there to be read. suspect : something is wrong
+    with their files. Where that is so, or the logs are not as they were written, nothing of them counts.
+    InputError on a record that none of the study's programs wrote.
     """
     own = folder / PEOPLE / person.name
     if person.state == "deleted":
@@ -120,7 +123,7 @@ def _person(folder: Path, plan: StudyPlan, person: Person, keeper: KeyHolder) ->
         return None  # reported by verify, and on record
     key = bytes.fromhex(schedule.key)
     session, sealed = read_chained(own / SESSION_FILE, key), read_chained(own / SEALED_FILE, key)
-    damaged = bool(session.problems or sealed.problems)
+    damaged = suspect or bool(session.problems or sealed.problems)
     boxes = [keeper.unlock(record["sealed"], f"{person.name}/{SEALED_FILE}") for record in sealed.records]
     rendered = [msgspec.json.decode(box, type=SealedTrial) for box in boxes]
     found = {one.number: one for one in rendered}  # of those of one number the last one counts
@@ -211,7 +214,12 @@ def unseal_folder(
     about : who, why, and what was wrong with the study then. InputError, OSError.
     """
     log.write({"unsealed": {"when": now(), **about}})
-    people = [found for person in people_of(log.records) if (found := _person(folder, plan, person, keeper))]
+    suspects = _suspects(about.get("problems", ()), people_of(log.records))
+    people = [
+        found
+        for person in people_of(log.records)
+        if (found := _person(folder, plan, person, keeper, person.name in suspects))
+    ]
     answers = answers_of(plan, people)
     write_answers(folder / UNSEALED, answers, plan)
     # labels of a trial that is still to be answered stay sealed
@@ -226,6 +234,14 @@ def unseal_folder(
     )
     write_atomic(folder / UNSEALED / PAGES_FILE, csv_text(("person", "page", "question", "answer"), pages))
     return answers
+
+
+def _suspects(problems: object, people: Sequence[Person]) -> set[str]:
+    """Return the people whose files something is wrong with; where the counts are wrong, everybody."""
+    lines = [str(line) for line in problems] if isinstance(problems, list | tuple) else []
+    if any(line.startswith(f"{COUNTS_FILE}:") for line in lines):
+        return {person.name for person in people}
+    return {one.name for one in people if any(line.startswith(f"{PEOPLE}/{one.name}/") for line in lines)}
 
 
 def _labels(row: UnsealedTrial) -> Iterator[Sequence[object]]:

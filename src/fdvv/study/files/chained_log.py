@@ -5,9 +5,11 @@ every other one is ``{"entry": {"record": …, "chain": …, "mark": …}}``. ch
 and the record. mark, in a log with a key, is BLAKE2b of the chain under that key: such a line cannot be
 written without the key.
 
-Beside it lies the **head**, ``<name>.head``: the number of lines, and the last chain. A marked log writes it
-after each line, so that a killed process leaves at most one line more, which is verified by its mark. A log
-without marks writes it before each line too, with the chain that comes next: no other line may follow.
+Beside it lies the **head**, ``<name>.head``: the number of lines, and the last chain. A log with a key has
+``"head": "marked"`` in its first record, unless an earlier fdvv began it: its head carries a mark too. It
+writes the head after each line, so that a killed process leaves at most one line more, which is verified by
+its mark. A log without marks writes it before each line too, with the chain that comes next: no other line
+may follow.
 """
 
 from __future__ import annotations
@@ -22,32 +24,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
-from msgspec import Struct
-
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, line_of, read_records
 from fdvv.io.files import sync_folder, write_atomic
+from fdvv.study.files.log_head import MARKED, LogHead, head_of, head_path, mark_of
 
 REMEDY = "take the study's folder from a backup; fdvv study verify lists all that is wrong"
 KIND = JournalKind({"begin": Any, "entry": Any}, REMEDY)
-HEAD_SUFFIX = ".head"
 LINE_BEGINS = b'{"crc32": '
 AT_WORK = "another process is at work on it"
 PATIENCE_s = 10.0
 """Wait for another process that writes the log."""
-
-
-class LogHead(Struct, frozen=True, forbid_unknown_fields=True):
-    """The end of a log; next is announced before the line is written, else empty."""
-
-    lines: int
-    chain: str
-    next: str = ""
-
-    @property
-    def text(self) -> str:
-        return json.dumps({"lines": self.lines, "chain": self.chain, "next": self.next}) + "\n"
 
 
 @dataclass(frozen=True)
@@ -58,6 +45,7 @@ class ChainRead:
     ----------
     about : what its first line says it belongs to. records : that were written, in order.
     chains : of each line. end : the byte where it ends. problems : what is wrong with it, in words.
+    head_marked : its head carries a mark.
     """
 
     about: Mapping[str, Any]
@@ -65,15 +53,12 @@ class ChainRead:
     chains: tuple[str, ...]
     end: int
     problems: tuple[str, ...]
+    head_marked: bool = False
 
     @property
     def chain(self) -> str:
         """The chain of the last line; empty if there is none."""
         return self.chains[-1] if self.chains else ""
-
-
-def head_path(path: Path) -> Path:
-    return path.with_suffix(HEAD_SUFFIX)
 
 
 def read_chained(path: Path, key: bytes = b"") -> ChainRead:
@@ -110,7 +95,7 @@ class _Reader:
     """What was read so far."""
 
     def __init__(self, key: bytes) -> None:
-        self.key, self.end, self.marked = key, 0, False
+        self.key, self.end, self.marked, self.head_marked = key, 0, False, False
         self.chains: list[str] = []
         self.about: dict[str, Any] = {}
         self.records: list[dict[str, Any]] = []
@@ -131,9 +116,10 @@ class _Reader:
 
     def _begin(self, line: dict[str, Any]) -> bool:
         begin = line["begin"]
-        if set(begin) != {"about", "salt", "marked"}:
+        if set(begin) - {"head"} != {"about", "salt", "marked"} or begin.get("head", MARKED) != MARKED:
             return False
         self.about, self.marked = dict(begin["about"]), begin["marked"]
+        self.head_marked = "head" in begin
         self.chains.append(first_chain(line))
         return True
 
@@ -150,12 +136,13 @@ class _Reader:
 
     def compared_with(self, head_text: bytes | None, rest: bytes) -> ChainRead:
         """Compare what was read with the head. rest : of the file, which is no line."""
-        head = _head(head_text)
-        if head is None:
+        head = head_of(head_text)
+        if head is None or not (self.problems or head.known(self.key, self.head_marked)):
             self.problems.append("its head is missing or was changed")
         elif not self.problems:
             self.problems += self._beside(head, rest)
-        return ChainRead(self.about, tuple(self.records), tuple(self.chains), self.end, tuple(self.problems))
+        read = (self.about, tuple(self.records), tuple(self.chains), self.end, tuple(self.problems))
+        return ChainRead(*read, self.head_marked)
 
     def _beside(self, head: LogHead, rest: bytes) -> list[str]:
         lines, last = len(self.chains), self.chains[-1] if self.chains else ""
@@ -166,14 +153,6 @@ class _Reader:
         # a line may have been cut short when its process was killed; nothing else may follow
         torn = not one_more and (self.marked or bool(head.next)) and rest[:10] == LINE_BEGINS[: len(rest)]
         return ["something was added to its end"] if rest and not (torn and b"\n" not in rest) else []
-
-
-def _head(text: bytes | None) -> LogHead | None:
-    try:
-        head = msgspec.json.decode(text or b"", type=LogHead)
-    except (msgspec.MsgspecError, UnicodeDecodeError):
-        return None
-    return head if head.text.encode() == text else None
 
 
 def bytes_of(path: Path) -> bytes | None:
@@ -189,10 +168,6 @@ def first_chain(begin: dict[str, Any]) -> str:
 
 def next_chain(chain: str, record: Any) -> str:
     return hashlib.sha256(f"{chain} {json.dumps(record)}".encode()).hexdigest()
-
-
-def mark_of(chain: str, key: bytes) -> str:
-    return hashlib.blake2b(chain.encode(), key=key, digest_size=32).hexdigest() if key else ""
 
 
 class ChainedLog:
@@ -222,7 +197,8 @@ class ChainedLog:
                 raise InputError(self.path, "whole file", problem, REMEDY)
             self._journal.cut(found.end)
             self.about, self.records = found.about, list(found.records)
-            self._head = LogHead(len(self.records) + 1, found.chain)
+            self._head_key = key if found.head_marked else b""
+            self._head = self._marked(LogHead(len(self.records) + 1, found.chain))
             if bytes_of(head_path(self.path)) != self._head.text.encode():
                 self._keep_head(self._head)
         except BaseException:
@@ -233,8 +209,10 @@ class ChainedLog:
     def create(cls, path: Path, about: Mapping[str, Any], key: bytes = b"") -> ChainedLog:
         """Create a log where there is none. about : what it belongs to: no other can take its place."""
         path = Path(path)
-        begin = {"begin": {"about": dict(about), "salt": secrets.token_hex(16), "marked": bool(key)}}
+        fields = {"about": dict(about), "salt": secrets.token_hex(16), "marked": bool(key)}
+        begin = {"begin": fields | ({"head": MARKED} if key else {})}
         head = LogHead(1, first_chain(begin))
+        head = head.marked(key) if key else head
         write_atomic(path, line_of(begin))
         write_atomic(head_path(path), head.text)
         sync_folder(path.parent)
@@ -249,9 +227,17 @@ class ChainedLog:
             self._keep_head(LogHead(self._head.lines, self._head.chain, chain))
             sync_folder(self.path.parent)
         self._journal.write(line)
-        self._head = LogHead(self._head.lines + 1, chain)
+        self._head = self._marked(LogHead(self._head.lines + 1, chain))
         self._keep_head(self._head)
         self.records.append(plain)
+
+    def _marked(self, head: LogHead) -> LogHead:
+        return head.marked(self._head_key) if self._head_key else head
+
+    @property
+    def head(self) -> LogHead:
+        """Where the log ends now."""
+        return self._head
 
     def _keep_head(self, head: LogHead) -> None:
         write_atomic(head_path(self.path), head.text)

@@ -9,8 +9,11 @@ from typing import Any
 from fdvv.errors import InputError
 from fdvv.study.files import layout
 from fdvv.study.files.chained_log import ChainRead, read_chained
+from fdvv.study.files.counts import Counts, counts_problems, read_counts
 from fdvv.study.files.layout import FROZEN_FILE, KEEPER_FILE, LOG_FILE, PEOPLE, SCHEDULE_FILE, Frozen
-from fdvv.study.files.people import Person, open_schedule, paused_of, people_of, person_of, read_locked
+from fdvv.study.files.people import Person, paused_of, people_of, person_of, read_locked
+from fdvv.study.files.person_check import PersonCheck
+from fdvv.study.files.run_key import RunKey
 from fdvv.study.files.seal import KeyHolder, SealingKey
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
@@ -21,11 +24,12 @@ class StudyFolder:
 
     Attributes
     ----------
-    folder : of the study.
+    folder : of the study. run_key : in memory while sessions are open, see `Study.open_sessions`; else None.
     """
 
     def __init__(self, folder: Path) -> None:
         self.folder = Path(folder)
+        self.run_key: RunKey | None = None
         self._plan: tuple[bytes, StudyPlan] | None = None
 
     @property
@@ -51,6 +55,11 @@ class StudyFolder:
         """What people write into their preregistration; empty before the study is frozen."""
         found = layout.read_frozen(self.folder)
         return layout.fingerprint_of(found[1]) if found else ""
+
+    @property
+    def sessions_open(self) -> bool:
+        """Whether this object holds the run key of the study."""
+        return self.run_key is not None and self.run_key.seal == self.seal.text
 
     @property
     def seal(self) -> SealingKey:
@@ -118,11 +127,12 @@ class StudyFolder:
         the marks of people's lines are verified too. record : a `record_end` that was written down.
         """
         opened = self.key_holder(passphrase, keeper) if passphrase else None
-        return study_problems(self.folder, fingerprint, opened, record=record)
+        return study_problems(self.folder, fingerprint, opened, record=record, run_key=self.run_key)
 
     def require_whole(self, person: str = "") -> None:
         """Raise InputError if the study is not as it was frozen. person : whose files are verified too."""
-        for problem in study_problems(self.folder, people=(person,) if person else ()):
+        people = (person,) if person else ()
+        for problem in study_problems(self.folder, people=people, run_key=self.run_key):
             raise InputError(self.folder, "study", problem, layout.REMEDY)
 
     def key_holder(self, passphrase: str, keeper: Path | bytes | None = None) -> KeyHolder:
@@ -147,10 +157,12 @@ def study_problems(
     holder: KeyHolder | None = None,
     people: Sequence[str] | None = None,
     record: str = "",
+    run_key: RunKey | None = None,
 ) -> tuple[str, ...]:
     """Return all that is not as it was written, a line each.
 
     people : whose files are verified; None: everybody's. fingerprint, record : that were written down.
+    run_key : the marks of counts are verified with it, or with the key holder's.
     """
     try:
         found = layout.read_frozen(folder)
@@ -167,11 +179,20 @@ def study_problems(
         return (*problems, f"{LOG_FILE}: {error.place} {error.reason}")
     if len({person.simulated for person in enrolled}) > 1:
         problems.append(f"{LOG_FILE}: has people and simulated ones")
+    if log.problems:
+        return tuple(problems)
+    fits = run_key is not None and run_key.seal == frozen.seal
+    remembered = run_key.counted if run_key and fits else 0
+    known = holder.run_key if holder else run_key if fits else None
+    counts, wrong = _counts(folder, sha256, log, known, remembered)
+    names = {person.name for person in enrolled}
+    # an enrolment that was killed was counted, and has no session
+    lost = {name for name, one in (counts.people if counts else {}).items() if one.began} - names
+    problems += [*wrong, *(f"{LOG_FILE}: {name} was counted, and is not in it" for name in sorted(lost))]
+    check = PersonCheck(folder, sha256, log, holder, counts, frozen.version > 1)
     for person in enrolled:
         if people is None or person.name in people:
-            where = f"{PEOPLE}/{person.name}"
-            keyed = frozen.version > 1 and not person.simulated
-            problems += [where + problem for problem in _person(folder, person, sha256, holder, log, keyed)]
+            problems += [f"{PEOPLE}/{person.name}{problem}" for problem in check.problems(person)]
     return tuple(problems)
 
 
@@ -204,42 +225,15 @@ def _log(log: ChainRead, sha256: str, record: str) -> Iterator[str]:
             yield f"{FROZEN_FILE}: is not the one that {LOG_FILE} began with"
 
 
-def _person(
-    folder: Path, person: Person, sha256: str, holder: KeyHolder | None, log: ChainRead, keyed: bool
-) -> Iterator[str]:
-    own = folder / PEOPLE / person.name
-    if person.state == "deleted":
-        if own.exists():
-            yield ": was deleted, and files are still there; withdraw again"
-        return
-    schedule = own / SCHEDULE_FILE
-    if not schedule.is_file() or layout.digest(schedule.read_bytes()) != person.schedule:
-        yield f"/{SCHEDULE_FILE}: is missing or was changed"
-        return
+def _counts(
+    folder: Path, sha256: str, log: ChainRead, run_key: RunKey | None, remembered: int
+) -> tuple[Counts | None, list[str]]:
     try:
-        if keyed and read_locked(schedule).version == 1:
-            yield f"/{SCHEDULE_FILE}: is opened by a code alone, and the study was frozen with a run key"
-            return
-        key = bytes.fromhex(open_schedule(schedule, holder).key) if holder else b""
+        found = read_counts(folder)
     except InputError as error:
-        yield f"/{SCHEDULE_FILE}: {error.reason}"
-        return
-    for name in (layout.SESSION_FILE, layout.SEALED_FILE):
-        for problem in _person_log(own / name, key, person, sha256, log):
-            yield f"/{name}: {problem}"
-
-
-def _person_log(path: Path, key: bytes, person: Person, sha256: str, log: ChainRead) -> Iterator[str]:
-    found = read_chained(path, key)
-    if found.problems:
-        yield from found.problems
-        return
-    about = {"study": sha256, "person": person.name, "log": path.stem}
-    if any(found.about.get(name) != value for name, value in about.items()):
-        yield "belongs to another person or study"
-    ends = [r["finished"]["ends"] for r in log.records if r.get("finished", {}).get("person") == person.name]
-    if ends and ends[-1].get(path.name) != found.chain:
-        yield "is not as it was when the person was done"
+        return None, [f"{layout.COUNTS_FILE}: {error.reason}"]
+    wrong = counts_problems(found, sha256, log, run_key, remembered)
+    return found, [f"{layout.COUNTS_FILE}: {problem}" for problem in wrong]
 
 
 def plain(fingerprint: str) -> str:

@@ -16,6 +16,7 @@ from fdvv.model.file import builtin_names, load_builtin, model_to_json
 from fdvv.study.plan.plan import StudyPlan
 
 FROZEN_FILE, KEEPER_FILE, LOG_FILE = "frozen.json", "keeper.json", "study.jsonl"
+COUNTS_FILE = "counts.json"
 BUTTONS, PEOPLE, UNSEALED = "buttons", "people", "unsealed"
 SESSION_FILE, SCHEDULE_FILE, SEALED_FILE = "session.jsonl", "schedule.json", "sealed.jsonl"
 Record = TypeVar("Record")

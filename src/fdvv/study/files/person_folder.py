@@ -10,11 +10,15 @@ from pathlib import Path
 from fdvv.io.files import sync_folder, write_atomic
 from fdvv.study.files.chained_log import ChainedLog
 from fdvv.study.files.layout import SCHEDULE_FILE, SEALED_FILE, SESSION_FILE
+from fdvv.study.files.log_head import LogHead
 from fdvv.study.files.people import Schedule
 
 
-def keep_person(folder: Path, schedule: Schedule, text: str, consent: str) -> None:
-    """Make the folder of a person, whole or not at all: the locked schedule and two empty logs."""
+def keep_person(folder: Path, schedule: Schedule, text: str, consent: str) -> dict[str, LogHead]:
+    """Make the folder of a person, whole or not at all: the locked schedule and two empty logs.
+
+    Returns where the logs end, by file.
+    """
     building = folder.with_name(f".{schedule.person}.new")
     for left in (building, folder):  # of an enrolment that was killed before it was logged
         shutil.rmtree(left, ignore_errors=True)
@@ -23,11 +27,14 @@ def keep_person(folder: Path, schedule: Schedule, text: str, consent: str) -> No
         SESSION_FILE: {"log": "session", "consent": consent},
         SEALED_FILE: {"log": "sealed"},
     }
+    heads = {}
     for name, own in logs.items():
         about = {"study": schedule.study, "person": schedule.person, **own}
-        ChainedLog.create(building / name, about, bytes.fromhex(schedule.key)).close()
+        with ChainedLog.create(building / name, about, bytes.fromhex(schedule.key)) as log:
+            heads[name] = log.head
     building.replace(folder)
     sync_folder(folder.parent)
+    return heads
 
 
 def wipe(folder: Path) -> None:

@@ -15,10 +15,16 @@ OPEN_FIRST = "the key holder opens them with the passphrase: in the studio, unde
 
 
 class RunKey:
-    """A secret of 32 bytes, and the study it belongs to. seal : the study's sealing key, as text."""
+    """A secret of 32 bytes, and the study it belongs to.
+
+    Attributes
+    ----------
+    seal : the study's sealing key, as text. counted : how often the study's counts were written, as far as
+        this process knows: the one number that a rolled back folder cannot change.
+    """
 
     def __init__(self, secret: bytes, seal: str) -> None:
-        self._secret, self.seal = secret, seal
+        self._secret, self.seal, self.counted = secret, seal, 0
 
     @classmethod
     def of(cls, private: bytes, seal: str) -> RunKey:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +34,13 @@ class OpenedSession:
     def __init__(self, study: Study, name: str, code: str | KeyHolder, at_s: float) -> None:
         schedule = study.schedule(name, code)
         self.trials, self._seal = schedule.trials, study.seal
-        self._log = study.session_log(schedule)
+        self._counter = study.counter(schedule, code)
+        self._sealed = study.sealed_log(schedule)
+        try:
+            self._log = study.session_log(schedule)
+        except BaseException:
+            self._sealed.close()
+            raise
         try:
             state = _state(self._log.path, study.plan, self._log.records)
             if state is None:
@@ -41,22 +48,29 @@ class OpenedSession:
                 faces = tuple(face_of(study.plan, trial) for trial in schedule.trials)
                 started = SessionStarted(at_s, name, person.language, faces, person.simulated)
                 self.state = state_of(study.plan, [started])
-                self._log.write(record_of(started))
+                self._write(started, self.state)
             else:
                 self.state = state
                 if next_step(state, at_s).kind not in ENDS:
                     self.add(SessionResumed(at_s, "keeper" if isinstance(code, KeyHolder) else "code"))
-            self._sealed = study.sealed_log(schedule)
         except BaseException:
             self._log.close()
+            self._sealed.close()
             raise
 
     def add(self, event: Event) -> SessionState:
         """Log an event and return the state after it. ModelError where it cannot follow."""
         after = self.state.after(event)
-        self._log.write(record_of(event))
+        self._write(event, after)
         self.state = after
         return after
+
+    def _write(self, event: Event, after: SessionState) -> None:
+        """Log an event, and count what is logged then."""
+        self._log.write(record_of(event))
+        if self._counter:
+            heads = {log.path.name: log.head for log in (self._log, self._sealed)}
+            self._counter.count(heads, len(after.answers))
 
     def seal(self, trial: SealedTrial) -> None:
         """Log what was rendered in a trial, for the key holder; of several of one number the last counts."""
@@ -64,9 +78,14 @@ class OpenedSession:
         self._sealed.write({"sealed": self._seal.lock(sealed_bytes(trial), SEALED_BYTES + 4)})
 
     def close(self) -> None:
-        """Close both logs; idempotent."""
+        """Close both logs, and note in the study's log how much was counted; idempotent."""
         self._log.close()
         self._sealed.close()
+        counter, self._counter = self._counter, None
+        if counter:
+            # where the study's log was changed a session still ends; it is reported when the next one begins
+            with suppress(InputError):
+                counter.note()
 
 
 def read_session(path: Path, plan: StudyPlan) -> SessionState | None:
