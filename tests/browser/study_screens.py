@@ -139,6 +139,11 @@ def invitation(operator: Page) -> str:
     return str(ask(operator, "seat")["seat"])
 
 
+def seat_address(operator: Page) -> str:
+    """Return the address of a fresh seat, as the operator copies it."""
+    return f"{operator.url.partition('#')[0].partition('?')[0]}?seat={invitation(operator)}#/study/{NAME}"
+
+
 @dataclass
 class TrialAnswer:
     """What a sitter answered in a trial. places : labels there were."""
@@ -163,7 +168,7 @@ class Sitter:
 
     def sit(self, operator: Page, language: str = "") -> None:
         """Open the link of a fresh seat, begin, and note what stands on the card."""
-        self.page.goto(f"{operator.url.partition('#')[0]}#/study/{NAME}?seat={invitation(operator)}")
+        self.page.goto(seat_address(operator))
         self.page.wait_for_selector("#study-title")
         if language:
             self.page.select_option("select", language)

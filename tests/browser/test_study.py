@@ -18,11 +18,11 @@ from tests.browser.study_screens import (
     InputMethod,
     Sitter,
     frozen_study,
-    invitation,
     names_in,
     open_sessions,
     plan_text,
     recorded_answers,
+    seat_address,
     wait_for_part,
 )
 from tests.studio.running import RunningStudio
@@ -126,7 +126,7 @@ def test_a_session_is_done_by_keyboard_alone(study: Study, page: Page, context: 
     screen = context.new_page()
     sitter = Sitter(screen)
     keys = screen.keyboard
-    screen.goto(f"{page.url.partition('#')[0]}#/study/{NAME}?seat={invitation(page)}")
+    screen.goto(seat_address(page))
 
     def tab_to(selector: str) -> None:
         screen.wait_for_selector(selector)

@@ -3,7 +3,7 @@
 import { followAddress } from "./app/route";
 import { mountShell } from "./app/shell";
 import { followTheme } from "./app/theme";
-import { live } from "./net/live";
+import { live, seat } from "./net/live";
 import { listenForShortcuts } from "./ui/keys";
 import "./style.css";
 
@@ -12,5 +12,5 @@ followAddress();
 listenForShortcuts();
 live().open();
 mountShell(document.body);
-// what runs is in view on every page
-void import("./pages/live/list").then(({ showInHeader }) => showInHeader());
+// what runs is in view on every page of the studio; the page of a seat may not ask for it
+if (!seat()) void import("./pages/live/list").then(({ showInHeader }) => showInHeader());

@@ -25,21 +25,46 @@ TEMPORARY_bytes = 14
 """What the name of a temporary file has more than that of its file: two points, eight letters, .tmp."""
 
 
-def write_atomic(path: Path, content: str | bytes) -> None:
+def _umask() -> int:
+    found = os.umask(0)
+    os.umask(found)
+    return found
+
+
+UMASK = _umask()
+"""Of this process, read once: reading it changes it for a moment, for all threads."""
+OWNER_FILE, OWNER_FOLDER = 0o600, 0o700
+"""Permissions of what holds people's data."""
+
+
+def write_atomic(path: Path, content: str | bytes, private: bool = False) -> None:
     """Write content to path so that a killed process leaves the old file or the new one, never half.
 
     The content goes to a temporary file in the same folder, is forced to disk, then renamed.
-    Text is UTF-8 with the line endings as given. Parent folders are made. Raises OSError.
+    Text is UTF-8 with the line endings as given. Parent folders are made. private : only this account can
+    read it, and open the folder that it was made with. Raises OSError.
     """
     path = Path(path)
+    if private:
+        private_folder(path.parent)
     path.parent.mkdir(parents=True, exist_ok=True)
-    with atomic_stream(path) as stream:
+    with atomic_stream(path, private) as stream:
         stream.write(content.encode() if isinstance(content, str) else content)
 
 
+def private_folder(folder: Path) -> None:
+    """Make a folder that only this account can open, unless it is there; parents as usual. OSError."""
+    if not folder.is_dir():
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=OWNER_FOLDER, exist_ok=True)
+
+
 @contextmanager
-def atomic_stream(path: Path) -> Iterator[BinaryIO]:
-    """Open a stream whose content becomes the file when the block ends, and is dropped if it fails."""
+def atomic_stream(path: Path, private: bool = False) -> Iterator[BinaryIO]:
+    """Open a stream whose content becomes the file when the block ends, and is dropped if it fails.
+
+    private : only this account can read the file.
+    """
     short = len(os.fsencode(path.name)) <= LONGEST_NAME_bytes - TEMPORARY_bytes
     prefix = f".{path.name}." if short else ".fdvv."
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=prefix, suffix=".tmp")
@@ -50,9 +75,7 @@ def atomic_stream(path: Path) -> Iterator[BinaryIO]:
             stream.flush()
             os.fsync(stream.fileno())
         # mkstemp keeps a file to its owner; an ordinary open() gives what the umask leaves
-        umask = os.umask(0)
-        os.umask(umask)
-        temporary.chmod(0o666 & ~umask)
+        temporary.chmod(OWNER_FILE if private else 0o666 & ~UMASK)
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)

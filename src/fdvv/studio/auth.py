@@ -2,7 +2,10 @@
 
 A page of another site can send requests to this machine's ports, and a name of another site can be made to
 point here (DNS rebinding). So the Host must be ours, a cookie counts only from our own Origin, and nothing at
-all is served without the token. A token can be stored in the project, so that the address survives a restart.
+all is served without the token. A token can be stored in the project: then the address survives a restart.
+
+The address of a **seat** opens one participant's screen: the page's files, and one channel of the live
+connection. Everything else answers 403 to it.
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ import os
 import re
 import secrets
 import stat
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,6 +41,9 @@ HEADERS = {
     "x-content-type-options": "nosniff",
 }
 
+SEAT_ONLY = "This address opens one participant's screen and nothing else."
+NO_SEAT = "This invitation is none of this studio's any more: ask for another."
+NO_ORIGIN = "the Origin header is missing"
 NO_TOKEN = "Only its owner may open this studio: open the whole address that `fdvv studio` printed."
 
 
@@ -47,11 +54,31 @@ class ServerAddress:
     hosts : values of the Host header that mean this studio, such as ``127.0.0.1:8765``.
     token : the secret of this run.
     cookie : name of the cookie that holds it; cookies do not know ports, so the port is in the name.
+    seats : says whether a word opens a seat.
     """
 
     hosts: frozenset[str]
     token: str
     cookie: str
+    seats: Callable[[str], bool] = lambda _word: False
+
+    @property
+    def seat_cookie(self) -> str:
+        return f"{self.cookie}-seat"
+
+    def seat_of(self, connection: HTTPConnection) -> str:
+        """Return the word of the seat that a connection is confined to; empty where it is not, or is none.
+
+        A seat in the address counts before the studio's own token: the page of a seat uses no more than that.
+        """
+        asked = connection.query_params.get("seat", "")
+        if not asked and self._owner(connection):
+            return ""
+        words = (asked, _bearer(connection), connection.cookies.get(self.seat_cookie, ""))
+        return next((word for word in words if word and self.seats(word)), "")
+
+    def _owner(self, connection: HTTPConnection) -> bool:
+        return self._same(_bearer(connection)) or self._same(connection.cookies.get(self.cookie, ""))
 
     def refusal(self, connection: HTTPConnection, changes: bool) -> str:
         """Return why a connection is refused; empty if it may pass.
@@ -65,11 +92,15 @@ class ServerAddress:
         ours = headers.get("origin", f"http://{host}") == f"http://{host}"
         if not ours or headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
             return "the request comes from another site"
-        if self._same(headers.get("authorization", "").removeprefix("Bearer ")):
+        if seat := self.seat_of(connection):
+            if connection.scope["type"] == "http" and connection.scope["method"] not in ("GET", "HEAD"):
+                return SEAT_ONLY
+            return "" if not changes or "origin" in headers or _bearer(connection) == seat else NO_ORIGIN
+        if self._same(_bearer(connection)):
             return ""
         if not self._same(connection.cookies.get(self.cookie, "")):
             return NO_TOKEN
-        return "the Origin header is missing" if changes and "origin" not in headers else ""
+        return NO_ORIGIN if changes and "origin" not in headers else ""
 
     def _same(self, given: str) -> bool:
         return hmac.compare_digest(given.encode(), self.token.encode())
@@ -84,6 +115,17 @@ class ServerAddress:
         answer = RedirectResponse("/", 303)
         answer.set_cookie(self.cookie, self.token, httponly=True, samesite="strict", path="/")
         return answer
+
+    def sit(self, request: Request) -> str | None:
+        """Return the word of the seat that an address names; None if it names none, empty: a wrong one."""
+        word = request.query_params.get("seat")
+        if word is None or request.method != "GET" or request.url.path != "/":
+            return None
+        return word if self.seats(word) and request.headers.get("host", "") in self.hosts else ""
+
+
+def _bearer(connection: HTTPConnection) -> str:
+    return connection.headers.get("authorization", "").removeprefix("Bearer ")
 
 
 class AuthMiddleware:
@@ -102,18 +144,29 @@ class AuthMiddleware:
             await self.app(scope, receive, send)
             return
 
+        request = Request(scope, receive)
+        answer, seat = self.door.enter(request), self.door.sit(request)
+
         async def guarded(message: Message) -> None:
             if message["type"] == "http.response.start":
                 own = {name for name, _ in message["headers"]}
                 extra = [(k.encode(), v.encode()) for k, v in HEADERS.items() if k.encode() not in own]
-                message["headers"] = [*message["headers"], *extra]
+                message["headers"] = [*message["headers"], *extra, *self._cookie(seat)]
             await send(message)
 
-        request = Request(scope, receive)
-        answer = self.door.enter(request)
-        if answer is None and (reason := self.door.refusal(request, request.method not in ("GET", "HEAD"))):
+        if seat is not None:
+            # the first page of a seat may be opened from anywhere, as the printed address may
+            answer = None if seat else PlainTextResponse(NO_SEAT, 403)
+        elif answer is None and (reason := self.door.refusal(request, request.method not in ("GET", "HEAD"))):
             answer = PlainTextResponse(reason, 403)
         await (answer or self.app)(scope, receive, guarded)
+
+    def _cookie(self, seat: str | None) -> list[tuple[bytes, bytes]]:
+        if not seat:
+            return []
+        answer = Response()
+        answer.set_cookie(self.door.seat_cookie, seat, httponly=True, samesite="strict", path="/")
+        return [(name, value) for name, value in answer.raw_headers if name == b"set-cookie"]
 
 
 TOKEN_FILE, IGNORE_FILE = ".studio-token", ".gitignore"

@@ -108,12 +108,14 @@ class ChannelKind:
     name : of the channel.
     asks, tells : message types, tagged: what the page sends and what it gets.
     open : called when a page first sends on it.
+    seated : the same for a page that is confined to a seat, by its word; None: it has no such channel.
     """
 
     name: str
     asks: tuple[type[Struct], ...]
     tells: tuple[type[Struct], ...]
     open: Callable[[Studio, Tell], Channel]
+    seated: Callable[[Studio, Tell, str], Channel] | None = None
 
 
 def error_line(error: FdvvError | OSError) -> str:

@@ -15,12 +15,13 @@ from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocket
 
 from fdvv.errors import FdvvError
+from fdvv.studio.auth import SEAT_ONLY
 from fdvv.studio.contract import Channel, ChannelKind, Message, Tell, error_line
 from fdvv.studio.studio import Studio
 
 WAITING = 4000
 """So many messages may wait for a page; one that does not read is cut off and may come again."""
-SLOW, MALFORMED = 4408, 4400
+SLOW, MALFORMED, FORBIDDEN = 4408, 4400, 4403
 log = logging.getLogger("fdvv.studio")
 
 
@@ -32,10 +33,12 @@ class Envelope(Message):
 
 
 class LiveConnection:
-    """What serves one page."""
+    """What serves one page. seat : the word of the seat that it is confined to; empty: to none."""
 
-    def __init__(self, studio: Studio, kinds: dict[str, ChannelKind], socket: WebSocket) -> None:
-        self._studio, self._kinds, self._socket = studio, kinds, socket
+    def __init__(
+        self, studio: Studio, kinds: dict[str, ChannelKind], socket: WebSocket, seat: str = ""
+    ) -> None:
+        self._studio, self._kinds, self._socket, self._seat = studio, kinds, socket, seat
         self._loop = asyncio.get_running_loop()
         self._outgoing: asyncio.Queue[bytes] = asyncio.Queue(WAITING)
         self._incoming: dict[str, asyncio.Queue[Any]] = {}
@@ -65,6 +68,9 @@ class LiveConnection:
                 text = message.get("text") or message.get("bytes") or b""
                 envelope = msgspec.json.decode(text, type=Envelope)
                 kind = self._kinds.get(envelope.channel)
+                if kind is not None and self._seat and kind.seated is None:
+                    await self._socket.close(FORBIDDEN, SEAT_ONLY)
+                    return
                 if kind is None:
                     raise msgspec.ValidationError(f"there is no channel {envelope.channel!r}")
                 ask = msgspec.json.decode(envelope.body, type=reduce(or_, kind.asks))
@@ -110,7 +116,8 @@ class LiveConnection:
 
     def _opened(self, kind: ChannelKind, tell: Tell) -> Channel:
         """Open a channel; if the page has gone meanwhile it is closed again."""
-        channel = kind.open(self._studio, tell)
+        seated = kind.seated if self._seat else None
+        channel = seated(self._studio, tell, self._seat) if seated else kind.open(self._studio, tell)
         with self._lock:
             gone = self._over
             if not gone:

@@ -9,7 +9,7 @@ import logging
 import socket
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import PurePath
 from threading import Thread
@@ -29,6 +29,7 @@ from fdvv.studio.contract import Call, error_line
 from fdvv.studio.live import LiveConnection
 from fdvv.studio.lock import note_address, project_lock
 from fdvv.studio.parts import PartLoader
+from fdvv.studio.seats import Seats
 from fdvv.studio.studio import Studio
 
 TYPES = {
@@ -130,6 +131,7 @@ def create_app(studio: Studio, door: ServerAddress) -> Starlette:
     """
     files = page_files()
     loader = PartLoader()
+    door = replace(door, seats=lambda word: studio.part(Seats).find(word) is not None)
 
     async def page(request: Request) -> Response:
         return file_response(files, request)
@@ -142,7 +144,7 @@ def create_app(studio: Studio, door: ServerAddress) -> Starlette:
 
     async def live(socket: WebSocket) -> None:
         parts = await run_in_threadpool(loader.all)
-        await LiveConnection(studio, parts.channels, socket).serve()
+        await LiveConnection(studio, parts.channels, socket, door.seat_of(socket)).serve()
 
     @asynccontextmanager
     async def lifespan(_app: Starlette) -> AsyncIterator[None]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import secrets
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -18,6 +17,7 @@ from fdvv.io.files import write_atomic
 from fdvv.io.memory import hide_memory
 from fdvv.studio.contract import Message, Watchers
 from fdvv.studio.devices import require_listed
+from fdvv.studio.seats import FOLDER, Seat, Seats, digest_of
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.review import device_problems
 from fdvv.study.admin.study import Study
@@ -27,7 +27,7 @@ from fdvv.study.files.run_key import CLOSED, OPEN_FIRST, RunKey
 if TYPE_CHECKING:
     from fdvv.studio.api.study import StudyScreen
 
-FOLDER, DEVICE_SUFFIX = "studies", ".device"
+DEVICE_SUFFIX = ".device"
 TWIN = "twin"
 PATIENCE_s = 10.0
 NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,39}")
@@ -43,15 +43,10 @@ class StudiesChanged(Message, tag="changed"):
 
 @dataclass(eq=False)
 class Invitation:
-    """An invitation of a study, taken once.
-
-    holder : the page that took it, by a word that it alone has; empty while it is free.
-    person, code : whose it is until their screen knows.
-    """
+    """A seat that is taken at this moment. person, code : whose it is until their screen knows."""
 
     study: str
     word: str
-    holder: str = ""
     person: str = ""
     code: str = ""
     lock: Lock = field(default_factory=Lock)
@@ -63,6 +58,7 @@ class Studies:
     def __init__(self, studio: Studio) -> None:
         self.folder = studio.project / FOLDER
         self.watchers = Watchers[Struct]()
+        self._seats = studio.part(Seats)
         self._invitations: dict[str, Invitation] = {}
         self._screens: dict[tuple[str, str], StudyScreen] = {}
         self._person_locks: dict[tuple[str, str], Lock] = {}
@@ -140,8 +136,8 @@ class Studies:
         write_atomic(self.path(name).with_suffix(DEVICE_SUFFIX), f"{device}\n")
         self.announce(name)
 
-    def invite(self, name: str) -> Invitation:
-        """Make an invitation for one person. InputError where nobody can begin."""
+    def invite(self, name: str) -> str:
+        """Make a seat for one person; return the word that opens it. InputError where nobody can begin."""
         study = self.study(name)
         state = state_of(study)
         if state == "draft":
@@ -150,27 +146,35 @@ class Studies:
             raise InputError("study", name, "was unsealed, nobody can begin it any more", "declare a new one")
         if study.needs_run_key and not study.sessions_open:
             raise InputError("study", "sessions", CLOSED, OPEN_FIRST)
-        invitation = Invitation(name, secrets.token_urlsafe(9))
-        with self._lock:
-            self._invitations[invitation.word] = invitation
+        word = self._seats.make(name)
         self.announce(name)
-        return invitation
+        return word
 
     def invitation(self, name: str, word: str, holder: str) -> Invitation | None:
         """Find an invitation that a page may take: a free one, or its own."""
+        study, seat = self._seats.find(word) or ("", None)
+        if seat is None or study != name or seat.settled or seat.holder not in ("", digest_of(holder)):
+            return None
         with self._lock:
-            invitation = self._invitations.get(word)
-        mine = invitation and invitation.study == name and invitation.holder in ("", holder)
-        return invitation if mine else None
+            return self._invitations.setdefault(word, Invitation(name, word, seat.person))
 
-    def discard(self, invitation: Invitation) -> None:
-        """Forget an invitation, and the code with it: its person's screen knows."""
+    def take(self, invitation: Invitation, person: str, code: str, holder: str) -> None:
+        """Note who sits on a seat, and which page took it. OSError."""
+        invitation.person, invitation.code = person, code
+        self._seats.change(invitation.word, person=person, holder=digest_of(holder))
+
+    def settle(self, word: str, person: str) -> None:
+        """Note that nobody else takes a seat, and forget the code: its person's screen knows. OSError."""
         with self._lock:
-            self._invitations.pop(invitation.word, None)
+            self._invitations.pop(word, None)
+        self._seats.change(word, person=person, settled=True)
+
+    def seat(self, word: str) -> tuple[str, Seat] | None:
+        """Return the study and the seat of a word; None of one that opens nothing."""
+        return self._seats.find(word)
 
     def waiting(self, name: str) -> int:
-        with self._lock:
-            return sum(one.study == name and not one.person for one in self._invitations.values())
+        return sum(seat.free for seat in self._seats.of(name))
 
     def attach(self, name: str, person: str, screen: StudyScreen) -> None:
         """Register a person's screen and end the session at an earlier one."""

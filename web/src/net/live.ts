@@ -86,10 +86,16 @@ export class Live {
   }
 }
 
+/** The word of the seat that this page is confined to, from its address; empty on the studio's own page. */
+export function seat(): string {
+  return new URLSearchParams(location.search).get("seat") ?? "";
+}
+
 let page: Live | null = null;
 
 /** Return the page's one connection. */
 export function live(): Live {
-  page ??= new Live(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
+  const asked = seat() ? `?${new URLSearchParams({ seat: seat() })}` : "";
+  page ??= new Live(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live${asked}`);
   return page;
 }

@@ -122,7 +122,7 @@ class StudiesUse(StudiesAsk):
 
 
 class StudiesSeat(Message):
-    """An invitation. seat : the one-time word in the address of the participant's screen."""
+    """An invitation. seat : the word in the address of the participant's screen, which opens nothing else."""
 
     study: str
     seat: str
@@ -270,8 +270,7 @@ def open_sessions(studies: Studies, ask: StudiesOpen) -> StudiesDetail:
 
 @call("studies.seat")
 def seat(studies: Studies, ask: StudiesAsk) -> StudiesSeat:
-    found = studies.invite(ask.study)
-    return StudiesSeat(found.study, found.word)
+    return StudiesSeat(ask.study, studies.invite(ask.study))
 
 
 @call("studies.use")

@@ -162,9 +162,13 @@ def taken_error() -> InputError:
 
 
 class StudyScreen:
-    """What serves one page: no one, or a participant, whom the operator may pause or withdraw."""
+    """What serves one page: no one, or a participant, whom the operator may pause or withdraw.
 
-    def __init__(self, studio: Studio, tell: Tell) -> None:
+    seat : the word of the seat that the page is confined to; empty: to none.
+    """
+
+    def __init__(self, studio: Studio, tell: Tell, seat: str = "") -> None:
+        self._seat = seat
         self._studies, self._tell = studio.part(Studies), tell
         self._stages = StudyStages(studio, tell)
         self._name = ""
@@ -220,7 +224,19 @@ class StudyScreen:
             if self._participant:
                 self._advance(self._participant.withdraw(delete=delete))
 
+    def _confine(self, ask: StudyLook | JoinSession | StudyResume) -> None:
+        """Refuse what is not of the page's own seat. InputError."""
+        if not self._seat:
+            return
+        study, seat = self._studies.seat(self._seat) or ("", None)
+        other = isinstance(ask, JoinSession | StudyLook) and ask.seat not in ("", self._seat)
+        someone = isinstance(ask, StudyResume) and seat is not None and seat.person not in ("", ask.person)
+        if seat is None or study != ask.study or other or someone:
+            raise InputError("study", "seat", "is another one's", "ask for an invitation of your own")
+
     def _do(self, ask: Message) -> None:
+        if isinstance(ask, StudyLook | JoinSession | StudyResume):
+            self._confine(ask)
         match ask:
             case StudyLook():
                 plan = self._studies.study(ask.study).plan
@@ -235,6 +251,8 @@ class StudyScreen:
             case StudyResume():
                 self._leave_session()
                 self._resume(self._studies.study(ask.study), ask.study, ask.person, ask.code)
+                if self._seat:
+                    self._studies.settle(self._seat, ask.person)
                 self._begin("")
             case _ if self._participant and self._stage:
                 self._go_on(ask, self._participant, self._stage)
@@ -246,14 +264,16 @@ class StudyScreen:
         self._leave_session()
         study = self._studies.study(ask.study)
         with invitation.lock:
-            if invitation.holder not in ("", ask.holder):  # two began at once
+            if self._studies.invitation(ask.study, ask.seat, ask.holder) is None:  # two began at once
                 raise taken_error()
             if invitation.person:  # the page went away before it heard the code
+                if not invitation.code:  # and so did the studio
+                    raise taken_error()
                 self._resume(study, ask.study, invitation.person, invitation.code)
             else:
                 stage = self._stages.first(study)
-                participant, invitation.code = Participant.enrol(study, ask.language, stage)
-                invitation.person, invitation.holder = participant.person, ask.holder
+                participant, code = Participant.enrol(study, ask.language, stage)
+                self._studies.take(invitation, participant.person, code, ask.holder)
                 self._take(ask.study, participant, stage)
             self._invitation = invitation
         self._begin(invitation.code)
@@ -329,7 +349,7 @@ class StudyScreen:
     def _forget_code(self) -> None:
         """Forget the code: the page has shown it."""
         if self._invitation:
-            self._studies.discard(self._invitation)
+            self._studies.settle(self._invitation.word, self._invitation.person)
             self._invitation = None
 
     def _require_running(self, participant: Participant) -> None:
@@ -359,4 +379,4 @@ TELLS = (
     *(StudyAbout, StudyCard, StudyStep, StudyReady, StudyFelt),
     *(StudyFrame, StudyBroke, StudyPaused, StudyStopped),
 )
-CHANNEL = ChannelKind("study", ASKS, TELLS, StudyScreen)
+CHANNEL = ChannelKind("study", ASKS, TELLS, StudyScreen, StudyScreen)

@@ -78,7 +78,7 @@ function seats(store: StudyStore): HTMLElement {
     try {
       const { seat } = await call("studies.seat", { study: store.study });
       await store.refresh();
-      made.set(`${location.origin}/${address("study", store.study, { seat })}`);
+      made.set(`${location.origin}/?seat=${seat}${address("study", store.study)}`);
     } catch (error) {
       tell(error);
     }
@@ -95,7 +95,7 @@ function seats(store: StudyStore): HTMLElement {
     h(
       "p",
       { class: "muted" },
-      "Open it on the participant's device: the first page that starts uses up the invitation. On another machine, first open the address that fdvv studio printed; with --keep-address, only once. A participant with a card can resume there with its number and code.",
+      "Open it on the participant's device: it opens this screen and nothing else of the studio, and the first page that starts uses up the invitation. It holds after a restart of the studio. A participant with a card can resume there with its number and code.",
     ),
   ];
   return h(
