@@ -27,6 +27,7 @@ from fdvv.rendering.run_summary import RunSummary
 from fdvv.rendering.session import Manifest
 from fdvv.rendering.session_log import AnswerRecord, PressEntry, SessionRun
 from fdvv.studio.jobs.file import JobRecord
+from fdvv.studio.seats import SeatsFile
 from fdvv.study.analysis.code_book import CodeBook
 from fdvv.study.files.counts import Counts
 from fdvv.study.files.layout import Frozen
@@ -156,6 +157,12 @@ FILES = (
             "counts.json": Counts,
             "*.head": LogHead,
         },
+    ),
+    FileKind(
+        "Seats",
+        "`studies/NAME.seats`",
+        "The invitations of a study in a project of the studio, as digests of their words.",
+        {"file": SeatsFile},
     ),
     FileKind(
         "Participant",

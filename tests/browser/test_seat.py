@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from playwright.sync_api import expect
 
+from fdvv.studio.auth import opening_file
 from fdvv.study.admin.study import Study
 from tests.browser.study_screens import (
     NAME,
@@ -80,3 +81,13 @@ def test_a_tablet_with_a_seat_takes_part_and_can_do_nothing_else(
     finally:
         again.stop()
     assert [one.name for one in study.people()] == ["P01", "P02"]
+
+
+def test_the_file_that_the_studio_opens_leads_into_it(browser: Browser, studio: RunningStudio) -> None:
+    """Its token is in no list of processes; cookies are strict, and a file is another site."""
+    with opening_file(studio.project) as written:
+        page = browser.new_context().new_page()
+        page.goto(written(studio.address).absolute().as_uri())
+        page.wait_for_selector("header.top nav")
+        assert page.url.startswith(studio.base)
+        assert "token" not in page.url

@@ -8,7 +8,20 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.io.files import LONGEST_NAME_bytes, open_plain, read_limited, sync_folder, write_atomic
+from fdvv.io.files import (
+    LONGEST_NAME_bytes,
+    make_private,
+    open_plain,
+    read_limited,
+    sync_folder,
+    write_atomic,
+)
+
+POSIX = pytest.mark.skipif(os.name != "posix", reason="Windows knows no such permissions")
+
+
+def mode(path: Path) -> int:
+    return path.stat().st_mode & 0o777
 
 
 def test_a_written_file_holds_the_content_and_leaves_no_other_file(tmp_path: Path) -> None:
@@ -61,6 +74,35 @@ def test_a_written_file_has_the_permissions_of_an_ordinary_one(tmp_path: Path) -
     (tmp_path / "plain").write_text("")
     write_atomic(tmp_path / "atomic", "")
     assert (tmp_path / "atomic").stat().st_mode == (tmp_path / "plain").stat().st_mode
+
+
+@POSIX
+def test_a_private_file_and_its_folder_are_their_owners_alone(tmp_path: Path) -> None:
+    write_atomic(tmp_path / "people" / "P01" / "a.txt", "old", private=True)
+    write_atomic(tmp_path / "people" / "P01" / "a.txt", "new", private=True)
+    assert mode(tmp_path / "people" / "P01") == 0o700
+    assert mode(tmp_path / "people" / "P01" / "a.txt") == 0o600
+
+
+@POSIX
+def test_what_others_could_read_is_made_private_with_all_that_lies_in_it(tmp_path: Path) -> None:
+    write_atomic(tmp_path / "people" / "P01" / "a.txt", "")
+    (tmp_path / "outside").write_text("")
+    (tmp_path / "outside").chmod(0o644)
+    (tmp_path / "people" / "link").symlink_to(tmp_path / "outside")
+    make_private(tmp_path / "people")
+    make_private(tmp_path / "gone")
+    assert mode(tmp_path / "people") == mode(tmp_path / "people" / "P01") == 0o700
+    assert mode(tmp_path / "people" / "P01" / "a.txt") == 0o600
+    assert mode(tmp_path / "outside") == 0o644
+
+
+def test_writing_never_changes_the_umask_of_the_process(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another thread would make its files open to all meanwhile."""
+    monkeypatch.setattr("os.umask", lambda _mask: pytest.fail("the umask was changed"))
+    write_atomic(tmp_path / "a.txt", "")
 
 
 def test_a_small_file_is_read_and_a_larger_or_absent_one_refused_by_name(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from fdvv.errors import InputError
-from fdvv.studio.auth import saved_token
+from fdvv.studio.auth import opening_file, saved_token
 from tests.studio.conftest import LIVE, ORIGIN, TOKEN
 from tests.studio.running import RunningStudio
 
@@ -27,6 +27,26 @@ def test_the_printed_address_gives_a_cookie_that_scripts_cannot_read(stranger: T
     assert "httponly" in cookie
     assert "samesite=strict" in cookie
     assert stranger.get("/").status_code == 200
+
+
+def test_opened_from_a_file_the_address_leads_on_by_a_page_of_its_own(stranger: TestClient) -> None:
+    """A browser sends no strict cookie where another site, as a file is, led here."""
+    answer = stranger.get("/", params={"token": TOKEN}, headers={"sec-fetch-site": "cross-site"})
+    assert answer.status_code == 200
+    assert 'content="0;url=/"' in answer.text
+    assert TOKEN not in answer.text
+    assert stranger.get("/").status_code == 200
+
+
+def test_what_a_browser_is_started_with_holds_no_token(tmp_path: Path) -> None:
+    for project in (tmp_path, tmp_path / "not-there-yet"):
+        with opening_file(project) as written:
+            page = written(f"http://127.0.0.1:1/?token={TOKEN}")
+            assert TOKEN not in page.as_uri()
+            assert TOKEN in page.read_text()
+            assert stat.S_IMODE(page.stat().st_mode) == 0o600
+        assert not page.exists()
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("path", ["/", "/studio.js", "/icon.svg", "/nothing"])

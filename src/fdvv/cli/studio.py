@@ -13,6 +13,7 @@ import click
 from fdvv.cli import ui
 from fdvv.errors import InputError
 from fdvv.library.library import Library
+from fdvv.studio.auth import opening_file
 from fdvv.studio.server import serve
 from fdvv.studio.studio import Studio
 
@@ -57,16 +58,19 @@ def studio(
     for library in libraries:
         Library(library)
 
-    def ready(addresses: Sequence[str]) -> None:
-        address, *others = addresses
-        click.echo(f"the studio is open at {address}")
-        for other in others:
-            click.echo(f"from other machines at {other}")
-        ui.print_stderr("Ctrl-C ends it")
-        if not no_browser:
-            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+    with opening_file(project) as written:
 
-    serve(Studio(project, folders, libraries), host, port, ready, keep_address)
+        def ready(addresses: Sequence[str]) -> None:
+            address, *others = addresses
+            click.echo(f"the studio is open at {address}")
+            for other in others:
+                click.echo(f"from other machines at {other}")
+            ui.print_stderr("Ctrl-C ends it")
+            if not no_browser:
+                page = written(address).absolute().as_uri()
+                threading.Thread(target=webbrowser.open, args=(page,), daemon=True).start()
+
+        serve(Studio(project, folders, libraries), host, port, ready, keep_address)
     ui.print_stderr("the studio is closed; everything is kept")
 
 

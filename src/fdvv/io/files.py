@@ -59,6 +59,15 @@ def private_folder(folder: Path) -> None:
         folder.mkdir(mode=OWNER_FOLDER, exist_ok=True)
 
 
+def make_private(folder: Path) -> None:
+    """Let only this account open a folder and read all that lies in it; nothing if there is none. OSError."""
+    if folder.is_dir():
+        folder.chmod(OWNER_FOLDER)
+        for path in folder.rglob("*"):
+            if not path.is_symlink():
+                path.chmod(OWNER_FOLDER if path.is_dir() else OWNER_FILE)
+
+
 @contextmanager
 def atomic_stream(path: Path, private: bool = False) -> Iterator[BinaryIO]:
     """Open a stream whose content becomes the file when the block ends, and is dropped if it fails.

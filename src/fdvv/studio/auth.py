@@ -11,16 +11,19 @@ connection. Everything else answers 403 to it.
 from __future__ import annotations
 
 import hmac
+import html
 import os
 import re
 import secrets
 import stat
-from collections.abc import Callable
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from starlette.requests import HTTPConnection, Request
-from starlette.responses import PlainTextResponse, RedirectResponse, Response
+from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from fdvv.errors import InputError
@@ -43,6 +46,7 @@ HEADERS = {
 
 SEAT_ONLY = "This address opens one participant's screen and nothing else."
 NO_SEAT = "This invitation is none of this studio's any more: ask for another."
+ON = '<!doctype html><meta http-equiv="refresh" content="0;url=/"><title>fdvv studio</title>'
 NO_ORIGIN = "the Origin header is missing"
 NO_TOKEN = "Only its owner may open this studio: open the whole address that `fdvv studio` printed."
 
@@ -112,7 +116,9 @@ class ServerAddress:
             return None
         if not self._same(given) or request.headers.get("host", "") not in self.hosts:
             return PlainTextResponse(NO_TOKEN, 403)
-        answer = RedirectResponse("/", 303)
+        # a file that the studio wrote opened this: only a page of our own may go on, with the cookie
+        ours = request.headers.get("sec-fetch-site", "none") in ("none", "same-origin")
+        answer = RedirectResponse("/", 303) if ours else HTMLResponse(ON)
         answer.set_cookie(self.cookie, self.token, httponly=True, samesite="strict", path="/")
         return answer
 
@@ -170,6 +176,7 @@ class AuthMiddleware:
 
 
 TOKEN_FILE, IGNORE_FILE = ".studio-token", ".gitignore"
+OPENING_FILE = ".studio-open.html"
 TOKEN = re.compile(r"[A-Za-z0-9_-]{32,64}")
 REMEDY = "delete it: the next start draws another, and the old address opens nothing"
 
@@ -199,6 +206,32 @@ def saved_token(project: Path) -> str:
         write_atomic(project / IGNORE_FILE, f"{TOKEN_FILE}\n")
     sync_folder(project)
     return token
+
+
+@contextmanager
+def opening_file(project: Path) -> Iterator[Callable[[str], Path]]:
+    """Offer to write a page that leads to an address, for a browser to open; it is removed behind the block.
+
+    What a browser is started with everybody on the machine can read in the list of processes; the file only
+    this account. It lies in the project where there is one: some browsers see no temporary folder. OSError.
+    """
+    pages: list[Path] = []
+
+    def written(address: str) -> Path:
+        folder = project if project.is_dir() else Path(tempfile.mkdtemp(prefix="fdvv-"))
+        pages.append(folder / OPENING_FILE)
+        text = f'<!doctype html><meta http-equiv="refresh" content="0;url={html.escape(address)}">\n'
+        write_atomic(pages[-1], text, private=True)
+        return pages[-1]
+
+    try:
+        yield written
+    finally:
+        for page in pages:
+            page.unlink(missing_ok=True)
+            if page.parent != project:
+                with suppress(OSError):
+                    page.parent.rmdir()
 
 
 def _read(path: Path) -> str:

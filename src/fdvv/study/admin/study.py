@@ -11,7 +11,7 @@ import numpy as np
 import fdvv
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal
-from fdvv.io.files import read_limited, sync_folder, write_atomic
+from fdvv.io.files import make_private, read_limited, sync_folder, write_atomic
 from fdvv.rendering.session import now
 from fdvv.study.admin.review import review_plan, twin_problems
 from fdvv.study.analysis.unseal import unseal_folder
@@ -110,7 +110,7 @@ class Study(StudyFolder):
         paths = [folder / STUDY_FILE, *(layout.kept_path(folder, name) for name in layout.named_files(plan))]
         files = {path.relative_to(folder).as_posix(): digest(layout.content(path)) for path in paths}
         holder, keeper = new_key_holder(passphrase, cost)
-        write_atomic(folder / layout.KEEPER_FILE, keeper)
+        write_atomic(folder / layout.KEEPER_FILE, keeper, private=True)
         files[layout.KEEPER_FILE] = digest(keeper)
         builtins = {name: layout.builtin_digest(name) for name in layout.named_builtins(plan)}
         frozen = Frozen(
@@ -149,6 +149,7 @@ class Study(StudyFolder):
         with self._log() as log:
             log.write({"opened": {"when": now(), **self._counted()}})
         self.run_key = holder.run_key
+        make_private(self.folder / PEOPLE)  # an earlier fdvv let others of this machine read it
 
     def enrol(
         self, language: str = "", consent: str = "", simulated: bool = False, cost: Cost = CODE_COST

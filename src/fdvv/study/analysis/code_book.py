@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Literal
@@ -23,6 +24,10 @@ KIND = Kind("fdvv-codebook", 1, "a code book", "write it with fdvv study export"
 LARGEST_bytes = 4_000_000
 ColumnType = Literal["text", "whole number", "number", "0 or 1"]
 ANSWERS_FILE = "answers.csv"
+FORMULA = re.compile(r"'*[=+\-@\t\r]")
+"""How text begins that a spreadsheet would calculate, or that was kept from that before."""
+NUMBERS = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?( [+-]?[\d.eE+-]+| nan)*")
+"""A number, or several as `rendered.csv` has them."""
 
 
 class CodedColumn(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -162,12 +167,25 @@ def answers_csv(answers: Answers) -> str:
 
 
 def csv_text(heads: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
-    """Write a table as all files of a study have it: commas, a line of headings, lines end as on Unix."""
+    """Write a table as all files of a study have it: commas, a line of headings, lines end as on Unix.
+
+    Text that a spreadsheet would calculate, as ``=1+1``, gets an apostrophe before it; numbers stay.
+    """
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(heads)
-    writer.writerows(rows)
+    writer.writerow([_escaped(one) for one in heads])
+    writer.writerows([_escaped(one) for one in row] for row in rows)
     return stream.getvalue()
+
+
+def _escaped(cell: object) -> object:
+    formula = isinstance(cell, str) and FORMULA.match(cell) and not NUMBERS.fullmatch(cell)
+    return f"'{cell}" if formula else cell
+
+
+def unescaped(cell: str) -> str:
+    """Return the text of a cell without the apostrophe that keeps a spreadsheet from calculating it."""
+    return cell[1:] if cell.startswith("'") and FORMULA.match(cell) else cell
 
 
 def cell_text(value: str | float) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from fdvv.errors import InputError
 from fdvv.io.files import read_limited
 from fdvv.io.text import decode_lines, sniff_separator
-from fdvv.study.analysis.code_book import ANSWERS_FILE, CODE_BOOK_FILE, CodeBook, read_code_book
+from fdvv.study.analysis.code_book import ANSWERS_FILE, CODE_BOOK_FILE, CodeBook, read_code_book, unescaped
 from fdvv.study.analysis.columns import NO, TIMING, YES, ColumnMap, Layout, Row, layout_of
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.trial import EQUAL
@@ -94,7 +94,7 @@ def _filled(path: Path, reader: Iterator[list[str]]) -> Iterator[tuple[int, list
     try:
         for line, row in enumerate(reader, start=1):
             if any(cell.strip() for cell in row):
-                yield line, [cell.strip() for cell in row]
+                yield line, [unescaped(cell.strip()) for cell in row]
     except csv.Error as error:
         raise InputError(path, "whole file", f"not a CSV ({error})", REMEDY) from error
 

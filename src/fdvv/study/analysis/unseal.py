@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.io.files import write_atomic
+from fdvv.io.files import make_private, private_folder, write_atomic
 from fdvv.rendering.session import now
 from fdvv.study.analysis.code_book import csv_text, write_answers
 from fdvv.study.files.chained_log import ChainedLog, read_chained
@@ -221,6 +221,7 @@ def unseal_folder(
         if (found := _person(folder, plan, person, keeper, person.name in suspects))
     ]
     answers = answers_of(plan, people)
+    private_folder(folder / UNSEALED)
     write_answers(folder / UNSEALED, answers, plan)
     # labels of a trial that is still to be answered stay sealed
     trials = [row for one in people for row in (*one.practice, *one.rows) if row.answer]
@@ -233,6 +234,7 @@ def unseal_folder(
         for question, value in values.items()
     )
     write_atomic(folder / UNSEALED / PAGES_FILE, csv_text(("person", "page", "question", "answer"), pages))
+    make_private(folder / UNSEALED)
     return answers
 
 

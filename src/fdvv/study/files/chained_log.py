@@ -213,8 +213,8 @@ class ChainedLog:
         begin = {"begin": fields | ({"head": MARKED} if key else {})}
         head = LogHead(1, first_chain(begin))
         head = head.marked(key) if key else head
-        write_atomic(path, line_of(begin))
-        write_atomic(head_path(path), head.text)
+        write_atomic(path, line_of(begin), private=True)
+        write_atomic(head_path(path), head.text, private=True)
         sync_folder(path.parent)
         return cls(path, key)
 
@@ -240,7 +240,7 @@ class ChainedLog:
         return self._head
 
     def _keep_head(self, head: LogHead) -> None:
-        write_atomic(head_path(self.path), head.text)
+        write_atomic(head_path(self.path), head.text, private=True)
 
     def close(self) -> None:
         """Close the file; idempotent."""

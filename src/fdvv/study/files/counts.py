@@ -150,7 +150,7 @@ class Counter:
         own = PersonCount(answered, {name: LogCount(one.lines, one.chain) for name, one in logs.items()})
         people = {**before.people, self.person: own}
         after = msgspec.structs.replace(before, written=before.written + 1, people=people)
-        write_atomic(self.folder / COUNTS_FILE, after.marked(self.run_key).text)
+        write_atomic(self.folder / COUNTS_FILE, after.marked(self.run_key).text, private=True)
         self.run_key.counted = after.written
 
     def note(self) -> None:

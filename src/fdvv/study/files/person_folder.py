@@ -7,7 +7,7 @@ import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
-from fdvv.io.files import sync_folder, write_atomic
+from fdvv.io.files import private_folder, sync_folder, write_atomic
 from fdvv.study.files.chained_log import ChainedLog
 from fdvv.study.files.layout import SCHEDULE_FILE, SEALED_FILE, SESSION_FILE
 from fdvv.study.files.log_head import LogHead
@@ -22,7 +22,8 @@ def keep_person(folder: Path, schedule: Schedule, text: str, consent: str) -> di
     building = folder.with_name(f".{schedule.person}.new")
     for left in (building, folder):  # of an enrolment that was killed before it was logged
         shutil.rmtree(left, ignore_errors=True)
-    write_atomic(building / SCHEDULE_FILE, text)
+    private_folder(folder.parent)
+    write_atomic(building / SCHEDULE_FILE, text, private=True)
     logs: dict[str, Mapping[str, str]] = {
         SESSION_FILE: {"log": "session", "consent": consent},
         SEALED_FILE: {"log": "sealed"},
