@@ -58,8 +58,12 @@ stimuli = [
 ]
 reference = {{ name = "reference", button = "{button}" }}
 """
-SEAT = """async (study) => (await (await fetch('./api/studies.seat', {method: 'POST',
-headers: {'content-type': 'application/json'}, body: JSON.stringify({study})})).json()).seat"""
+PASSPHRASE = "four words of no sense"
+SEAT = """async ([study, passphrase]) => {
+const ask = async (name, more) => (await fetch('./api/studies.' + name, {method: 'POST', headers:
+{'content-type': 'application/json'}, body: JSON.stringify({study, ...more})})).json();
+if (!(await ask('detail', {})).open) await ask('open', {passphrase});
+return (await ask('seat', {})).seat; }"""
 
 
 def declare(project: Path) -> None:
@@ -69,13 +73,13 @@ def declare(project: Path) -> None:
     for name, break_every_min in ((NAME, 20.0), (TIRING, 1e-4)):
         plan = PLAN.format(name=name, break_every_min=break_every_min)
         study = Study.declare_text(project / "studies" / name, plan + items, project)
-        study.freeze("four words of no sense")
+        study.freeze(PASSPHRASE)
 
 
 def sit(page: Page) -> None:
     """Take a fresh seat of the study that is looked at, as the next person."""
     base, _, address = page.url.partition("#/studies/")
-    seat = page.evaluate(SEAT, address)
+    seat = page.evaluate(SEAT, [address, PASSPHRASE])
     page.goto(f"{base}#/study/{address}?seat={seat}")
     page.wait_for_selector("#study-title")
     page.click(".study-main .button.main")
@@ -153,7 +157,7 @@ def tab(name: str) -> Callable[[Page], None]:
 
 def people(page: Page) -> None:
     """Have a seat ready, the study's people below."""
-    page.get_by_role("button", name="Prepare a seat").click()
+    page.get_by_role("button", name="Create an invitation").click()
     page.wait_for_selector("a[data-seat]")
 
 
