@@ -283,6 +283,25 @@ def test_without_the_key_holder_a_restarted_studio_seats_nobody_and_no_code_open
     assert study.history()[-1].keys() == {"opened"}
 
 
+def test_sessions_that_are_opened_again_still_know_how_much_was_counted(
+    study: Study, ask: Callable[..., Any], client: TestClient
+) -> None:
+    with client.websocket_connect(LIVE) as socket:
+        screen = Screen(socket)
+        card = screen.sit(ask("seat")["seat"])
+        saved = {path: path.read_bytes() for path in study.folder.rglob("*") if path.is_file()}
+        screen.show()
+        screen.answer()
+    while where(ask)["here"]:
+        time.sleep(0.01)
+    for path, data in saved.items():
+        path.write_bytes(data)
+    ask("open", passphrase=PASSPHRASE)
+    assert "an older one lies in its place" in ask("verify")["problems"][0]
+    with client.websocket_connect(LIVE) as socket:
+        assert "an older one" in Screen(socket).resume(card)["error"]
+
+
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems cannot hide it")
 def test_a_studio_that_holds_a_run_key_hides_its_memory(own_studio: Studio) -> None:
     study = frozen_study(own_studio.project, plan_text(2, 2, reference=True, switch_s=0.0))

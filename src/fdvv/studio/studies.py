@@ -104,7 +104,10 @@ class Studies:
         assert study.run_key is not None
         hide_memory()
         with self._lock:
-            self._run_keys[name] = study.run_key
+            before = self._run_keys.get(name)
+            # opened a second time, it must not forget how much was counted
+            if before is None or before.seal != study.run_key.seal:
+                self._run_keys[name] = study.run_key
             waiting = self._waiting_for_key.pop(name, [])
         self.announce(name)
         for go_on in waiting:

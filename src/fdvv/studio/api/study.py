@@ -281,7 +281,7 @@ class StudyScreen:
     def _resume_late(self, ask: StudyResume) -> None:
         try:
             self.receive(ask)
-        except FdvvError as error:
+        except (FdvvError, OSError) as error:
             self._tell(StudyStopped(error_line(error)))
 
     def _go_on(self, ask: Message, participant: Participant, stage: ScreenRenderer) -> None:

@@ -149,6 +149,8 @@ class Study(StudyFolder):
         with self._log() as log:
             log.write({"opened": {"when": now(), **self._counted()}})
         self.run_key = holder.run_key
+        if (found := read_counts(self.folder)) and found.made_with(self.run_key):
+            self.run_key.counted = found.written
         make_private(self.folder / PEOPLE)  # an earlier fdvv let others of this machine read it
 
     def enrol(
