@@ -8,20 +8,22 @@ Each is written, read back by our reader and compared as acceleration at 48 kHz.
 
 from __future__ import annotations
 
+import csv
+import io
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
-from fdvv.button.export_file import export_vibration
-from fdvv.button.import_file import ImportSettings, import_file
+from fdvv.button.export_file import export_button, export_vibration
+from fdvv.formats.exchange.frames import recording_csv
 from fdvv.model.curve import Stroke
-from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.file import builtin_names, load_builtin, load_model, save_model
 from fdvv.model.model import FDVVModel
 from fdvv.model.vibration import Mode, Vibration
-from fdvv.vibration.inverse import correlation, spectral_similarity, spqi, st_sim
-from fdvv.vibration.wave import LISTEN_Hz, vibration_samples
+from fdvv.recording.types import Quantity, Recording, Stream, Take
 from fdvv_haptics.mjcf import mjcf
 from fdvv_haptics.mujoco import mujoco_button
 from fdvv_haptics.smartknob import smartknob
@@ -42,28 +44,16 @@ def drawn(random: np.random.Generator, count: int) -> Vibration:
     return Vibration(Stroke.PRESS, None, 1.0, float(np.log(100) / decay.min()), modes)
 
 
-def compared(vibration: Vibration, form: str, folder: Path) -> dict[str, float]:
+def compared(vibration: Vibration, form: str) -> dict[str, float]:
     """Write a vibration, read it back and give the measures."""
     made = export_vibration(vibration, form, "drawn", "2026-01-01")
-    if form != "wav":
-        return {m: float(made.figures[m] or 0.0) for m in MEASURES}
-    made.save(folder / "drawn.wav")
-    asked = ImportSettings(into="mx-red", full_scale_m_s2=made.figures["full_scale_m_s2"])
-    (found,) = import_file(folder / "drawn.wav", asked).model.vibrations
-    a, b = vibration_samples(found), vibration_samples(vibration)
-    return {
-        "correlation": correlation(a, b),
-        "spectral_similarity": spectral_similarity(a, b, LISTEN_Hz),
-        "st_sim": st_sim(a, b, LISTEN_Hz),
-        "spqi": spqi(a, b, LISTEN_Hz),
-    }
+    return {m: float(made.figures[m] or 0.0) for m in MEASURES}
 
 
 def likeness(form: str, count: int) -> list[tuple[float, float]]:
     """Return the median and the tenth percentile of each measure over the draws."""
     random = np.random.default_rng(SEED)
-    with TemporaryDirectory() as folder:
-        figures = [compared(drawn(random, count), form, Path(folder)) for _ in range(DRAWS)]
+    figures = [compared(drawn(random, count), form) for _ in range(DRAWS)]
     columns = [[f[measure] for f in figures] for measure in MEASURES]
     return [(float(np.median(c)), float(np.percentile(c, 10))) for c in columns]
 
@@ -75,6 +65,41 @@ def haptics() -> None:
         for count in (1, 2, 3):
             cells = [f"{median:.3f} ({low:.3f})" for median, low in likeness(form, count)]
             print(f"{form:<8}{count:>6}" + "".join(f"{cell:>24}" for cell in cells))
+
+
+def models() -> list[FDVVModel]:
+    """Return the built-in buttons, and one whose press and release were measured at slightly other speeds."""
+    red = load_builtin("mx-red")
+    speeds = {Stroke.PRESS: 0.149, Stroke.RELEASE: 0.147}
+    curves = tuple(replace(c, velocity_mm_s=speeds[c.stroke]) for c in red.curves)
+    return [*map(load_builtin, builtin_names()), replace(red, name="mx-red, 0.149/0.147", curves=curves)]
+
+
+def tables() -> None:
+    print("\ntables, written and imported again: curves; largest rms and difference, cN; travel, mm")
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "a.fdvv.json"
+        for model in models():
+            save_model(model, path)
+            print(f"{model.name:>20}  fdvv.json {'equal' if load_model(path) == model else 'not equal'}")
+            for form in ("csv", "bluepylons-csv", "haata", "tester-json"):
+                f = export_button(str(path), form, "a").figures
+                print(
+                    f"{form:>36}  {f['imported_curves']:g} of {len(model.curves)}  "
+                    f"{f['imported_rms_cN']:.3f}  {f['imported_max_cN']:.3f}  {f['imported_travel_mm']:+.3f}"
+                )
+
+
+def recordings() -> None:
+    """Read a recording's table with the standard library and compare its numbers."""
+    random = np.random.default_rng(SEED)
+    t, values = np.sort(random.uniform(0, 1, 5000)), random.normal(0, 50, 5000)
+    stream = Stream("force", Quantity.FORCE, "clock", t, values)
+    text = recording_csv(Recording("drawn", (Take(1, (stream,)),))).text
+    rows = list(csv.DictReader(io.StringIO(text)))
+    equal = [float(r["t_s"]) for r in rows] == t.tolist()
+    equal &= [float(r["value"]) for r in rows] == stream.values.tolist()
+    print(f"\nrecording-csv: {len(rows)} samples, {'equal to the last bit' if equal else 'not equal'}")
 
 
 def springs() -> None:
@@ -149,6 +174,8 @@ def led(mujoco: Any, button: FDVVModel, xml: str, v_mm_s: float, way: int, made:
 
 def main() -> None:
     haptics()
+    tables()
+    recordings()
     springs()
     knobs()
     pushed()

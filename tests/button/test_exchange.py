@@ -129,6 +129,47 @@ def test_curves_come_in_as_they_are_fitted(tmp_path: Path) -> None:
     assert found.to_dict()["curves"][0] == {"stroke": "press", "velocity_mm_s": 0.5}
 
 
+def test_strokes_of_slightly_different_speed_come_back_both(tmp_path: Path) -> None:
+    speeds = {Stroke.PRESS: 0.149, Stroke.RELEASE: 0.147}
+    red = load_builtin("mx-red")
+    model = replace(red, curves=tuple(replace(c, velocity_mm_s=speeds[c.stroke]) for c in red.curves))
+    save_model(model, tmp_path / "a.fdvv.json")
+    export_button(str(tmp_path / "a.fdvv.json"), None, "a.csv").save(tmp_path / "a.csv")
+    found = import_file(tmp_path / "a.csv")
+    assert {c.stroke: c.velocity_mm_s for c in found.model.curves} == speeds
+    assert not any("left out" in note for note in found.notes)
+
+
+def test_speeds_that_a_header_states_are_not_repeats(tmp_path: Path) -> None:
+    clear = load_builtin("mx-clear")
+    kept = [c for c in clear.curves if c.velocity_mm_s in (100.0, 150.0)]
+    close = {100.0: 100.0, 150.0: 105.0}
+    model = replace(clear, curves=tuple(replace(c, velocity_mm_s=close[c.velocity_mm_s or 0]) for c in kept))
+    save_model(model, tmp_path / "a.fdvv.json")
+    export_button(str(tmp_path / "a.fdvv.json"), None, "a.csv").save(tmp_path / "a.csv")
+    assert import_file(tmp_path / "a.csv").model.velocities_mm_s("press") == (100.0, 105.0)
+
+
+@pytest.mark.parametrize("form", ["csv", "bluepylons-csv", "haata", "tester-json"])
+def test_a_table_says_what_an_import_makes_of_it(form: str, tmp_path: Path) -> None:
+    made = export_button("mx-clear", form, "a")
+    path = tmp_path / ("a.json" if form == "tester-json" else "a.csv")
+    made.save(path)
+    model, whole = import_file(path).model, load_builtin("mx-clear")
+    assert made.figures["imported_curves"] == len(model.curves)
+    assert made.figures["imported_travel_mm"] == pytest.approx(model.travel_mm - whole.travel_mm, abs=1e-9)
+    slow = model.of("release")[0]
+    x = np.linspace(slow.start_mm, slow.end_mm, 401)
+    off = np.abs(slow.force_cN(x) - whole.of("release")[0].force_cN(x)).max()
+    assert off <= (made.figures["imported_max_cN"] or 0) + 1e-12 < 1
+
+
+def test_a_sound_says_how_like_the_vibration_it_comes_back() -> None:
+    figures = export_vibration(TWO, "wav", "a").figures
+    assert (figures["correlation"] or 0) > 0.999
+    assert figures["full_scale_m_s2"] == pytest.approx(6.7, rel=0.1)
+
+
 @pytest.mark.parametrize(
     ("content", "message"),
     [

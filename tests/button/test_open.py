@@ -142,9 +142,22 @@ def test_a_velocity_must_be_a_positive_number(velocity: str) -> None:
         open_part(f"mx-red@{velocity}")
 
 
-def test_one_velocity_cannot_serve_several_curves() -> None:
-    with pytest.raises(InputError, match="5 press curves"):
-        open_part("mx-clear@50")
+def test_of_several_velocities_one_is_chosen() -> None:
+    whole = load_builtin("mx-clear")
+    assert open_part("mx-clear:press@200").curves == (whole.nearest("press", 200.0),)
+    both = open_part("mx-clear@50")
+    assert both.curves == tuple(c for c in whole.curves if c.velocity_mm_s == 50.0)
+    assert all(v.velocity_mm_s in (None, 50.0) for v in both.vibrations)
+    assert one_curve("mx-clear:release@0.5") == whole.of("release")[0]
+    with pytest.raises(InputError, match=r"no curve of 5 mm/s; choose one of @0.5, @50, @100, @150, @200"):
+        open_part("mx-clear@5")
+
+
+def test_what_is_missing_to_name_one_curve_is_said() -> None:
+    with pytest.raises(InputError, match=r"needed; add the velocity, as @50\Z"):
+        one_curve("mx-clear:press")
+    with pytest.raises(InputError, match=r"needed; add :press or :release\Z"):
+        one_curve("mx-clear@50")
 
 
 def test_a_stroke_that_is_not_there_is_refused(tmp_path: Path) -> None:

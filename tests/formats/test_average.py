@@ -87,6 +87,23 @@ def test_velocities_are_never_mixed() -> None:
     ]
 
 
+def test_a_lone_press_and_a_lone_release_are_not_repeats_of_each_other() -> None:
+    press = cycle(speed=0.149)
+    assert press.press is not None
+    release = Cycle(None, replace(press.press, stroke=Stroke.RELEASE, velocity_mm_s=0.147))
+    means = average_by_velocity(file(release, press))
+    assert [(m.press is press.press, m.release is release.release) for m in means] == [
+        (True, False),
+        (False, True),
+    ]
+    assert not any(m.left_out or m.warnings for m in means)
+
+
+def test_stated_velocities_are_repeats_only_where_they_are_equal() -> None:
+    cycles = [replace(cycle(speed=v, extra_cN=v / 50), stated=True) for v in (100.0, 105.0, 100.0)]
+    assert [m.used for m in average_by_velocity(file(*cycles))] == [("cycle 1", "cycle 3"), ("cycle 2",)]
+
+
 def test_the_order_of_the_cycles_does_not_choose_the_population() -> None:
     cycles = [replace(cycle(shift), label=str(shift)) for shift in (0.0, 3.0, 0.01, 0.02)]
     for order in ((0, 1, 2, 3), (3, 2, 1, 0), (1, 0, 3, 2)):

@@ -9,7 +9,9 @@ from pathlib import Path
 
 from fdvv import extras
 from fdvv.button.open import open_button
-from fdvv.errors import InputError
+from fdvv.button.round_trip import curve_losses
+from fdvv.button.wav_vibration import wav_vibration
+from fdvv.errors import FdvvError, InputError
 from fdvv.formats.exchange.curves import bluepylons_csv, curves_csv, haata_csv, switch_tester_json
 from fdvv.formats.exchange.exchange_format import ExportFormat, ExportSettings, VibrationFormat
 from fdvv.formats.exchange.exported import Exported
@@ -106,7 +108,12 @@ def export_button(
     if form.of == "button":
         if extra and extra.needs_press and not model.of(Stroke.PRESS):
             raise InputError(spec, "curves", "it has no press curve", "give it one with fdvv assign")
-        return (extra.write if extra else _BUTTONS[form.name])(model, chosen)
+        if extra:
+            written: Exported = extra.write(model, chosen)
+            return written
+        made = _BUTTONS[form.name](model, chosen)
+        losses = curve_losses(model, made, form.suffix, chosen.velocity_mm_s)
+        return replace(made, figures={**made.figures, **losses})
     vibration = vibration_of(spec, model, chosen.stroke, chosen.velocity_mm_s or 0.0)
     return export_vibration(vibration, form.name, model.name)
 
@@ -130,21 +137,33 @@ def export_vibration(vibration: Vibration, form: str, name: str, date: str | Non
     if form == "wav":
         made = vibration_wav(vibration)
         kept, lost = ("the acceleration at 48 kHz",), ("strength below a 32767th of the peak",)
-        return Exported("wav", made.data, kept, lost, {"full_scale_m_s2": made.full_scale})
-    extra: VibrationFormat = extras.load("exchange_formats", form)
-    written = extra.write(vibration, name, date or datetime.now(UTC).date().isoformat())
-    a, b = vibration_samples(read_back(vibration, written)), vibration_samples(vibration)
-    likeness = {
+        written = Exported("wav", made.data, kept, lost, {"full_scale_m_s2": made.full_scale})
+    else:
+        extra: VibrationFormat = extras.load("exchange_formats", form)
+        written = extra.write(vibration, name, date or datetime.now(UTC).date().isoformat())
+    return replace(written, figures={**written.figures, **_likeness(vibration, written)})
+
+
+def _likeness(vibration: Vibration, written: Exported) -> dict[str, float | None]:
+    """Compare a vibration with what is read back of it; None where the import refuses it."""
+    try:
+        a = vibration_samples(read_back(vibration, written))
+    except FdvvError:
+        return dict.fromkeys(("correlation", "spectral_similarity", "st_sim", "spqi"))
+    b = vibration_samples(vibration)
+    return {
         "correlation": correlation(a, b),
         "spectral_similarity": spectral_similarity(a, b, LISTEN_Hz),
         "st_sim": st_sim(a, b, LISTEN_Hz),
         "spqi": spqi(a, b, LISTEN_Hz),
     }
-    return replace(written, figures={**written.figures, **likeness})
 
 
 def read_back(vibration: Vibration, written: Exported) -> Vibration:
-    """Read an exported haptic file as a vibration at the position and stroke of the original."""
-    extra: VibrationFormat = extras.load("exchange_formats", written.format)
-    read = extra.read(written.data, None)
+    """Read an exported sound or haptic file as a vibration at the position and stroke of the original."""
+    if written.format == "wav":
+        read = wav_vibration(written.data, written.figures["full_scale_m_s2"])
+    else:
+        extra: VibrationFormat = extras.load("exchange_formats", written.format)
+        read = extra.read(written.data, None)
     return replace(vibration, modes=read.modes, duration_s=read.duration_s, spread=None)

@@ -12,26 +12,16 @@ from fdvv import extras
 from fdvv.button.export_file import export_formats
 from fdvv.button.fit import FitSettings, fit_file, one_line
 from fdvv.button.open import open_button
-from fdvv.errors import FitError, InputError, ModelError
+from fdvv.button.wav_vibration import wav_vibration
+from fdvv.errors import InputError, ModelError
 from fdvv.formats.exchange.exchange_format import VibrationFormat, VibrationRead
 from fdvv.io.documents import own_kind
-from fdvv.io.files import open_plain, read_limited
+from fdvv.io.files import open_plain
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel, Provenance
-from fdvv.model.vibration import Mode, Vibration
-from fdvv.units import FloatArray
-from fdvv.vibration.modes import fit_modes
-from fdvv.vibration.wave import read_wav
+from fdvv.model.vibration import Vibration
 
 HEAD_bytes = 4096
-LARGEST_bytes = 20_000_000
-ONSET_ratio = 0.02
-"""A sound begins where it first passes this part of its peak: below lies what a converter adds."""
-END_ratio = 0.002
-"""It ends where it falls for good below this part."""
-LONGEST_s = 1.0
-MODES_Hz = 8000.0
-"""Sounds are brought to this rate before modes are found: above 1 kHz fingers feel nothing."""
 REMEDY = "give measured curves, *.ahap, *.haptic, *.hjif or *.wav"
 
 
@@ -154,42 +144,9 @@ def _name(text: str) -> str:
 
 def _read(path: Path, form: str, scale_m_s2: float | None) -> VibrationRead:
     if form == "wav":
-        return _wav(path, scale_m_s2)
+        return wav_vibration(path, scale_m_s2)
     extra: VibrationFormat = extras.load("exchange_formats", form)
     return extra.read(path, scale_m_s2)
-
-
-def _wav(path: Path, scale: float | None) -> VibrationRead:
-    if scale is None:
-        raise InputError(path, "samples", "a sound does not say what full scale is", "pass --full-scale-m-s2")
-    sound = read_wav(read_limited(path, LARGEST_bytes, "give a sound of a second or less"))
-    samples = sound.samples.astype(np.float64) / 32767 * scale
-    if not samples.size or not np.abs(samples).max():
-        raise InputError(path, "samples", "it is silent", "give one that is not")
-    first = int(np.argmax(np.abs(samples) > ONSET_ratio * np.abs(samples).max()))
-    last = samples.size - int(np.argmax(np.abs(samples[::-1]) > END_ratio * np.abs(samples).max()))
-    # the last sample before is the onset: what begins there has just left zero
-    ring = samples[max(0, first - 1) : last]
-    if ring.size > LONGEST_s * sound.rate_Hz:
-        raise InputError(path, "samples", f"it rings for more than {LONGEST_s:g} s", "cut one snap out of it")
-    thin, rate_Hz = _thinned(ring, sound.rate_Hz)
-    try:
-        fit = fit_modes(thin, rate_Hz)
-    except FitError as error:
-        raise InputError(path, "samples", str(error), "give a longer sound") from error
-    if not fit.modes:
-        raise InputError(path, "samples", "no damped mode in it", "give a snap's sound")
-    modes = tuple(Mode(m.frequency_Hz, m.amplitude, m.decay_1_s, m.phase_rad) for m in fit.modes)
-    note = f"{len(modes)} damped modes, {fit.noise:.3g} m/s2 of noise left per sample"
-    return VibrationRead(modes, ring.size / sound.rate_Hz, notes=(note,))
-
-
-def _thinned(samples: FloatArray, rate_Hz: int) -> tuple[FloatArray, float]:
-    from scipy.signal import resample_poly
-
-    down = max(1, int(rate_Hz // MODES_Hz))
-    # ends held would ring; the sound is silent before and after
-    return (samples if down == 1 else np.asarray(resample_poly(samples, 1, down))), rate_Hz / down
 
 
 def _given(path: Path, settings: ImportSettings, form: str, read: VibrationRead) -> Imported:

@@ -100,9 +100,10 @@ PART = re.compile(r"(?P<file>.+?)(?::(?P<stroke>press|release))?(?:@(?P<velocity
 
 
 def open_part(spec: str) -> FDVVModel:
-    """Open a part: a button, cut to one stroke if asked, its curves declared to be of a velocity if asked.
+    """Open a part: a button, cut to one stroke and to one velocity if asked.
 
-    Raises InputError, also where a velocity is given to several curves of one stroke.
+    Of several curves of a stroke the one measured at that velocity is taken; a single one is declared to be
+    of it. Raises InputError, also where none of several is of that velocity.
     """
     if Path(spec).is_file():
         # a file that is there under the whole name is meant, however its name reads
@@ -116,11 +117,16 @@ def open_part(spec: str) -> FDVVModel:
     if not curves:
         reason = f"the button has no {found['stroke']} curve"
         raise InputError(spec, "argument", reason, "name the other stroke")
+    vibrations = model.vibrations
     if found["velocity"]:
-        curves = _declared(curves, _velocity(spec, found["velocity"]), spec)
+        velocity_mm_s = _velocity(spec, found["velocity"])
+        if len({curve.stroke for curve in curves}) < len(curves):
+            curves = _chosen(curves, velocity_mm_s, spec)
+            vibrations = tuple(v for v in vibrations if v.velocity_mm_s in (None, velocity_mm_s))
+        else:
+            curves = _declared(curves, velocity_mm_s)
     strokes = {curve.stroke for curve in curves}
-    vibrations = tuple(v for v in model.vibrations if v.stroke in strokes)
-    return replace(model, curves=curves, vibrations=vibrations)
+    return replace(model, curves=curves, vibrations=tuple(v for v in vibrations if v.stroke in strokes))
 
 
 def _velocity(spec: str, text: str) -> float:
@@ -133,12 +139,17 @@ def _velocity(spec: str, text: str) -> float:
     return velocity_mm_s
 
 
-def _declared(curves: tuple[ForceCurve, ...], velocity_mm_s: float, spec: str) -> tuple[ForceCurve, ...]:
-    for stroke in Stroke:
-        count = sum(c.stroke is stroke for c in curves)
-        if count > 1:
-            reason = f"the button has {count} {stroke} curves, one velocity cannot serve them"
-            raise InputError(spec, "velocity", reason, "leave out the velocity or name a button of one curve")
+def _chosen(curves: tuple[ForceCurve, ...], velocity_mm_s: float, spec: str) -> tuple[ForceCurve, ...]:
+    found = tuple(c for c in curves if c.velocity_mm_s == velocity_mm_s)
+    if not found:
+        speeds = sorted({c.velocity_mm_s for c in curves if c.velocity_mm_s is not None})
+        reason = f"the button has no curve of {velocity_mm_s:g} mm/s"
+        listed = ", ".join(f"@{speed:.12g}" for speed in speeds)
+        raise InputError(spec, "velocity", reason, f"choose one of {listed}")
+    return found
+
+
+def _declared(curves: tuple[ForceCurve, ...], velocity_mm_s: float) -> tuple[ForceCurve, ...]:
     # a spread between presses at another speed says nothing about this one
     measured = (None, velocity_mm_s)
     return tuple(
@@ -182,5 +193,8 @@ def one_curve(spec: str) -> ForceCurve:
     if len(curves) != 1:
         listed = ", ".join(f"{c.stroke} at {c.velocity_mm_s or 'unknown'} mm/s" for c in curves)
         reason = f"holds {len(curves)} curves ({listed}), one is needed"
-        raise InputError(spec, "argument", reason, "add :press or :release")
+        strokes = {curve.stroke for curve in curves}
+        several = len(strokes) < len(curves)
+        missing = [":press or :release"] * (len(strokes) > 1) + ["the velocity, as @50"] * several
+        raise InputError(spec, "argument", reason, f"add {' and '.join(missing)}")
     return curves[0]

@@ -262,7 +262,12 @@ def recording_csv(recording: Recording) -> Exported:
         )
     kept = ("every sample in its unit, with take, stage, pace and clock",)
     lost = ("marks, raw counts and calibration", "bench, sources and remarks")
-    return Exported("recording-csv", held.getvalue().encode(), kept, lost)
+    takes = recording.takes
+    figures: dict[str, float | None] = {
+        "samples": float(sum(stream.t_s.size for take in takes for stream in take.streams)),
+        "lost_marks": float(sum(len(take.marks) for take in takes)),
+    }
+    return Exported("recording-csv", held.getvalue().encode(), kept, lost, figures)
 
 
 def _cell(value: float) -> str:

@@ -140,15 +140,26 @@ class Averaged:
 
 
 def average_by_velocity(file: ForceFile) -> tuple[Averaged, ...]:
-    """Average the cycles of each velocity (10 % apart is another one), in the order of the file."""
+    """Average the cycles of each velocity, in the order of the file.
+
+    Measured velocities 10 % apart are different ones; stated ones are wherever they differ. Lone presses
+    and lone releases are no repeats of each other: each stroke has its own mean.
+    """
     groups: list[list[tuple[Cycle, str]]] = []
     for i, cycle in enumerate(file.cycles):
-        homes = (group for group in groups if _alike(_velocity(group[0][0]), _velocity(cycle)))
-        home = next(homes, None)
+        home = next((group for group in groups if _of_one_velocity(group[0][0], cycle)), None)
         if home is None:
             groups.append(home := [])
         home.append((cycle, cycle.label or f"cycle {i + 1}"))
-    return tuple(map(_average, groups))
+    return tuple(_average(part) for group in groups for part in _by_stroke(group))
+
+
+def _by_stroke(group: list[tuple[Cycle, str]]) -> list[list[tuple[Cycle, str]]]:
+    """Part a group of lone strokes by stroke; a group with a whole cycle in it stays together."""
+    if any(cycle.press and cycle.release for cycle, _ in group):
+        return [group]
+    parts = [[named for named in group if named[0].of(stroke)] for stroke in Stroke]
+    return [part for part in parts if part]
 
 
 def _velocity(cycle: Cycle) -> float | None:
@@ -157,6 +168,12 @@ def _velocity(cycle: Cycle) -> float | None:
 
 def _alike(a: float | None, b: float | None) -> bool:
     return a is b if a is None or b is None else abs(a - b) <= 0.1 * max(a, b)
+
+
+def _of_one_velocity(a: Cycle, b: Cycle) -> bool:
+    if a.stated and b.stated:
+        return _velocity(a) == _velocity(b)
+    return _alike(_velocity(a), _velocity(b))
 
 
 def _average(named: Sequence[tuple[Cycle, str]]) -> Averaged:

@@ -95,6 +95,7 @@ def _cycle(raw: RawCycle, notes: Notes) -> Cycle:
         raw.actuation_mm if actuation is None else actuation,
         raw.reset_mm if reset is None else reset,
         raw.label,
+        raw.velocity_mm_s is not None,
     )
 
 

@@ -22,6 +22,7 @@ class Cycle:
     actuation_mm, reset_mm : where the electrical contact closed and opened, in the same displacement;
         None if the file does not state it or the contact chattered.
     label : how the file names it ("Press 3", "run 1").
+    stated : whether the file states the velocity; else it was measured, or is unknown.
     """
 
     press: MeasuredCurve | None
@@ -29,6 +30,7 @@ class Cycle:
     actuation_mm: float | None = None
     reset_mm: float | None = None
     label: str = ""
+    stated: bool = False
 
     def of(self, stroke: Stroke) -> MeasuredCurve | None:
         return self.press if stroke is Stroke.PRESS else self.release
