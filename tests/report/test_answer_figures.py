@@ -42,7 +42,9 @@ def multiverse(count: int = 6) -> Multiverse:
     ties = ("split", "dropped") * (count // 2)
     return Multiverse(
         tuple(
-            Specification("all", "choice", "person", ties[i], "t", s, s - 0.05, s + 0.05, 9, 0.65 - s, i == 2)
+            Specification(
+                "all", "choice", "person", ties[i], "t", s, s - 0.05, s + 0.05, 9, 0.65 - s, i == 2, i == 2
+            )
             for i, s in enumerate(shares)
         ),
         0.0,

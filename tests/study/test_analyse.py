@@ -12,10 +12,12 @@ from scipy.stats import norm, wilcoxon
 
 from fdvv.errors import InputError
 from fdvv.io.documents import finite
+from fdvv.stats.rank_tests import signed_rank
 from fdvv.study.analysis.analyse import analyse
 from fdvv.study.analysis.code_book import write_answers
 from fdvv.study.analysis.export import analysis_dict
 from fdvv.study.analysis.read_answers import read_answers
+from fdvv.study.analysis.sentences import scale_sentence
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.claim import claim_scores
 from fdvv.study.plan.plan import StudyPlan
@@ -69,6 +71,72 @@ def test_tests_by_button_are_scipys_of_peoples_means_holm_corrected() -> None:
     order = np.argsort(p)
     stepped = np.minimum(1, np.maximum.accumulate(np.sort(p) * np.arange(len(p), 0, -1)))
     assert_allclose(np.array([one.p_holm for one in found])[order], stepped)
+
+
+def _harder_rounds() -> Answers:
+    """Return six people of two rounds, the second rated higher, who all feel FDVV a step above FD."""
+    answers = realism(6, 2, ("Clear",))
+    ratings = np.where(answers.round[:, np.newaxis] == 0, [1.0, 2.0], [6.0, 7.0])
+    return replace(answers, choice=np.full(12, ""), ratings={"realism": ratings})
+
+
+def test_a_rating_that_is_missing_unpairs_nothing_and_is_counted() -> None:
+    answers = _harder_rounds()
+    ratings = answers.ratings["realism"].copy()
+    ratings[1, 1] = np.nan
+    found = analyse(replace(answers, ratings={"realism": ratings}))
+    (test,) = found.tests
+    assert found.multiverse is not None
+    assert test.test.p_exact == found.multiverse.reported.p == 2 / 2**6
+    assert (test.unpaired, test.test.n) == (1, 6)
+    assert any("1 rating stands alone in a trial" in note for note in found.notes)
+
+
+def test_ratings_that_never_meet_in_a_trial_are_refused() -> None:
+    answers = _harder_rounds()
+    ratings = np.where(answers.round[:, np.newaxis] == [0, 1], answers.ratings["realism"], np.nan)
+    found = analyse(replace(answers, ratings={"realism": ratings}))
+    assert found.tests == ()
+    assert any("FDVV and FD were never rated in one trial" in note for note in found.notes)
+
+
+def test_who_lacks_a_pair_at_one_button_is_named_by_number() -> None:
+    answers = realism(8, 2, ("Clear", "Red"))
+    ratings = answers.ratings["realism"].copy()
+    ratings[(answers.person == "P02") & (answers.item == "Red"), 0] = np.nan
+    found = analyse(replace(answers, ratings={"realism": ratings}))
+    assert [one.test.n for one in found.tests] == [8, 7]
+    assert any("for want of a pair, people: 1 at Red" in note for note in found.notes)
+
+
+def test_pairs_of_many_renderings_are_of_trials_in_which_both_were_rated() -> None:
+    answers = mushra(9, ("Clear",))
+    ratings = answers.ratings["quality"].copy()
+    ratings[(answers.person == "P03") & (answers.round == 1), 2] = np.nan
+    (found,) = analyse(replace(answers, ratings={"quality": ratings})).rated
+    off = ratings[:, 1] - ratings[:, 2]
+    means = [np.nanmean(off[answers.person == person]) for person in dict.fromkeys(answers.person)]
+    (pair,) = [one for one in found.pairs if (one.first, one.second) == ("FDVV", "FD")]
+    assert_allclose(pair.test.p_exact, signed_rank(means).p_exact)
+    assert_allclose(pair.test.shift, signed_rank(means).shift)
+    assert found.unpaired == 3
+
+
+def test_only_what_a_plan_fixed_is_registered_in_the_multiverse() -> None:
+    answers = realism(6, 2, ("Clear", "Dome"))
+    for found, registered in ((analyse(answers), 0), (analyse(answers, plan()), 1)):
+        assert found.multiverse is not None
+        assert sum(one.registered for one in found.multiverse.specifications) == registered
+        assert sum(one.reported for one in found.multiverse.specifications) == 1
+
+
+def test_a_singular_ordinal_fit_says_so_and_has_no_correlation() -> None:
+    found = analyse(realism(6, 2, ("Clear",)))
+    model = found.scales[0].model
+    assert model.correlation is None
+    assert "the fit is singular" in model.singular
+    assert any(model.singular in note for note in found.notes)
+    assert model.singular.split(":")[0] in scale_sentence(found.scales[0]).replace("\u00a0", " ")
 
 
 def test_the_plan_decides_what_the_main_claim_is() -> None:
@@ -179,7 +247,7 @@ def test_every_kind_and_every_problem_is_written_as_json(answers: Answers) -> No
 def test_for_few_people_a_warning_says_that_nothing_can_be_significant() -> None:
     assert "One person is left" in analyse(realism(1, 2)).notes[0]
     assert "With 5 people no exact" in analyse(realism(5, 2, ("Clear",))).notes[0]
-    assert analyse(realism(6, 2, ("Clear",))).notes == ()
+    assert not any("no exact" in note for note in analyse(realism(6, 2, ("Clear",))).notes)
     assert analyse(realism(1, 2)).multiverse is None
 
 

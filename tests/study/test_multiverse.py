@@ -20,7 +20,7 @@ def test_the_registered_way_is_the_test_that_is_reported() -> None:
     answers = realism(lean=0.4)
     found = multiverse(answers, CLAIM)
     means = means_by(claim_values(answers, CLAIM), answers.person)
-    main = found.registered
+    main = found.reported
     assert (main.exclusions, main.measure, main.unit, main.ties) == (
         "by the rules", "choice", "person", "split"
     )  # fmt: skip
@@ -50,7 +50,7 @@ def test_ways_are_in_rising_order_and_differ() -> None:
     assert shares == sorted(shares)
     keys = [(w.exclusions, w.measure, w.unit, w.ties, w.test) for w in found]
     assert len(set(keys)) == len(keys)
-    assert sum(one.registered for one in found) == 1
+    assert sum(one.reported for one in found) == 1
 
 
 def test_a_clear_lean_is_found_in_every_way_and_none_in_few() -> None:

@@ -29,6 +29,10 @@ NODES = {1: 15, 2: 9}
 """Quadrature nodes by dimension; more move no estimate by 1e-4 of its error."""
 
 FEWEST_NODES = 5
+SMALLEST_SD, CLOSEST = 1e-3, 0.999
+"""A spread between people below the first, in standard deviations of a feeling, is none; two spreads whose
+correlation is above the second are one."""
+
 WIDEST_ERROR = 20.0
 """Standard error, in standard deviations of a feeling, of an effect that the answers do not bound."""
 
@@ -56,11 +60,12 @@ class OrdinalModel:
     thresholds : between neighbouring categories that were used. categories : those, in order.
     effects : of the predictors, in their order.
     person_sd : standard deviation between people: of their use of the scale, then of their slope if asked.
-    correlation : of the two; None with one.
+    correlation : of the two; None with one, and where the fit is singular.
     person_effects : (people in the order of first appearance), the most likely effect of each in the model
         with a slope: the common one and the person's own; () without a slope.
     log_likelihood : at the maximum. nodes : of the quadrature, per dimension.
     problem : why the numbers do not hold, as one line; "" where they do. Show it wherever they are shown.
+    singular : why the spread between people cannot be split into its parts, as one line; "" where it can.
     """
 
     people: int
@@ -75,6 +80,7 @@ class OrdinalModel:
     log_likelihood: float
     nodes: int
     problem: str = ""
+    singular: str = ""
 
     def of(self, name: str) -> OrdinalEffect:
         """Return an effect by its name. KeyError."""
@@ -116,6 +122,7 @@ def ordinal_model(
         _effect(*row) for row in zip(names, fit.point.effects.tolist(), _errors(fit), strict=True)
     )
     sd, correlation = _spread(fit.point.factor)
+    singular = _singular(sd, correlation)
     return OrdinalModel(
         people=people,
         n=who.size,
@@ -124,11 +131,12 @@ def ordinal_model(
         thresholds=tuple(fit.point.thresholds.tolist()),
         effects=effects,
         person_sd=sd,
-        correlation=correlation,
+        correlation=None if singular else correlation,
         person_effects=() if place is None else _person_effects(data, fit.point, place),
         log_likelihood=fit.log_likelihood,
         nodes=chosen,
         problem=_problem(effects, fit.slope),
+        singular=singular,
     )
 
 
@@ -155,6 +163,20 @@ def _spread(factor: FloatArray) -> tuple[tuple[float, ...], float | None]:
     sd = np.sqrt(np.diag(spread))
     correlation = float(spread[0, 1] / (sd[0] * sd[1])) if len(sd) == 2 and sd.min() > 0 else None
     return tuple(sd.tolist()), correlation
+
+
+def _singular(sd: tuple[float, ...], correlation: float | None) -> str:
+    """Return what of the spread between people lies on the edge of what can be (Bates et al. 2015); or ""."""
+    if min(sd) < SMALLEST_SD:
+        own = "use of the scale" if sd[0] < SMALLEST_SD else "own difference"
+        return f"the fit is singular: people's {own} does not differ at all"
+    if correlation is not None and abs(correlation) > CLOSEST:
+        sides = "more" if correlation > 0 else "less"
+        return (
+            f"the fit is singular: who rates higher differs {sides} without exception (a correlation of "
+            f"{correlation:+.0f}), so people's use of the scale and their own difference are not told apart"
+        )
+    return ""
 
 
 def _person_effects(data: OrdinalData, point: OrdinalPoint, place: int) -> tuple[float, ...]:

@@ -8,7 +8,7 @@ need no table.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
@@ -276,6 +276,15 @@ def ranked_pairs(
         raise ModelError(f"scores of shape {found.shape} need as many different names, got {list(names)}")
     column = dict(zip(names, found.T, strict=True))
     pairs = pairs_of(names, against)
-    tests = [signed_rank(column[first] - column[second], zeros) for first, second in pairs]
+    return rank_pairs({pair: column[pair[0]] - column[pair[1]] for pair in pairs}, zeros)
+
+
+def rank_pairs(
+    differences: Mapping[tuple[str, str], npt.ArrayLike], zeros: Zeros = "wilcoxon"
+) -> tuple[RankPair, ...]:
+    """Test people's differences (people,) of each pair by signed_rank; Holm's correction of their exact p."""
+    tests = [signed_rank(values, zeros) for values in differences.values()]
     corrected = holm([test.p_exact for test in tests])
-    return tuple(RankPair(*pair, test, p) for pair, test, p in zip(pairs, tests, corrected, strict=True))
+    return tuple(
+        RankPair(*pair, test, p) for pair, test, p in zip(differences, tests, corrected, strict=True)
+    )

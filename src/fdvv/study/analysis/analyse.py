@@ -42,6 +42,7 @@ def analyse(answers: Answers, plan: StudyPlan | None = None, title: str = "") ->
         raise InputError(title or "answers", "whole file", "it holds no answer", "check the mapped columns")
     notes: list[str] = []
     claim = (plan.claim if plan else None) or usual_claim(found)
+    registered = bool(plan and plan.claim)
     choices = _choices(found, claim, notes)
     thresholds = threshold_results(found, plan.staircase if plan else None)
     return StudyAnalysis(
@@ -52,8 +53,8 @@ def analyse(answers: Answers, plan: StudyPlan | None = None, title: str = "") ->
         simulated=found.simulated,
         screening=screening,
         people=_people(screening, claim),
-        claim=_claim(found, claim, bool(plan and plan.claim), notes),
-        tests=button_tests(found, claim) if claim and _two_rated(found, claim) else (),
+        claim=_claim(found, claim, registered, notes),
+        tests=button_tests(found, claim, notes) if claim and _two_rated(found, claim) else (),
         scales=scale_results(found, claim, notes) if claim and _two_rated(found, claim) else (),
         rated=rated_results(found, notes) if found.kind == "mushra" else (),
         preference=choices[0] if choices else None,
@@ -61,7 +62,7 @@ def analyse(answers: Answers, plan: StudyPlan | None = None, title: str = "") ->
         thresholds=thresholds,
         threshold=threshold_over_people(thresholds),
         timing=timing_results(found, notes) if found.kind == TIMING else None,
-        multiverse=_multiverse(found, claim, notes) if screening.people_counted > 1 else None,
+        multiverse=_multiverse(found, claim, registered, notes) if screening.people_counted > 1 else None,
         notes=(*_warnings(screening), *dict.fromkeys(notes)),
     )
 
@@ -93,15 +94,17 @@ def _claim(answers: Answers, claim: Claim | None, registered: bool, notes: list[
     return ClaimResult(claim, registered, measure_of(answers, claim), test)
 
 
-def _multiverse(answers: Answers, claim: Claim | None, notes: list[str]) -> Multiverse | None:
+def _multiverse(
+    answers: Answers, claim: Claim | None, registered: bool, notes: list[str]
+) -> Multiverse | None:
     if claim is None:
         return None
     try:
-        found = multiverse(answers, claim)
+        found = multiverse(answers, claim, registered)
     except ModelError:
         # the claim's own test has noted why
         return None
-    if not any(one.registered for one in found.specifications):
+    if not any(one.reported for one in found.specifications):
         notes.append("The main claim has no other specifications: nothing is left to test.")
         return None
     return found

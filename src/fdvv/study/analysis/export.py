@@ -13,8 +13,9 @@ import numpy as np
 from fdvv.io.documents import finite
 from fdvv.io.files import write_atomic
 from fdvv.study.analysis.code_book import cell_text, csv_text
+from fdvv.study.analysis.columns import TIMING
 from fdvv.study.analysis.multiverse import Multiverse
-from fdvv.study.analysis.ratings import names_of, people_means
+from fdvv.study.analysis.ratings import complete_rows, names_of, people_means
 from fdvv.study.analysis.records import ClaimResult, RatedResult, StudyAnalysis, ThresholdResult, TimingResult
 from fdvv.study.plan.trial import EQUAL
 
@@ -79,6 +80,7 @@ def _rated(found: RatedResult) -> dict[str, Any]:
         "stimuli": {name: asdict(one) for name, one in found.spreads.items()},
         "friedman": found.friedman and asdict(found.friedman),
         "pairs": [asdict(one) for one in found.pairs],
+        "unpaired_ratings": found.unpaired,
     }
 
 
@@ -135,7 +137,9 @@ def people_csv(found: StudyAnalysis) -> str:
     buttons = names_of(answers.item)
     heads, columns = ["person"], [list(found.screening.people)]
     for rating, values in answers.ratings.items():
-        means = people_means(answers, values)
+        # of two stimuli the means are those that are tested: of trials in which both were rated
+        paired = values.shape[1] == 2 and answers.kind != TIMING
+        means = people_means(answers, complete_rows(values) if paired else values)
         for j, button in enumerate(buttons):
             for k, stimulus in enumerate(answers.stimuli):
                 heads.append(f"{rating}_{button}_{stimulus}")

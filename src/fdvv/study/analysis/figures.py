@@ -179,7 +179,7 @@ def plot_specifications(found: Multiverse, axis: str, marked: str, simulated: bo
     top.set_ylabel(axis)
     style.set_titles(top, f"{len(found.specifications)} specifications of the main claim", False)
     say_proxy(top, simulated)
-    _draw_specifications(below, choices, found.specifications.index(found.registered))
+    _draw_specifications(below, choices, found.specifications.index(found.reported))
     fig.legend(loc="outside lower center", ncols=3)
     return np.array([top, below])
 
@@ -200,7 +200,7 @@ def _draw_shares(ax: Axes, found: Multiverse, marked: str) -> None:
         if some.any():
             ax.vlines(places[some], low[some], high[some], color=colour, linewidth=1.2, alpha=0.5)
             ax.plot(places[some], share[some], "o", color=colour, markersize=3.6, label=label)
-    at = found.specifications.index(found.registered)
+    at = found.specifications.index(found.reported)
     look: Any = {"color": style.PALETTE[1], "markersize": 9.0, "zorder": 4.0, "label": marked}
     ax.plot(places[at : at + 1], share[at : at + 1], "D", **look)
     ax.margins(x=0.02)

@@ -30,8 +30,8 @@ class Specification:
 
     Attributes
     ----------
-    exclusions, measure, unit, ties, test : the choices made. registered : it was fixed beforehand,
-        or, where nothing was, the one that fdvv reports.
+    exclusions, measure, unit, ties, test : the choices made. reported : it is the main analysis of the
+        report. registered : it is that, and a plan had fixed its claim beforehand.
     share : part that speaks for the claim, ties as halves or dropped; 0.5 is no difference. low, high : its
         95 % interval. n : numbers that were tested. p : two-sided.
     """
@@ -47,6 +47,7 @@ class Specification:
     n: int
     p: float
     registered: bool = False
+    reported: bool = False
 
 
 @dataclass(frozen=True)
@@ -57,17 +58,17 @@ class Multiverse:
     alpha: float
 
     @property
-    def registered(self) -> Specification:
-        return next(one for one in self.specifications if one.registered)
+    def reported(self) -> Specification:
+        return next(one for one in self.specifications if one.reported)
 
     @property
     def _alike(self) -> list[Specification]:
-        side = np.sign(self.registered.share - 0.5)
+        side = np.sign(self.reported.share - 0.5)
         return [one for one in self.specifications if np.sign(one.share - 0.5) == side]
 
     @property
     def agreeing(self) -> int:
-        """How many have a share on the same side of one half as the registered one."""
+        """How many have a share on the same side of one half as the reported one."""
         return len(self._alike)
 
     @property
@@ -76,10 +77,11 @@ class Multiverse:
         return sum(one.p < self.alpha for one in self._alike)
 
 
-def multiverse(answers: Answers, claim: Claim) -> Multiverse:
+def multiverse(answers: Answers, claim: Claim, registered: bool = False) -> Multiverse:
     """Test a claim under every reasonable specification.
 
-    answers : screened; `excluded` says what the rules left out. Equivalent specifications are counted once.
+    answers : screened; `excluded` says what the rules left out. registered : a plan had fixed the claim.
+    Equivalent specifications are counted once.
     ModelError on a claim that the answers do not hold.
     """
     first = measure_of(answers, claim)
@@ -92,7 +94,8 @@ def multiverse(answers: Answers, claim: Claim) -> Multiverse:
                 found += _tested(exclusions, measure, unit, ties, values, keys)
     chosen = (PLANNED, first, PERSON, SPLIT, RANKS)
     key = attrgetter("exclusions", "measure", "unit", "ties", "test")
-    marked = [replace(one, registered=key(one) == chosen) for one in found]
+    main = [key(one) == chosen for one in found]
+    marked = [replace(s, reported=m, registered=m and registered) for s, m in zip(found, main, strict=True)]
     return Multiverse(tuple(sorted(marked, key=lambda one: one.share)), claim.alpha)
 
 

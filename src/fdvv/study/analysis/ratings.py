@@ -8,10 +8,11 @@ import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.stats.ordinal import ordinal_model
-from fdvv.stats.post_hoc import holm
-from fdvv.stats.rank_tests import Friedman, friedman, ranked_pairs, signed_rank
+from fdvv.stats.post_hoc import holm, pairs_of
+from fdvv.stats.rank_tests import Friedman, RankPair, friedman, rank_pairs, signed_rank
 from fdvv.study.analysis.records import ALL_BUTTONS, ButtonTest, RatedResult, ScaleResult, Spread
-from fdvv.study.plan.answers import Answers
+from fdvv.study.analysis.words import people_text
+from fdvv.study.plan.answers import Answers, is_answered
 from fdvv.study.plan.plan import Claim
 from fdvv.units import FloatArray
 
@@ -55,55 +56,129 @@ def spread_of(values: FloatArray) -> Spread:
     return Spread(n, mean, mean - half, mean + half, sd, float(np.median(there)))
 
 
-def button_tests(answers: Answers, claim: Claim) -> tuple[ButtonTest, ...]:
-    """Test the ratings of two renderings at every button; Holm's correction within a rating."""
+def complete_rows(columns: FloatArray) -> FloatArray:
+    """Return columns (n, k) with the rows that lack a number emptied.
+
+    A difference is taken within a trial: else who skipped one rating of a hard trial would show a difference
+    between trials.
+    """
+    return np.where(np.isfinite(columns).all(axis=1, keepdims=True), columns, np.nan)
+
+
+def _unpaired(columns: FloatArray) -> int:
+    return int(np.isfinite(columns).sum() - np.isfinite(complete_rows(columns)).sum())
+
+
+def button_tests(answers: Answers, claim: Claim, notes: list[str]) -> tuple[ButtonTest, ...]:
+    """Test the ratings of two renderings at every button, trials in which both were rated.
+
+    Holm's correction within a rating. What is left out is noted.
+    """
     more, less = (answers.stimuli.index(name) for name in (claim.more, claim.less))
     found: list[ButtonTest] = []
     for rating, columns in answers.ratings.items():
-        means = people_means(answers, columns)
+        pairs = columns[:, [more, less]]
+        means = people_means(answers, complete_rows(pairs))
         tests = []
         for j, button in enumerate(names_of(answers.item)):
-            pair = means[:, j, [more, less]]
-            both = pair[np.isfinite(pair).all(axis=1)]
-            if len(both):
-                test = signed_rank(pair[:, 0] - pair[:, 1])
-                spreads = spread_of(both[:, 0]), spread_of(both[:, 1])
-                tests.append(ButtonTest(button, rating, claim.more, claim.less, *spreads, test, 1.0))
+            alone = _unpaired(pairs[answers.counts & (answers.item == button)])
+            test = _button_test(button, rating, claim, means[:, j], alone)
+            if test:
+                tests.append(test)
+            elif alone:
+                reason = f"{claim.more} and {claim.less} were never rated in one trial"
+                notes.append(f"{rating} of {button} is not tested: {reason}.")
         corrected = holm([one.test.p_exact for one in tests])
         found += [replace(one, p_holm=p) for one, p in zip(tests, corrected, strict=True)]
+    counted = np.unique(answers.person[answers.counts & is_answered(answers)]).size
+    notes += _left_out(found, counted)
     return tuple(found)
 
 
+def _button_test(
+    button: str, rating: str, claim: Claim, means: FloatArray, unpaired: int
+) -> ButtonTest | None:
+    """Test people's means (people, 2), the same trials in both; None where there are none."""
+    both = means[np.isfinite(means).all(axis=1)]
+    if not len(both):
+        return None
+    test = signed_rank(means[:, 0] - means[:, 1])
+    spreads = spread_of(both[:, 0]), spread_of(both[:, 1])
+    return ButtonTest(button, rating, claim.more, claim.less, *spreads, test, 1.0, unpaired)
+
+
+def _left_out(tests: list[ButtonTest], people: int) -> list[str]:
+    """Say for each rating how many answers, and of how many people, the tests by button do without."""
+    notes = []
+    for rating in dict.fromkeys(one.rating for one in tests):
+        of_it = [one for one in tests if one.rating == rating]
+        alone = sum(one.unpaired for one in of_it)
+        lacking = [f"{people - one.test.n} at {one.button}" for one in of_it if one.test.n < people]
+        if alone:
+            ratings = "1 rating stands" if alone == 1 else f"{alone} ratings stand"
+            why = "the tests by button compare within trials and leave out what lacks the other stimulus's"
+            notes.append(f"{rating}: {ratings} alone in a trial; {why}.")
+        if lacking:
+            notes.append(f"{rating}: not tested for want of a pair, people: {', '.join(lacking)}.")
+    return notes
+
+
 def rated_results(answers: Answers, notes: list[str]) -> tuple[RatedResult, ...]:
-    """Compare all renderings of a MUSHRA-like study: over all buttons, then at each."""
+    """Compare all renderings of a MUSHRA-like study: over all buttons, then at each.
+
+    Friedman's test takes trials in which every rendering was rated, a pair those in which both were.
+    """
     found = []
     for rating, columns in answers.ratings.items():
-        means = people_means(answers, columns)
         buttons = names_of(answers.item)
-        # a person's mean over buttons only where they rated each, or what is missing would pass for a taste
-        places = [(ALL_BUTTONS, means.mean(axis=1))]
-        if len(buttons) > 1:
-            places += [(button, means[:, j]) for j, button in enumerate(buttons)]
-        for button, scores in places:
-            one = _rated(answers.stimuli, rating, button, scores, notes)
+        for button in [ALL_BUTTONS, *(buttons if len(buttons) > 1 else ())]:
+            one = _rated(answers, rating, button, columns, notes)
             found += [one] if one else []
     return tuple(found)
 
 
+def _scores(answers: Answers, button: str, columns: FloatArray) -> FloatArray:
+    """Return people's means (people, k) at a button; over all only of who rated at each.
+
+    What is missing would else pass for a taste.
+    """
+    means = people_means(answers, columns)
+    place = None if button == ALL_BUTTONS else names_of(answers.item).index(button)
+    return means.mean(axis=1) if place is None else means[:, place]
+
+
 def _rated(
-    stimuli: tuple[str, ...], rating: str, button: str, scores: FloatArray, notes: list[str]
+    answers: Answers, rating: str, button: str, columns: FloatArray, notes: list[str]
 ) -> RatedResult | None:
-    """Compare people's scores (people, stimuli)."""
+    scores = _scores(answers, button, columns)
     if not np.isfinite(scores).any(axis=0).all():
         notes.append(f"Nobody rated every rendering of {button or 'all buttons'}: it is left out.")
         return None
-    spreads = {name: spread_of(scores[:, i]) for i, name in enumerate(stimuli)}
+    spreads = {name: spread_of(scores[:, i]) for i, name in enumerate(answers.stimuli)}
+    rows = answers.counts & ((answers.item == button) | (button == ALL_BUTTONS))
+    unpaired = _unpaired(columns[rows])
+    complete = _scores(answers, button, complete_rows(columns))
+    tested = _friedman(complete, button, notes)
+    lost = int(np.isfinite(scores).any(axis=1).sum() - np.isfinite(complete).all(axis=1).sum())
+    if tested and (lost or unpaired):
+        who = f"{people_text(lost)} without a complete trial"
+        of = f"Friedman's test of {button or 'all buttons'}"
+        notes.append(f"{of} leaves out {who} and {unpaired} ratings of incomplete ones.")
+    pairs = _rank_pairs(answers, button, columns, notes)
+    return RatedResult(button, rating, spreads, tested, pairs, unpaired)
+
+
+def _rank_pairs(answers: Answers, button: str, columns: FloatArray, notes: list[str]) -> tuple[RankPair, ...]:
+    differences = {}
+    for first, second in pairs_of(answers.stimuli, None):
+        places = [answers.stimuli.index(first), answers.stimuli.index(second)]
+        means = _scores(answers, button, complete_rows(columns[:, places]))
+        differences[first, second] = means[:, 0] - means[:, 1]
     try:
-        pairs = ranked_pairs(scores, stimuli)
+        return rank_pairs(differences)
     except ModelError as error:
         notes.append(f"Pairs of {button or 'all buttons'} are not tested: {error}.")
-        pairs = ()
-    return RatedResult(button, rating, spreads, _friedman(scores, button, notes), pairs)
+        return ()
 
 
 def _friedman(scores: FloatArray, button: str, notes: list[str]) -> Friedman | None:
@@ -132,5 +207,7 @@ def scale_results(answers: Answers, claim: Claim, notes: list[str]) -> tuple[Sca
         except ModelError as error:
             notes.append(f"No ordinal model of {rating}: {error}.")
             continue
+        if model.singular:
+            notes.append(f"The ordinal model of {rating}: {model.singular}.")
         found.append(ScaleResult(rating, claim.more, claim.less, model))
     return tuple(found)

@@ -124,7 +124,9 @@ class ButtonTest:
 
     Attributes
     ----------
-    test : of people's differences, more minus less. p_holm : its exact p, for all buttons of the rating.
+    test : of people's differences, more minus less, each the mean of the trials in which they rated both.
+    p_holm : its exact p, for all buttons of the rating. unpaired : ratings that stand alone in their trial,
+        and were left out.
     """
 
     button: str
@@ -135,6 +137,7 @@ class ButtonTest:
     less_spread: Spread
     test: SignedRank
     p_holm: float
+    unpaired: int = 0
 
     def to_dict(self) -> dict[str, Any]:
         """Return every figure, those of the test beside the button's name."""
@@ -143,6 +146,7 @@ class ButtonTest:
             "rating": self.rating,
             **asdict(self.test),
             "p_holm": self.p_holm,
+            "unpaired_ratings": self.unpaired,
             "more": {"name": self.more, **asdict(self.more_spread)},
             "less": {"name": self.less, **asdict(self.less_spread)},
         }
@@ -165,7 +169,9 @@ class RatedResult:
     Attributes
     ----------
     button : ALL_BUTTONS for people's means over buttons. spreads : by stimulus. friedman : None where it
-        cannot be computed. pairs : of all stimuli, Holm's correction.
+        cannot be computed; of people who rated all stimuli in a trial, and of those trials. pairs : of all
+        stimuli, of trials in which both were rated, Holm's correction. unpaired : ratings of trials that lack
+        one, which the test of all leaves out.
     """
 
     button: str
@@ -173,6 +179,7 @@ class RatedResult:
     spreads: Mapping[str, Spread]
     friedman: Friedman | None
     pairs: tuple[RankPair, ...]
+    unpaired: int = 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -139,7 +139,7 @@ def scale_sentence(one: ScaleResult) -> str:
         f"is {fixed(effect.value)} {span(effect.low, effect.high)} standard deviations of a feeling, "
         f"z = {fixed(effect.z)}, {exact_p(effect.p)}; its SD between people is {fixed(model.person_sd[-1])}."
     )
-    return unbroken(text)
+    return unbroken(f"{text} But {model.singular}." if model.singular else text)
 
 
 def smallest_sentence(tests: tuple[ButtonTest, ...]) -> str:
@@ -211,7 +211,7 @@ def threshold_sentences(found: StudyAnalysis) -> tuple[str, ...]:
 def multiverse_sentences(found: Multiverse) -> tuple[str, ...]:
     """Return how far the main claim depends on how it is analysed."""
     shares = [one.share for one in found.specifications]
-    main, count = found.registered, len(found.specifications)
+    main, count = found.reported, len(found.specifications)
     ends = [percent(min(shares), 1), percent(max(shares), 1)]
     ranges = f"is {ends[0]} in each" if ends[0] == ends[1] else f"ranges from {ends[0]} to {ends[1]}"
     said = _agreement(found) if main.share != HALF else "the main analysis finds no difference"
@@ -225,7 +225,7 @@ def multiverse_sentences(found: Multiverse) -> tuple[str, ...]:
 
 
 def _agreement(found: Multiverse) -> str:
-    main, count = found.registered, len(found.specifications)
+    main, count = found.reported, len(found.specifications)
     every = "all" if found.agreeing == count else str(found.agreeing)
     significant = "all" if found.significant == count else f"{found.significant} of them"
     same = f"{every} agree in direction with the main analysis"
