@@ -11,6 +11,8 @@ FdvvError
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 
 class FdvvError(Exception):
     """Base of every error that fdvv raises on purpose; its text is one line for a person."""
@@ -25,9 +27,18 @@ class InputError(FdvvError):
     place : where in it ("line 12, column 2", "$.curves[3].knots_mm", "whole file").
     reason : what is wrong, with the value received.
     remedy : what to do about it.
+    details : more for programs, as ``--json`` prints it.
     """
 
-    def __init__(self, source: object, place: str, reason: str, remedy: str) -> None:
+    def __init__(
+        self,
+        source: object,
+        place: str,
+        reason: str,
+        remedy: str,
+        details: Mapping[str, object] | None = None,
+    ) -> None:
+        self.details = dict(details or {})
         self.source, self.place, self.reason, self.remedy = str(source), place, reason, remedy
         super().__init__(" ".join(f"{source}: {place}: {reason}; {remedy}".split()))
 

@@ -56,6 +56,39 @@ def test_a_foreign_table_is_analysed_as_its_columns_are_mapped(fdvv: Run, tmp_pa
     assert analysis["preference"]["share"] == 0.5
 
 
+LONG = "participant,button,trial,model,rating,preferred\n" + "".join(
+    f"p{p},Clear,{t},{m},{3 + t + (m == 'FDVV')},FDVV\n"
+    for p in range(6)
+    for t in (1, 2)
+    for m in ("FD", "FDVV")
+)
+
+
+def test_a_table_of_a_row_a_rating_is_analysed_without_a_flag_and_its_mapping_shown(fdvv: Run) -> None:
+    Path("long.csv").write_text(LONG)
+    ran = fdvv("study", "analyse", "long.csv")
+    assert ran.status == 0
+    assert ran.out.startswith("columns: person=participant, item=button, stimulus=model, choice=preferred,")
+    analysis = fdvv("study", "analyse", "long.csv", "--json").json
+    assert analysis["columns"]["round"] == "trial"
+    assert (analysis["tests"][0]["n"], analysis["tests"][0]["p_exact"]) == (6, 2 / 2**6)
+    other = fdvv(
+        "study", "analyse", "long.csv", "--map", "person=button", "--map", "item=participant", "--json"
+    )
+    assert (other.json["columns"]["person"], other.json["screening"]["people"]) == ("button", 1)
+
+
+def test_what_a_table_lacks_is_named_at_once_and_with_json_as_a_document(fdvv: Run) -> None:
+    Path("bad.csv").write_text("a,b\n1,2\n")
+    ran = fdvv("study", "analyse", "bad.csv", "--json")
+    assert ran.status == ran.json["error"]["status"] == 2
+    assert ran.json["error"]["missing"] == ["person", "answer"]
+    assert ran.json["error"]["columns"] == ["a", "b"]
+    assert ran.err.strip() == f"fdvv: {ran.json['error']['message']}"
+    usage = fdvv("study", "analyse", "nowhere.csv", "--json")
+    assert "does not exist" in usage.json["error"]["message"]
+
+
 def test_a_plan_beside_a_table_says_what_was_registered(fdvv: Run, paper: Path, tmp_path: Path) -> None:
     write_template("realism", tmp_path / "plan")
     analysis = fdvv("study", "analyse", paper, "--plan", tmp_path / "plan" / "study.toml", "--json").json

@@ -153,10 +153,15 @@ def test_what_cannot_be_read_is_refused_in_one_line_with_its_place(
 
 def test_a_table_without_people_or_answers_says_which_columns_there_are(tmp_path: Path) -> None:
     path = foreign(tmp_path, "who,what\na,b\n")
-    with pytest.raises(InputError, match="--map person=COLUMN; there are 'who', 'what'"):
+    with pytest.raises(InputError) as refused:
+        read_answers(path, ColumnMap(columns={"item": "what"}))
+    assert refused.value.reason == "no column holds an answer"
+    assert refused.value.details == {"missing": ["answer"], "columns": ["who", "what"]}
+    path = foreign(tmp_path, "a,b\n1,2\n")
+    with pytest.raises(InputError, match=r"says who answered and no column holds .*there are 'a', 'b'"):
         read_answers(path)
-    with pytest.raises(InputError, match="no column holds an answer"):
-        read_answers(path, ColumnMap(columns={"person": "who"}))
+    with pytest.raises(InputError, match=r"there is none of .x., .y. among 'a', 'b'"):
+        read_answers(path, ColumnMap(columns={"person": "x", "choice": "y"}))
 
 
 def test_a_folder_without_answers_says_that_it_must_be_unsealed(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import click
 
 from fdvv import __version__, extras
 from fdvv.cli import ui
-from fdvv.errors import BuildError, DeviceError, FdvvError, WorkerError
+from fdvv.errors import BuildError, DeviceError, FdvvError, InputError, WorkerError
 
 COMMANDS = {
     "assign": ("models", "Assign a curve, or a segment of one, to press or release of a model."),
@@ -108,6 +108,7 @@ def main() -> NoReturn:
     """Run the command line; exit 0 done, 1 missed a bound or failed, 2 unusable input, 130 interrupted."""
     # matrices here are small: threads of BLAS would only wait for each other. NumPy is not yet imported
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    ui.documents["printed"] = 0
     if isinstance(sys.stdout, io.TextIOWrapper):
         # a pipe of Windows does not know every sign: a question mark is better than none of the rest
         sys.stdout.reconfigure(errors="replace")
@@ -120,16 +121,26 @@ def main() -> NoReturn:
     except click.ClickException as error:
         _stop(2, error.format_message())
     except FdvvError as error:
-        _stop(1 if isinstance(error, BuildError | DeviceError | WorkerError) else 2, str(error))
+        _stop(1 if isinstance(error, BuildError | DeviceError | WorkerError) else 2, str(error), error)
     except OSError as error:
         _stop(2, _system(error))
     except (Interrupted, KeyboardInterrupt, click.Abort) as stop:
         _stop(130, str(stop) or "interrupted")
 
 
-def _stop(status: int, reason: str) -> NoReturn:
-    click.echo(f"fdvv: {' '.join(reason.split())}", err=True)
+def _stop(status: int, reason: str, error: FdvvError | None = None) -> NoReturn:
+    line = " ".join(reason.split())
+    if "--json" in sys.argv[1:] and not ui.documents["printed"]:
+        ui.print_json({"error": {"message": line, "status": status, **_parts(error)}})
+    click.echo(f"fdvv: {line}", err=True)
     sys.exit(status)
+
+
+def _parts(error: FdvvError | None) -> dict[str, Any]:
+    if not isinstance(error, InputError):
+        return {}
+    names = ("source", "place", "reason", "remedy")
+    return {**{name: getattr(error, name) for name in names}, **error.details}
 
 
 def _usage(error: click.UsageError) -> str:

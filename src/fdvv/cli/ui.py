@@ -98,10 +98,15 @@ json_option = click.option(
 )
 
 
+documents = {"printed": 0}
+"""How many JSON documents this run has printed; a failure adds one of its own only where there is none."""
+
+
 def print_json(document: dict[str, Any]) -> None:
     """Print one JSON document; numbers that are not finite become null."""
     from fdvv.io.documents import finite
 
+    documents["printed"] += 1
     text = json.dumps(finite(document), indent=2, ensure_ascii=False, allow_nan=False)
     try:
         text.encode(sys.stdout.encoding)

@@ -174,7 +174,7 @@ def _singular(sd: tuple[float, ...], correlation: float | None) -> str:
         sides = "more" if correlation > 0 else "less"
         return (
             f"the fit is singular: who rates higher differs {sides} without exception (a correlation of "
-            f"{correlation:+.0f}), so people's use of the scale and their own difference are not told apart"
+            f"{correlation:+.0f}), so people's use of the scale and their own difference cannot be separated"
         )
     return ""
 

@@ -15,10 +15,9 @@ from fdvv.study.analysis.analyse import analyse as analysed
 from fdvv.study.analysis.code_book import write_answers
 from fdvv.study.analysis.columns import ColumnMap
 from fdvv.study.analysis.export import analysis_dict, write_analysis
-from fdvv.study.analysis.read_answers import read_answers
+from fdvv.study.analysis.read_answers import AnswersTable, read_table
 from fdvv.study.analysis.records import StudyAnalysis
 from fdvv.study.analysis.report import study_summary, write_study_report
-from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
 
@@ -34,8 +33,8 @@ table_options = ui.options(
     ),
     ui.option(
         "--map", "columns", multiple=True, metavar="ROLE=COLUMN",
-        help="Which column is what: person, item, round, choice, correct, ratio, time_s, excluded, stimulus, "
-             "RATING:STIMULUS, or RATING. Repeatable.",
+        help="Which column is what: person, item, round, choice, is_chosen, correct, ratio, time_s, "
+             "excluded, stimulus, RATING:STIMULUS, or RATING; the rest is inferred. Repeatable.",
     ),
     ui.option(
         "--code", "codes", multiple=True, metavar="WORD=STIMULUS",
@@ -66,13 +65,14 @@ def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool,
     thresholds, and the main claim under every reasonable analysis; with --report as a page with figures.
     """
     ui.check_output(report, ".html")
-    answers, declared, origin = _opened(source, plan, table)
-    found = analysed(answers, declared, "" if declared else source.name)
+    read, declared, origin = _opened(source, plan, table)
+    found = analysed(read.answers, declared, "" if declared else source.name)
     if report is not None:
         write_study_report(report, found, declared, origin)
     if as_json:
-        ui.print_json(analysis_dict(found))
+        ui.print_json({**analysis_dict(found), **_columns(read)})
         return
+    _print_columns(read)
     _print(found)
     if report is not None:
         click.echo(f"report: {report}")
@@ -92,19 +92,39 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
     analysis.json holds every figure.
     """
     ui.check_folder(folder)
-    answers, declared, _ = _opened(source, plan, table)
+    read, declared, _ = _opened(source, plan, table)
+    answers = read.answers
     found = analysed(answers, declared, "" if declared else source.name)
     files = [*write_answers(folder, found.screening.answers, declared), *write_analysis(folder, found)]
     if as_json:
-        ui.print_json({"rows": len(answers.person), "files": [str(path) for path in files]})
+        files_json = [str(path) for path in files]
+        ui.print_json({"rows": len(answers.person), "files": files_json, **_columns(read)})
         return
+    _print_columns(read)
     simulated = " of simulated participants: a proxy, no evidence" if answers.simulated else ""
     click.echo(f"{ui.counted(len(answers.person), 'trial')}{simulated}")
     for path in files:
         click.echo(str(path))
 
 
-def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Answers, StudyPlan | None, str]:
+def _columns(read: AnswersTable) -> dict[str, Any]:
+    """Return how the columns of a foreign table were understood."""
+    if not read.columns:
+        return {}
+    return {"columns": dict(read.columns), "inferred": sorted(read.guessed), "unused": list(read.unused)}
+
+
+def _print_columns(read: AnswersTable) -> None:
+    """Print which column was taken for what, where names and contents had to say it."""
+    if read.guessed:
+        pairs = [f"{role}={head}" for role, head in read.columns.items()]
+        unused = f"; not used: {', '.join(read.unused)}" if read.unused else ""
+        ui.print_wrapped(f"columns: {', '.join(pairs)}{unused}; --map ROLE=COLUMN corrects it")
+
+
+def _opened(
+    source: Path, plan: Path | None, table: dict[str, Any]
+) -> tuple[AnswersTable, StudyPlan | None, str]:
     column_map = ColumnMap(
         kind=table["kind"],
         stimuli=tuple(name.strip() for name in table["stimuli"].split(",") if name.strip()),
@@ -113,7 +133,7 @@ def _opened(source: Path, plan: Path | None, table: dict[str, Any]) -> tuple[Ans
         missing=frozenset(table["missing"]),
         simulated=table["simulated"],
     )
-    answers = read_answers(source, column_map)
+    answers = read_table(source, column_map)
     if plan is not None:
         data = read_limited(plan, 4_000_000, "name the study's file")
         return answers, read_plan_text(data.decode(errors="replace"), plan), f"answers of {source.name}"

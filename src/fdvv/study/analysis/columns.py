@@ -18,7 +18,7 @@ TIMING = "timing"
 """A kind of answers that no plan declares: scores in a unit of time, by button and level, for an ANOVA."""
 
 KINDS = (*get_args(StudyKind), TIMING)
-TEXTS = ("person", "item", "choice", "excluded", "stimulus")
+TEXTS = ("person", "item", "choice", "excluded", "stimulus", "is_chosen")
 NUMBERS = ("round", "correct", "ratio", "time_s", "simulated")
 ROLES = (*TEXTS, *NUMBERS)
 MISSING = frozenset({"", "na", "n/a", "nan", "null", "none", "."})
@@ -36,7 +36,8 @@ class ColumnMap:
     kind : of the study; "": as the code book says, else by the columns.
     stimuli : names, in order; of two, a preference counts for the second. (): as found.
     columns : the file's heading by role. A role is one of `ROLES`, or RATING:STIMULUS where every rendering
-        has its own column, or RATING where a row is one rating (then "stimulus" is a column too).
+        has its own column, or RATING where a row is one rating (then "stimulus" is a column too, and
+        "is_chosen" may say 1 where the row's stimulus was the choice).
     codes : what a word in the columns choice and stimulus means: a stimulus or "equal", by the file's word.
     missing : further words for a missing value, as "-99".
     simulated : the answers are those of simulated participants.
@@ -77,22 +78,41 @@ class Layout:
 
 def layout_of(heads: Sequence[str], column_map: ColumnMap, book: CodeBook | None, source: object) -> Layout:
     """Find every column. InputError on one that is asked for and is not there, or that is there twice."""
-    for name in heads:
-        if name and list(heads).count(name) > 1:
-            raise InputError(source, "line 1", f"two columns are called {name!r}", "give each its own name")
+    places = places_of(heads, column_map, book, source)
     roles = {role: heads.index(role) for role in ROLES if role in heads}
     ratings = _by_name(heads, column_map.stimuli)
     if book is not None:
         ratings = {}
         for name, (rating, stimulus) in book.rating_columns().items():
-            ratings.setdefault(rating, {})[stimulus] = _place(name, heads, source)
+            ratings.setdefault(rating, {})[stimulus] = places[name]
     for role, name in column_map.columns.items():
         rating, colon, stimulus = role.partition(":")
         if not colon and role in ROLES:
-            roles[role] = _place(name, heads, source)
+            roles[role] = places[name]
         else:
-            ratings.setdefault(rating, {})[stimulus] = _place(name, heads, source)
+            ratings.setdefault(rating, {})[stimulus] = places[name]
     return _checked(Layout(roles, ratings), heads, source)
+
+
+def places_of(
+    heads: Sequence[str], column_map: ColumnMap, book: CodeBook | None, source: object
+) -> dict[str, int]:
+    """Return the place of every column that a map or a code book names. InputError that names all absent."""
+    for name in heads:
+        if name and list(heads).count(name) > 1:
+            raise InputError(source, "line 1", f"two columns are called {name!r}", "give each its own name")
+    wanted = [*(book.rating_columns() if book else ()), *column_map.columns.values()]
+    absent = [name for name in dict.fromkeys(wanted) if name not in heads]
+    if absent:
+        what = f"no column {absent[0]!r}" if len(absent) == 1 else f"none of {_listed(absent)}"
+        details = {"absent": absent, "columns": list(heads)}
+        remedy = "map another column"
+        raise InputError(source, "line 1", f"there is {what} among {_listed(heads)}", remedy, details)
+    return {name: heads.index(name) for name in wanted}
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(repr(one) for one in names)
 
 
 def _by_name(heads: Sequence[str], stimuli: Sequence[str]) -> dict[str, dict[str, int]]:
@@ -105,25 +125,22 @@ def _by_name(heads: Sequence[str], stimuli: Sequence[str]) -> dict[str, dict[str
     return found
 
 
-def _place(name: str, heads: Sequence[str], source: object) -> int:
-    if name not in heads:
-        there = ", ".join(repr(one) for one in heads)
-        raise InputError(source, "line 1", f"there is no column {name!r} among {there}", "map another column")
-    return heads.index(name)
-
-
 def _checked(layout: Layout, heads: Sequence[str], source: object) -> Layout:
-    there = ", ".join(repr(one) for one in heads)
+    missing = {}
     if "person" not in layout.roles:
-        remedy = f"say which one it is: --map person=COLUMN; there are {there}"
-        raise InputError(source, "line 1", "no column says who answered", remedy)
+        missing["person"] = ("no column says who answered", "--map person=COLUMN")
+    if not layout.ratings and not {"choice", "correct", "is_chosen"} & set(layout.roles):
+        remedy = "--map choice=COLUMN, correct=COLUMN or RATING:STIMULUS=COLUMN"
+        missing["answer"] = ("no column holds an answer", remedy)
+    if missing:
+        reasons, remedies = zip(*missing.values(), strict=True)
+        remedy = f"say which: {' and '.join(remedies)}; there are {_listed(heads)}"
+        details = {"missing": list(missing), "columns": list(heads)}
+        raise InputError(source, "line 1", " and ".join(reasons), remedy, details)
     stimuli = {stimulus for places in layout.ratings.values() for stimulus in places}
     if layout.long != (stimuli == {""}) and stimuli:
         remedy = "map RATING:STIMULUS=COLUMN for each rendering, or stimulus=COLUMN and RATING=COLUMN"
         raise InputError(source, "line 1", "ratings are mapped half by column, half by row", remedy)
-    if not layout.ratings and not {"choice", "correct"} & set(layout.roles):
-        remedy = "map choice=COLUMN, correct=COLUMN or RATING:STIMULUS=COLUMN; there are " + there
-        raise InputError(source, "line 1", "no column holds an answer", remedy)
     return layout
 
 

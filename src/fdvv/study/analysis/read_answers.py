@@ -13,8 +13,9 @@ import numpy as np
 from fdvv.errors import InputError
 from fdvv.io.files import read_limited
 from fdvv.io.text import decode_lines, sniff_separator
-from fdvv.study.analysis.code_book import ANSWERS_FILE, CODE_BOOK_FILE, CodeBook, read_code_book, unescaped
-from fdvv.study.analysis.columns import NO, TIMING, YES, ColumnMap, Layout, Row, layout_of
+from fdvv.study.analysis.code_book import ANSWERS_FILE, CODE_BOOK_FILE, read_code_book, unescaped
+from fdvv.study.analysis.columns import NO, TIMING, YES, ColumnMap, Layout, Row, layout_of, places_of
+from fdvv.study.analysis.infer_columns import Inferred, infer
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.trial import EQUAL
 from fdvv.units import FloatArray
@@ -43,13 +44,36 @@ class _Trial:
     time_s: float = np.nan
     excluded: str = ""
     ratings: dict[tuple[str, str], float] = field(default_factory=dict)
+    stimuli: set[str] = field(default_factory=set)
+    refused: int = 0
+
+
+@dataclass(frozen=True)
+class AnswersTable:
+    """Answers, and how the columns of their table were understood.
+
+    Attributes
+    ----------
+    columns : the file's heading by role, of a foreign table. guessed : roles that names and contents
+        suggested. unused : headings that serve nothing.
+    """
+
+    answers: Answers
+    columns: Mapping[str, str] = field(default_factory=dict)
+    guessed: frozenset[str] = frozenset()
+    unused: tuple[str, ...] = ()
 
 
 def read_answers(path: Path, columns: ColumnMap | None = None) -> Answers:
+    """Return the answers of read_table. Raises InputError."""
+    return read_table(path, columns).answers
+
+
+def read_table(path: Path, columns: ColumnMap | None = None) -> AnswersTable:
     """Read answers from answers.csv, the folder that holds it, or a foreign CSV.
 
-    A code book beside answers.csv describes it; a foreign table needs its kind, and columns whose
-    headings are not fdvv's mapped. Raises InputError that names line and column.
+    A code book beside answers.csv describes it; of a foreign table what no map says is inferred, see
+    infer_columns. Raises InputError that names line and column.
     """
     path, column_map = _table(Path(path)), columns or ColumnMap()
     book, beside = None, path.with_name(CODE_BOOK_FILE)
@@ -64,28 +88,46 @@ def read_answers(path: Path, columns: ColumnMap | None = None) -> Answers:
     mark = "," if book else sniff_separator(next(line for line in lines if line.strip()))
     mark = "," if mark == " " else mark
     reader = csv.reader(io.StringIO("\n".join(lines), newline=""), delimiter=mark)
-    return _read(path, reader, column_map, book, decimal_comma=mark != ",")
-
-
-def _read(
-    path: Path, reader: Iterator[list[str]], column_map: ColumnMap, book: CodeBook | None, decimal_comma: bool
-) -> Answers:
-    rows = _filled(path, reader)
-    _, heads = next(rows)
-    layout = layout_of(heads, column_map, book, path)
-    trials: dict[TrialKey, _Trial] = {}
-    rounds: dict[tuple[str, ...], int] = {}
-    simulated = column_map.simulated
+    (_, heads), *rows = _filled(path, reader)
     for line, cells in rows:
         if len(cells) != len(heads):
             reason = f"{len(cells)} cells under {len(heads)} headings"
             raise InputError(path, f"line {line}", reason, "check separators and quotes")
+    places_of(heads, column_map, book, path)
+    found = Inferred(column_map) if book else infer(heads, [cells for _, cells in rows], column_map)
+    layout = layout_of(heads, found.column_map, book, path)
+    answers = _read(path, heads, rows, found.column_map, layout, decimal_comma=mark != ",")
+    names = {role: heads[place] for role, place in layout.roles.items()}
+    names |= {
+        f"{rating}:{stimulus}".rstrip(":"): heads[place]
+        for rating, places in layout.ratings.items()
+        for stimulus, place in places.items()
+    }
+    return AnswersTable(answers, {} if book else names, frozenset(found.guessed), found.unused)
+
+
+def _read(
+    path: Path,
+    heads: Sequence[str],
+    rows: Sequence[tuple[int, list[str]]],
+    column_map: ColumnMap,
+    layout: Layout,
+    decimal_comma: bool,
+) -> Answers:
+    trials: dict[TrialKey, _Trial] = {}
+    rounds: dict[tuple[str, ...], int] = {}
+    simulated = column_map.simulated
+    for line, cells in rows:
         row = Row(path, heads, column_map, decimal_comma, line, cells)
         _take(row, layout, trials, rounds)
         simulated |= row.number(layout.roles.get("simulated")) == 1.0
     if not trials:
         raise InputError(path, "whole file", "it holds headings and no answer", REMEDY)
     found = list(trials.values())
+    for trial in found:
+        # nothing in it was chosen, and somebody said so of all
+        if not trial.choice and trial.refused > 1 and trial.refused == len(trial.stimuli):
+            trial.choice = EQUAL
     stimuli = _stimuli(path, column_map, layout, found)
     return _answers(found, replace(column_map, simulated=simulated), stimuli, layout, path)
 
@@ -122,7 +164,8 @@ def _take(
 
 def _fill(row: Row, layout: Layout, trial: _Trial, stimulus: str) -> None:
     roles = layout.roles
-    trial.choice = row.word(roles.get("choice")) or trial.choice
+    trial.stimuli.add(stimulus)
+    _choose(row, layout, trial, stimulus)
     for name in ("correct", "ratio", "time_s"):
         if name in roles:
             setattr(trial, name, row.number(roles[name]))
@@ -135,6 +178,22 @@ def _fill(row: Row, layout: Layout, trial: _Trial, stimulus: str) -> None:
             if key in trial.ratings:
                 raise row.wrong(place, f"{key[1]} is rated twice in one trial", "tell the rounds apart")
             trial.ratings[key] = row.number(place)
+
+
+def _choose(row: Row, layout: Layout, trial: _Trial, stimulus: str) -> None:
+    """Take the choice that a row names, or says of its own stimulus; all rows of a trial must agree."""
+    place, found = layout.roles.get("choice"), ""
+    if place is not None:
+        found = row.word(place)
+    elif "is_chosen" in layout.roles:
+        place = layout.roles["is_chosen"]
+        chosen = row.number(place)
+        found = stimulus if chosen == 1.0 else ""
+        trial.refused += chosen == 0.0
+    if place is not None and found and trial.choice and found != trial.choice:
+        reason = f"{trial.choice!r} and {found!r} are chosen in one trial"
+        raise row.wrong(place, reason, "tell the rounds apart with --map round=COLUMN")
+    trial.choice = found or trial.choice
 
 
 def _reason(word: str) -> str:
@@ -165,7 +224,7 @@ def _answers(
         for rating in layout.ratings
     }
     ratio, time_s = (_numbers(trials, name) for name in ("ratio", "time_s"))
-    kind = column_map.kind or _kind(ratings, ratio, path)
+    kind = column_map.kind or _kind(ratings, ratio, set(names[:, 2].tolist()), stimuli, path)
     return Answers(
         kind,
         stimuli,
@@ -186,11 +245,19 @@ def _numbers(trials: Sequence[_Trial], name: str) -> FloatArray:
     return np.array([getattr(one, name) for one in trials], dtype=np.float64)
 
 
-def _kind(ratings: Mapping[str, FloatArray], ratio: FloatArray, path: Path) -> str:
+def _kind(
+    ratings: Mapping[str, FloatArray],
+    ratio: FloatArray,
+    choices: set[str],
+    stimuli: tuple[str, ...],
+    path: Path,
+) -> str:
     if np.isfinite(ratio).any():
         return "staircase"
     if ratings and next(iter(ratings.values())).shape[1] == 2:
         return "realism"
+    if not ratings and len(stimuli) == 2 and choices & set(stimuli):
+        return "2ac" if EQUAL in choices else "preference"
     remedy = f"say it: --kind realism, abx, 2afc, 2ac, preference, mushra or {TIMING}"
     raise InputError(path, "whole file", "nothing tells what kind of study this was", remedy)
 
