@@ -7,7 +7,7 @@ import pytest
 
 from fdvv.model.file import load_builtin
 from fdvv.vibration.exciter import KnownExciter, load_exciter, save_exciter
-from fdvv.vibration.wave import read_wav
+from fdvv.vibration.wave import read_wav, to_wav
 
 from .conftest import Run
 
@@ -67,6 +67,35 @@ def test_what_cannot_be_shown_is_refused_in_one_line(
     assert ran.status == 2
     assert message in ran.err
     assert ran.err.count("\n") == 1
+
+
+def keystroke(path: Path, noise: float) -> None:
+    t = np.arange(8820) / 44_100
+    after = np.maximum(t - 0.05, 0)
+    ring = np.where(t >= 0.05, np.exp(-200 * after) * np.cos(2 * np.pi * 1500 * after), 0)
+    random = np.random.default_rng(0).normal(0, 1, t.size)
+    burst = np.where(t >= 0.05, np.exp(-200 * after), 0.001)
+    to_wav(ring + noise * burst * random, 44_100).save(path)
+
+
+def test_the_modes_of_a_key_press_are_shown_with_the_part_they_carry(fdvv: Run) -> None:
+    keystroke(Path("key.wav"), 0.1)
+    ran = fdvv("vibration", "key.wav")
+    assert ran.out.startswith("key.wav: onset at 50.0")
+    assert "of the ring's energy" in ran.out
+    found = fdvv("vibration", "key.wav", "--json").json
+    assert found["modes"][0]["frequency_Hz"] == pytest.approx(1500, rel=0.01)
+    assert found["carried_ratio"] > 0.9
+
+
+def test_a_sound_that_is_no_ring_is_refused_with_its_share(fdvv: Run) -> None:
+    keystroke(Path("key.wav"), 2.0)
+    ran = fdvv("vibration", "key.wav", "--json")
+    assert ran.status == 2
+    assert "of its energy is in damped modes, at least 50 % is needed" in ran.err
+    assert 0 <= ran.json["error"]["carried_ratio"] < 0.5
+    assert fdvv("vibration", "key.wav", "--least-carried", "0").status == 0
+    assert "are of a button" in fdvv("vibration", "key.wav", "--board").err
 
 
 def test_a_program_is_uploaded_through_the_inverse_of_a_known_exciter(fdvv: Run, exciter: str) -> None:

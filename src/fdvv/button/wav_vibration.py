@@ -12,6 +12,7 @@ from fdvv.io.files import read_limited
 from fdvv.model.vibration import Mode
 from fdvv.units import FloatArray
 from fdvv.vibration.modes import fit_modes
+from fdvv.vibration.sound import LEAST_CARRIED, carried
 from fdvv.vibration.wave import read_wav
 
 LARGEST_bytes = 20_000_000
@@ -58,8 +59,14 @@ def _modes(name: Path | str, ring: FloatArray, rate_Hz: int) -> VibrationRead:
         raise InputError(name, "samples", str(error), "give a longer sound") from error
     if not fit.modes:
         raise InputError(name, "samples", "no damped mode in it", "give a snap's sound")
+    part = carried(ring, rate_Hz, fit.modes)
+    if part < LEAST_CARRIED:
+        least = f"less than {100 * LEAST_CARRIED:.0f} %"
+        reason = f"its damped modes carry {100 * part:.0f} % of its energy, {least}"
+        raise InputError(name, "samples", reason, "give a cleaner sound of one snap; see fdvv vibration FILE")
     modes = tuple(Mode(m.frequency_Hz, m.amplitude, m.decay_1_s, m.phase_rad) for m in fit.modes)
-    note = f"{len(modes)} damped modes, {fit.noise:.3g} m/s2 of noise left per sample"
+    noise = f"{fit.noise:.3g} m/s2 of noise left per sample"
+    note = f"{len(modes)} damped modes carry {100 * part:.0f} % of the energy, {noise}"
     return VibrationRead(modes, ring.size / rate_Hz, notes=(note,))
 
 

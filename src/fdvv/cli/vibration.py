@@ -11,10 +11,12 @@ from fdvv.button.export_file import vibration_of
 from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.options import exciter_option, opened_exciter
+from fdvv.cli.vibration_sound import is_sound, show_sound
 from fdvv.errors import InputError
 from fdvv.model.vibration import Vibration
 from fdvv.program.render_vibration import render_vibration, vibration_wav
 from fdvv.vibration.exciter import KnownExciter
+from fdvv.vibration.sound import LEAST_CARRIED
 
 
 @click.command()
@@ -24,16 +26,34 @@ from fdvv.vibration.exciter import KnownExciter
 @exciter_option
 @ui.option("--wav", type=ui.PATH, help="The *.wav to write: acceleration, 48 kHz.")
 @ui.option("--board", is_flag=True, help="Write the vibration board's own samples, 16 kHz, bit for bit.")
+@ui.option(
+    "--least-carried",
+    type=ui.Finite(min=0, max=1),
+    default=LEAST_CARRIED,
+    help="Refuse a sound whose modes carry less of its energy.",
+)
 @ui.json_option
 def vibration(
-    button: str, exciter: Path | None, wav: Path | None, board: bool, as_json: bool, **of: Any
+    button: str,
+    exciter: Path | None,
+    wav: Path | None,
+    board: bool,
+    least_carried: float,
+    as_json: bool,
+    **of: Any,
 ) -> None:
-    """Show a button's vibrations, and write one as a sound.
+    """Show a button's vibrations, and write one as a sound; or the modes in the sound of a key press.
 
     BUTTON is a built-in, a *.fdvv.json file or a measured file. With a known exciter the output predicts
     from its response how alike and how strong each is rendered; it is not a measurement. A sound of
-    acceleration is as loud as 16 bits allow; its full scale is printed.
+    acceleration is as loud as 16 bits allow; its full scale is printed. Of a WAV, FLAC, OGG or MP3 file of
+    one key press the onset, the modes and their part of the energy are shown.
     """  # fmt: skip
+    if is_sound(button):
+        if exciter or wav or board:
+            raise click.UsageError("--exciter, --wav and --board are of a button, not of a sound")
+        show_sound(button, least_carried, as_json)
+        return
     ui.check_output(wav, ".wav")
     model, known = open_button(button), opened_exciter(exciter)
     if not model.vibrations:

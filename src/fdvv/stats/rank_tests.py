@@ -248,7 +248,8 @@ def friedman(scores: npt.ArrayLike) -> Friedman:
 
     found = complete_scores(scores, ("person", "condition"))
     people, conditions = found.shape
-    ranks = rankdata(found, axis=1)
+    # means of equal ratings may differ in the last digit, and are ties
+    ranks = rankdata(_snapped(found), axis=1)
     means = ranks.mean(axis=0)
     between = people * float(np.sum((means - (conditions + 1) / 2) ** 2))
     # of what ranks spread within people, ties and all
