@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from fdvv.button.export_file import export_button
 from fdvv.cli.check_file import check_file
 from fdvv.compensation.identification.rig_file import save_rig
 from fdvv.compensation.identification.rig_model import RigModel
@@ -72,6 +74,18 @@ def log(folder: Path) -> Path:
     return folder / "a.csv"
 
 
+OLD = Path(__file__).parents[1] / "files" / "old"
+
+
+def curves(folder: Path) -> Path:
+    export_button("mx-blue", "csv", "a.csv").save(folder / "a.csv")
+    return folder / "a.csv"
+
+
+def trials(folder: Path) -> Path:
+    return Path(shutil.copy(OLD / "optimize" / "trials.jsonl", folder / "trials.jsonl"))
+
+
 MAKERS: dict[str, tuple[Callable[[Path], Path], dict[str, object]]] = {
     "an FDVV model": (model, {"name": "mx-clear", "version": 1}),
     "a program": (program, {"version": 1}),
@@ -80,6 +94,8 @@ MAKERS: dict[str, tuple[Callable[[Path], Path], dict[str, object]]] = {
     "a recording of a device": (device, {"device": "scripted", "uploads": 1, "presses": 2}),
     "a recording": (recording, {"name": "mx-clear", "takes": 2}),
     "a log (motive-1.23)": (log, {"takes": 1}),
+    "force curves (plain-csv)": (curves, {"presses": 1, "releases": 1}),
+    "the trials of an optimisation": (trials, {"comparisons": 0}),
 }
 
 
@@ -108,6 +124,23 @@ def test_an_actuation_and_the_session_it_came_of_are_whole(tmp_path: Path) -> No
     assert (folder.facts["presses"], folder.facts["presses_used"], folder.facts["runs"]) == (8, 8, 1)
     for name in (PRESSES, MANIFEST, "receipt.json"):
         assert check_file(tmp_path / "s" / name).facts == folder.facts
+
+
+def test_the_log_of_a_study_is_whole_until_a_line_is_changed(tmp_path: Path) -> None:
+    for name in ("study.jsonl", "study.head"):
+        shutil.copy(OLD / "study-sealed" / name, tmp_path / name)
+    path = tmp_path / "study.jsonl"
+    found = check_file(path)
+    assert (found.kind, found.status) == ("a chained log of a study", 0)
+    assert found.facts["records"] > 1
+    lines = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(b"".join(lines[:-1]))
+    assert check_file(path).status == 1
+
+
+def test_bare_numbers_are_a_log_of_the_rate_that_is_given(tmp_path: Path) -> None:
+    (tmp_path / "hammer.txt").write_text("\n".join(str(100 + i) for i in range(50)) + "\n")
+    assert check_file(tmp_path / "hammer.txt", 2000.0).facts["streams"][0]["rate_Hz"] == pytest.approx(2000)
 
 
 def test_every_built_in_button_is_whole() -> None:

@@ -20,15 +20,17 @@ def join_logs(
     bench: Bench | None = None,
     licence: str = "",
     person: str = "",
+    rate_Hz: float | None = None,
 ) -> Recording:
     """Read logs that were taken at once, motion capture beside force, and put them into one recording.
 
     markers, light : names of the markers on the cap and of the one that is the light, as for select.
     bench : what is known of the instruments; a number other than 0 holds against what a log says itself.
+    rate_Hz : of a log of bare numbers, which has no times and whose name does not state it.
 
     Raises InputError on a log that cannot be used or does not belong to the others.
     """
-    read = [read_log(path, name) for path in paths]
+    read = [read_log(path, name, rate_Hz) for path in paths]
     try:
         joined = select(join(read, name), markers, light)
     except ModelError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -33,7 +34,9 @@ def open_button(spec: str, settings: FitSettings | None = None) -> FDVVModel:
     if not spec or not path.is_file():
         is_folder = spec and path.is_dir()
         reason = "is a folder, one button is needed" if is_folder else "no such file or built-in button"
+        close = get_close_matches(spec.lower(), builtin_names(), n=1)
         remedy = f"name a file or one of {', '.join(builtin_names())}"
+        remedy = f"did you mean {close[0]}? Else {remedy}" if close else remedy
         raise InputError(spec or "''", "argument", reason, remedy)
     # reading foreign files takes a dozen modules that a built-in does not need
     from fdvv.button.fit import fit_file

@@ -20,18 +20,20 @@ LISTED = 10
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@ui.rate_option
 @ui.json_option
-def check(files: tuple[str, ...], as_json: bool) -> None:
+def check(files: tuple[str, ...], rate_Hz: float | None, as_json: bool) -> None:
     """Check files: what each is, whether it is whole, and what it holds.
 
     FILE is anything that fdvv writes: a model, a program or its image, a rig, an actuation, the folder of a
-    session, a recording of a device or of a bench. A log that fdvv reads is checked as well. Exit status: 0
-    all are whole; 1 all can be read, but there are problems; 2 one cannot be used.
+    session, a recording of a device or of a bench, trials of an optimisation, the log of a study. Logs and
+    force curves that fdvv reads are checked as well. Exit status: 0 all are whole; 1 all can be read, but
+    there are problems; 2 one cannot be used.
     """
     found = []
     for file in files:
         try:
-            found.append(check_file(Path(file)))
+            found.append(check_file(Path(file), rate_Hz))
         except InputError as error:
             found.append(unusable(Path(file), "a file", error))
     if as_json:

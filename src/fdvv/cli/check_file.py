@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 
 from fdvv.compensation.identification.rig_file import load_rig
 from fdvv.errors import BuildError, FdvvError, InputError
+from fdvv.formats.force.read import read_force_file
 from fdvv.io.files import open_plain
 from fdvv.model.file import load_model
+from fdvv.optimize.run.ledger import KIND as LEDGER
+from fdvv.optimize.run.ledger import read_ledger
 from fdvv.program.check import check_program
 from fdvv.program.describe import describe
 from fdvv.program.file import load_program
@@ -19,18 +24,21 @@ from fdvv.rendering.actuation_file import load_actuation
 from fdvv.rendering.press_check import A_SESSION, check_device_recording, check_session
 from fdvv.rendering.session import MANIFEST
 from fdvv.rendering.session_log import PRESSES
+from fdvv.study.files.chained_log import REMEDY as CHAIN_REMEDY
+from fdvv.study.files.chained_log import read_chained
 
 HEAD_bytes = 400
 IMAGE = b"FDVP"
 REMEDY = "name a file that fdvv wrote, the folder of a session, or a log of a bench"
 
 
-def check_file(path: Path | str) -> FileCheck:
+def check_file(path: Path | str, rate_Hz: float | None = None) -> FileCheck:
     """Check what a file is by its content, and whether it is whole.
 
     Models, programs and their images, rigs, actuations, recordings, folders of sessions and what they hold,
-    recordings of devices; of anything else whether it is a log that read_log reads. Never raises for what
-    stands in a file. Raises InputError where there is none, or what it holds is not known.
+    recordings of devices, trials of optimisations, logs of studies; of anything else whether it is a log that
+    read_log reads, or a file of force curves. Never raises for what stands in a file. Raises InputError where
+    there is none, or what it holds is not known. rate_Hz : of a log of bare numbers.
     """
     path = Path(path)
     if path.is_dir():
@@ -41,7 +49,7 @@ def check_file(path: Path | str) -> FileCheck:
     for mark, kind, check in KINDS:
         if mark in head:
             return _guarded(path, kind, check)
-    return _log(path)
+    return _log(path, rate_Hz)
 
 
 def _head(path: Path) -> bytes:
@@ -118,18 +126,56 @@ def _actuation(path: Path, kind: str) -> FileCheck:
     return FileCheck(path, kind, facts)
 
 
+def _chained(path: Path, kind: str) -> FileCheck:
+    found = read_chained(path)
+    about = {name: value for name, value in found.about.items() if isinstance(value, str | int)}
+    facts = {"records": len(found.records), "size_bytes": path.stat().st_size, **about}
+    problems = tuple(FileProblem("log", one, CHAIN_REMEDY) for one in found.problems)
+    notes = ("marks need the study's key; fdvv study verify checks the whole folder",)
+    return FileCheck(path, kind, facts, problems, notes)
+
+
+def _trials(path: Path, kind: str) -> FileCheck:
+    found = read_ledger(path)
+    states = Counter(str(trial.state) for trial in found.trials)
+    facts = {"trials": len(found.trials), **states, "comparisons": len(found.comparisons)}
+    return FileCheck(path, kind, {**facts, "size_bytes": path.stat().st_size})
+
+
+def _curves(path: Path) -> FileCheck:
+    """Check a file of force curves. InputError on one that is none."""
+    found = read_force_file(path)
+    speeds = {c.velocity_mm_s for cycle in found.cycles for c in (cycle.press, cycle.release) if c}
+    facts = {
+        "name": found.name,
+        "cycles": len(found.cycles),
+        "presses": sum(cycle.press is not None for cycle in found.cycles),
+        "releases": sum(cycle.release is not None for cycle in found.cycles),
+        "velocities_mm_s": sorted(speed for speed in speeds if speed is not None),
+        "size_bytes": path.stat().st_size,
+    }
+    return FileCheck(path, f"force curves ({found.format})", facts, (), found.warnings)
+
+
 def _journal(path: Path, _kind: str) -> FileCheck:
     if path.name == PRESSES and (path.parent / MANIFEST).is_file():
         return check_session(path.parent)
+    head = _head(path)
+    if b'"record": {"begin": ' in head[:80]:
+        return _guarded(path, "a chained log of a study", _chained)
+    if any(f'"record": {{"{name}": '.encode() in head[:80] for name in LEDGER.types):
+        return _guarded(path, "the trials of an optimisation", _trials)
     return check_recording(path)
 
 
-def _log(path: Path) -> FileCheck:
+def _log(path: Path, rate_Hz: float | None) -> FileCheck:
     try:
-        found = read_log(path)
+        found = read_log(path, rate_Hz=rate_Hz)
     except BuildError as error:
         raise InputError(path, "whole file", str(error), "install it and look again") from error
     except InputError as error:
+        with suppress(InputError):
+            return _curves(path)
         if "none of the known formats" in error.reason:
             raise InputError(path, "whole file", "is nothing that fdvv writes or reads", REMEDY) from None
         return unusable(path, "a log", error)

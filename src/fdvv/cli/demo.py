@@ -60,7 +60,7 @@ def _print(result: DemoResult) -> None:
         ],
         digits={"RMSE cN": 3, "uniform knots": 3},
     )
-    click.echo(f"\n{result.button.name} on the simulated rig: error in cN, mean / max, on fresh presses")
+    ui.echo(f"\n{result.button.name} on the simulated rig: error in cN, mean / max, on fresh presses")
     labels = [r.label for r in result.renderings]
     ui.print_table(
         ["curve", *labels],

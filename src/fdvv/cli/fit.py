@@ -40,7 +40,7 @@ def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) ->
 )
 @ui.option("-o", "--output", type=ui.PATH, help="Where to write the model (a folder's models: a folder).")
 @ui.option(
-    "--max-rmse-cN", "max_rmse_cN", type=ui.Finite(min=0), help="Exit status 1 above this error of a curve."
+    "--max-rmse-cN", "max_rmse_cN", type=ui.Force(min=0), help="Exit status 1 above this error of a curve."
 )
 @ui.json_option
 def fit(
@@ -70,6 +70,8 @@ def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool)
     else:
         _print_fit(found)
         ui.print_written(output)
+        if output is None:
+            click.echo(f"nothing was saved; add -o NAME{MODEL_SUFFIX} to keep the model")
     worst = max(found.fits, key=lambda f: f.rmse_cN)
     return worst.rmse_cN, f"{path}, {worst.curve.stroke}"
 
@@ -112,6 +114,8 @@ def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: boo
         _print_folder(results, summary)
         if output:
             click.echo(f"{ui.counted(len(files) - summary['refused'], 'model')} written below {output}")
+        else:
+            click.echo("nothing was saved; add -o FOLDER to keep the models")
     if summary["refused"] == len(files):
         raise ui.failed(f"{path}: no file of it could be fitted; the reasons are above", 2)
     return max((f.rmse_cN, str(r.file)) for r in results if r.fit for f in r.fit.fits)

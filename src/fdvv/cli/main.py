@@ -12,6 +12,7 @@ import click
 
 from fdvv import __version__, extras
 from fdvv.cli import ui
+from fdvv.cli.force_unit import VARIABLE, IN_cN, chosen
 from fdvv.errors import BuildError, DeviceError, FdvvError, InputError, WorkerError
 
 COMMANDS = {
@@ -45,7 +46,7 @@ COMMANDS = {
     "study": ("study.study", "Compare buttons blind, with people, and analyse what they said."),
     "sweep": ("sweep", "Try every combination of rigs, fingers, buttons and methods; simulated."),
     "tune": ("rendering.tune", "Tune the vibration of a button's press with a person."),
-    "vibration": ("vibration", "Show a button's vibrations, and write one as a sound."),
+    "vibration": ("vibration", "Show a button's vibrations, or the modes in the sound of a key press."),
 }
 """By name: the module below fdvv.cli that defines a command, and the first line of its help."""
 
@@ -96,9 +97,18 @@ class Interrupted(Exception):  # noqa: N818 - nothing failed
     cls=MainGroup, context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True
 )
 @click.version_option(__version__, prog_name="fdvv")
+@click.option(
+    "--force-unit",
+    type=click.Choice(list(IN_cN)),
+    default="cN",
+    envvar=VARIABLE,
+    show_default=True,
+    help=f"Of the forces that are shown, also by {VARIABLE}; JSON and files stay in cN.",
+)
 @click.pass_context
-def cli(ctx: click.Context) -> None:
+def cli(ctx: click.Context, force_unit: str) -> None:
     """Capture, model, render and compare the feel of push-buttons."""
+    chosen["unit"] = force_unit
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help(), err=True)
         ctx.exit(2)
@@ -132,7 +142,7 @@ def _stop(status: int, reason: str, error: FdvvError | None = None) -> NoReturn:
     line = " ".join(reason.split())
     if "--json" in sys.argv[1:] and not ui.documents["printed"]:
         ui.print_json({"error": {"message": line, "status": status, **_parts(error)}})
-    click.echo(f"fdvv: {line}", err=True)
+    ui.print_stderr(f"fdvv: {line}")
     sys.exit(status)
 
 

@@ -46,7 +46,7 @@ def press(output: Path | None, as_json: bool, **options: Any) -> None:
         document = {"button": found.button, "travel_mm": found.travel_mm, "simulated": True}
         ui.print_json({**document, "quasi_static_peak_cN": found.quasi_static_peak_cN, "presses": rows})
         return
-    click.echo(
+    ui.echo(
         f"{found.button} (simulated): travel {found.travel_mm:.2f} mm, "
         f"{found.quasi_static_peak_cN:.1f} cN before the stop at 0.5 mm/s"
     )

@@ -24,13 +24,13 @@ from fdvv.program.surface import Limits
 weight_option = ui.option(
     "--weight-cN",
     "weight_cN",
-    type=ui.Finite(min=-400, max=400),
+    type=ui.Force(min=-400, max=400),
     help="Weight that the rig's force carries; 19.6 by default, 0 for a rig that lies.",
 )
 opposing_option = ui.option(
     "--opposing-cN",
     "opposing_cN",
-    type=ui.Finite(min=0),
+    type=ui.Force(min=0),
     help="Friction that may keep the cap down; 5 by default.",
 )
 
@@ -153,9 +153,7 @@ def check(program: str, weight_cN: float | None, opposing_cN: float | None, as_j
         click.echo(f"{opened.name}: {'refused' if report.refused else 'accepted'}")
         if report.return_s is not None:
             click.echo(f"  back at the top within {report.return_s:.2f} s of letting go")
-        click.echo(
-            f"  steepest {report.stiffness_cN_mm:.0f} cN/mm, coil {report.rise_K:.1f} K warmer if held"
-        )
+        ui.echo(f"  steepest {report.stiffness_cN_mm:.0f} cN/mm, coil {report.rise_K:.1f} K warmer if held")
     if report.refused:
         raise click.exceptions.Exit(1)
 
@@ -205,7 +203,7 @@ def compile_(
         ui.print_json({"output": str(output), "bytes": len(compiled.image), "surfaces": surfaces})
     else:
         worst_cN = max(compiled.grid_error_cN.values())
-        click.echo(f"{output}: {len(compiled.image)} bytes, forces within {worst_cN:.2f} cN")
+        ui.echo(f"{output}: {len(compiled.image)} bytes, forces within {worst_cN:.2f} cN")
     ui.print_warnings([str(finding) for finding in report.warnings])
 
 

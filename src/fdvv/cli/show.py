@@ -80,7 +80,7 @@ def _print_columns(result: Comparison) -> None:
 
 
 def _print_lines(result: Comparison) -> None:
-    click.echo(f"rms cN: force of the press less that of {ui.one_line(result.names[0])}")
+    ui.echo(f"rms cN: force of the press less that of {ui.one_line(result.names[0])}")
     rms = {d.index: d.rms_cN for d in result.differences if d.stroke == "press"}
     rows = [
         [ui.one_line(name, NAME_WIDTH), *(marks.to_dict()[key] for key in LANDMARKS), rms.get(i)]

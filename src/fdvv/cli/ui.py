@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from fdvv import extras
+from fdvv.cli.force_unit import force_of, in_unit, table_in_unit
 from fdvv.errors import InputError
 
 if TYPE_CHECKING:
@@ -149,6 +150,7 @@ def print_table(
     A float or None is written by ``number``, with the column's digits or 2; a pair is a number and its
     spread; any other cell is written by ``str``.
     """
+    columns, rows, digits = table_in_unit(columns, list(rows), digits)
     places = [digits.get(column, 2) for column in columns]
     texts = [[_cell(cell, n) for cell, n in zip(row, places, strict=True)] for row in rows]
     table = [[one_line(cell) for cell in row] for row in (columns, *texts)]
@@ -167,9 +169,14 @@ def _cell(value: object, digits: int) -> str:
     return number(value, digits) if value is None or isinstance(value, float) else str(value)
 
 
+def echo(text: str) -> None:
+    """Print a line, its forces in the unit that was chosen."""
+    click.echo(in_unit(text))
+
+
 def print_wrapped(text: str) -> None:
     """Print a sentence over as many lines as it takes, those after the first indented."""
-    click.echo(click.wrap_text(one_line(text), WIDTH, subsequent_indent="  "))
+    click.echo(click.wrap_text(one_line(in_unit(text)), WIDTH, subsequent_indent="  "))
 
 
 def simulated(flag: bool) -> str:
@@ -191,7 +198,7 @@ def print_written(*paths: Path | None) -> None:
 
 
 def print_stderr(text: str) -> None:
-    click.echo(text, err=True)
+    click.echo(in_unit(text), err=True)
 
 
 def notice(text: str, quiet: bool) -> None:
@@ -219,6 +226,19 @@ class Finite(click.FloatRange):
         if not math.isfinite(found):
             self.fail(f"{value} is not a finite number.", param, ctx)
         return found
+
+
+class Force(Finite):
+    """A force in cN, as the option's name says, or with another unit: 50gf, 0.5N."""
+
+    name = "force"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        try:
+            found = force_of(value) if isinstance(value, str) else value
+        except ValueError:
+            self.fail(f"{value!r} is no force; write 50, 50gf or 0.5N", param, ctx)
+        return super().convert(found, param, ctx)
 
 
 def above_0(most: float | None = None) -> Finite:
@@ -252,6 +272,10 @@ NEW_FILE = click.Path(path_type=Path, dir_okay=False)
 NEW_FOLDER = click.Path(path_type=Path, file_okay=False)
 COUNT = click.IntRange(min=0)
 POSITIVE = above_0()
+rate_option = option(
+    "--rate", "rate_Hz", type=above_0(1e9),
+    help="Samples per second of a log of bare numbers, which has no time column.",
+)  # fmt: skip
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 SPEED = Finite(min=5, max=500)
 """Mean speed of a stroke, mm/s."""

@@ -42,7 +42,7 @@ def vibration(
     as_json: bool,
     **of: Any,
 ) -> None:
-    """Show a button's vibrations, and write one as a sound; or the modes in the sound of a key press.
+    """Show a button's vibrations, or the modes in the sound of a key press.
 
     BUTTON is a built-in, a *.fdvv.json file or a measured file. With a known exciter the output predicts
     from its response how alike and how strong each is rendered; it is not a measurement. A sound of

@@ -32,6 +32,7 @@ FACTS = {
 @click.option("--light", default="", help="The marker that cameras see only while the light is on.")
 @click.option("--licence", default="", help="Of the data, as its owner states it.")
 @click.option("--person", default="", help="A word for who pressed, never a name.")
+@ui.rate_option
 @ui.json_option
 def join(logs: tuple[Path, ...], output: Path, as_json: bool, **options: Any) -> None:
     """Join logs of instruments that ran at once into a recording.
@@ -57,5 +58,6 @@ def join(logs: tuple[Path, ...], output: Path, as_json: bool, **options: Any) ->
 
 
 for name, text in FACTS.items():
+    kind = ui.Force if name.endswith("_cN") else ui.Finite
     flag = f"--{name.replace('_', '-').lower()}"
-    join.params.append(click.Option([flag, name], type=ui.Finite(min=0), default=0.0, help=text))
+    join.params.append(click.Option([flag, name], type=kind(min=0), default=0.0, help=text))

@@ -78,7 +78,7 @@ def compensate(
 @ui.option(
     "--max-mean-error-cN",
     "bound_cN",
-    type=ui.Finite(min=0),
+    type=ui.Force(min=0),
     help="Exit status 1 above this mean error of a curve.",
 )
 @ui.json_option

@@ -97,7 +97,7 @@ def _print(document: dict[str, Any]) -> None:
     for dose in document["thermal"]:
         ui.print_wrapped(_warmth(dose))
     click.echo("margin: stiffness that the loop bears under a finger, over the curve's steepest rise")
-    click.echo("expected cN: mean error after compensation, an estimate; all but measured is computed")
+    ui.echo("expected cN: mean error after compensation, an estimate; all but measured is computed")
 
 
 def _row(curve: dict[str, Any]) -> list[Any]:

@@ -173,6 +173,14 @@ class Ledger:
             self._journal = None
 
 
+def read_ledger(path: Path) -> Ledger:
+    """Read all that is on file into memory; nothing is written, no lock taken. Raises InputError, OSError."""
+    ledger = Ledger()
+    for _, body, _ in read_bodies(path, KIND):
+        ledger._put(ledger._changed(body))
+    return ledger
+
+
 Step = tuple[tuple[Trial, ...], tuple[Comparison, ...], Trial | Comparison]
 """Trials and comparisons that were known, and what was suggested next."""
 
