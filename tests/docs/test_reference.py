@@ -45,6 +45,7 @@ OPTIONAL = re.compile(r"\.(__main__|libfdvv)$|\.cad\b|\._?(botorch|torch)|_botor
 VARIABLE = re.compile(
     r"environ(?:\.get|\.setdefault|\.pop)?[(\[]\s*[\"']([A-Z][A-Z0-9_]+)|getenv\(\s*[\"']([A-Z][A-Z0-9_]+)"
     r"|\$\{([A-Z][A-Z0-9_]+)(?::-|:\?|-)|(?m:^(?:export )?([A-Z][A-Z0-9_]+) \?=)"
+    r"|envvar=[\"']([A-Z][A-Z0-9_]+)"
 )
 
 

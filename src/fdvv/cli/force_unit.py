@@ -5,12 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-from fdvv.units import GRAM_FORCE_cN
-
-VARIABLE = "FDVV_FORCE_UNIT"
-IN_cN = {"cN": 1.0, "gf": GRAM_FORCE_cN, "N": 100.0}
-"""Centinewtons in one of each unit."""
-
+UNITS = ("cN", "gf", "N")
 MORE_DIGITS = {"cN": 0, "gf": 0, "N": 2}
 chosen = {"unit": "cN"}
 """The unit of this run; the group of commands sets it."""
@@ -22,11 +17,19 @@ _CELL = re.compile(rf"{_NUMBER}(?:(?:…| ± ){_NUMBER})*\Z")
 Row = Sequence[object]
 
 
+def _in_cN(unit: str) -> float:
+    """Return the centinewtons in one of a unit."""
+    # the units bring NumPy, which help does without
+    from fdvv.units import cN_from_gf, cN_from_N
+
+    return {"cN": 1.0, "gf": cN_from_gf(1.0), "N": cN_from_N(1.0)}[unit]
+
+
 def force_of(text: str) -> float:
     """Return a force in cN: a number of cN, or one with its unit, as 50gf or 0.5 N. ValueError."""
     found = re.fullmatch(r"\s*(.*?)\s*(cN|gf|N)?\s*", text)
     assert found is not None
-    return float(found[1]) * IN_cN[found[2] or "cN"]
+    return float(found[1]) * _in_cN(found[2] or "cN")
 
 
 def in_unit(text: str) -> str:
@@ -65,7 +68,7 @@ def _cell(value: object) -> object:
         return _numbers(value) if _CELL.match(value) else value
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return value
-    return float(value) / IN_cN[chosen["unit"]]
+    return float(value) / _in_cN(chosen["unit"])
 
 
 def _numbers(text: str) -> str:
@@ -74,5 +77,5 @@ def _numbers(text: str) -> str:
 
 def _number(text: str) -> str:
     digits = len(text.partition(".")[2]) + MORE_DIGITS[chosen["unit"]]
-    found = f"{float(text.replace('−', '-')) / IN_cN[chosen['unit']]:.{digits}f}"
+    found = f"{float(text.replace('−', '-')) / _in_cN(chosen['unit']):.{digits}f}"
     return found.replace("-", "−") if text.startswith("−") else found

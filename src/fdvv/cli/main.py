@@ -12,7 +12,7 @@ import click
 
 from fdvv import __version__, extras
 from fdvv.cli import ui
-from fdvv.cli.force_unit import VARIABLE, IN_cN, chosen
+from fdvv.cli.force_unit import UNITS, chosen
 from fdvv.errors import BuildError, DeviceError, FdvvError, InputError, WorkerError
 
 COMMANDS = {
@@ -99,11 +99,11 @@ class Interrupted(Exception):  # noqa: N818 - nothing failed
 @click.version_option(__version__, prog_name="fdvv")
 @click.option(
     "--force-unit",
-    type=click.Choice(list(IN_cN)),
+    type=click.Choice(UNITS),
     default="cN",
-    envvar=VARIABLE,
+    envvar="FDVV_FORCE_UNIT",
     show_default=True,
-    help=f"Of the forces that are shown, also by {VARIABLE}; JSON and files stay in cN.",
+    help="Of the forces that are shown; FDVV_FORCE_UNIT sets it too; JSON and files stay in cN.",
 )
 @click.pass_context
 def cli(ctx: click.Context, force_unit: str) -> None:
