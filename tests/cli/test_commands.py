@@ -146,3 +146,9 @@ def test_a_killed_command_leaves_no_half_written_model(many: Path, tmp_path: Pat
     written = list(models.glob("*.fdvv.json"))
     assert len(written) < 40
     assert all(load_model(path).name for path in written)
+
+
+def test_a_fit_that_is_not_kept_says_so_and_how_to_keep_it(fdvv: Run, switch: Path, folder: Path) -> None:
+    assert "nothing was saved; add -o NAME.fdvv.json" in fdvv("fit", switch).out
+    assert "nothing was saved; add -o FOLDER" in fdvv("fit", folder).out
+    assert "nothing was saved" not in fdvv("fit", switch, "-o", "a.fdvv.json").out

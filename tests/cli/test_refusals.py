@@ -103,6 +103,7 @@ REFUSED = {
     "a merge with an unknown speed": (("merge", "mx-blue", "mx-blue@5", *MERGE), "mx-blue@VELOCITY"),
     "a merge at no speed": (("merge", "mx-blue@0", *MERGE), "'0' is not a speed above 0"),
     "a speed that is not there": (("merge", "mx-clear@5", *MERGE), "no curve of 5 mm/s"),
+    "a misspelt button": (("show", "mxclear"), "did you mean mx-clear?"),
     "a merge of an absent stroke": (("merge", "pressless.fdvv.json:press", *MERGE), "no press curve"),
     "an absurd travel to merge": (("merge", "mx-blue", *MERGE, "--travel-mm", "1e300"), "0<x<=1000"),
     "a folder to merge": (("merge", "empty", *MERGE), "empty: argument: is a folder"),
