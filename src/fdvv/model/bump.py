@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv.model.curve import MeasuredCurve
 from fdvv.units import FloatArray
@@ -89,20 +90,44 @@ STOP_LEAST_cN_mm = 100.0
 """A slope this much above the stroke's own, and at least this steep, is the stop. Springs of switches
 have 3 to 25 cN/mm; stops of measured switches 400 to 3000 cN/mm, of rubber domes above 150 cN/mm."""
 
+STOP_GAPS_mm, STOP_RISE_cN = 0.12, 8.0
+"""Caps, probes and domes slip or settle inside the stop: what rises by 8 cN before such gaps, no wider than
+0.12 mm together, is the same stop."""
 
-def first_loaded(force_cN: FloatArray) -> int:
-    """Find the first sample that carries the cap: 10 cN, or half of the greatest force if that is less."""
-    return int(np.argmax(force_cN >= min(LOADED_cN, 0.5 * float(force_cN.max()))))
+KNEE_BEFORE_mm, KNEE_AFTER_mm = 0.1, 0.05
+"""The knee is looked for this far around the first steep slope."""
+
+ISOLATED_mm = 0.06
+"""What carries the cap lasts longer; a spike of a bench is gone within this."""
+
+
+def first_loaded(x_mm: FloatArray, force_cN: FloatArray) -> int:
+    """Find the first sample that carries the cap: 10 cN, or half of the greatest force if that is less.
+
+    x_mm, force_cN : (n,), x not falling. A load that is gone within 60 um is a spike, which carries nothing.
+    """
+    starts, ends = _runs(force_cN >= min(LOADED_cN, 0.5 * float(force_cN.max())))
+    after = np.where(ends < x_mm.size, x_mm[np.minimum(ends, x_mm.size - 1)], np.inf)
+    lasting = np.flatnonzero(after - x_mm[np.maximum(starts - 1, 0)] > ISOLATED_mm)
+    return int(starts[lasting[0] if lasting.size else 0])
+
+
+def _runs(mask: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    """Return where each run of True begins, and where it has ended: the index after its last."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
+    return edges[::2], edges[1::2]
 
 
 def find_contact_mm(curve: MeasuredCurve) -> float:
     """Find where the force leaves the air: the last displacement below 2 cN before the stroke is loaded.
 
-    The air's own offset (the median before the load, at most the force of contact) does not count.
-    A curve that begins loaded has its contact at its first sample.
+    The air's own offset (the median before the load, at most the force of contact) does not count, nor does
+    a single sample. A curve that begins loaded has its contact at its first sample.
     """
     x, force = curve.displacement_mm, curve.force_cN
-    free = np.flatnonzero(force[: first_loaded(force)] < CONTACT_cN)
+    low = force[: first_loaded(x, force)] < CONTACT_cN
+    # one low sample of a loaded stroke is no air
+    free = np.flatnonzero(low & np.concatenate((low[:1], low[:-1])))
     return float(x[free[-1]]) if free.size else float(x[0])
 
 
@@ -116,10 +141,11 @@ def slope_cN_mm(x_mm: FloatArray, force_cN: FloatArray, window_mm: float = WINDO
 
 
 def find_bottom_out_mm(curve: MeasuredCurve, contact_mm: float | None = None) -> float | None:
-    """Find where the stop takes over: the start of the last steep rise; None if no stop was reached.
+    """Find where the stop takes over, the knee before the last steep rise; None if no stop was reached.
 
     Steep means a slope over 20 um that exceeds both 100 cN/mm and the stroke's own typical slope by
-    60 cN/mm. The search runs from the deepest sample back, so that a click or a spike is not a stop.
+    60 cN/mm. The search runs from the deepest sample back, so that a click or a spike is not a stop, and
+    over gaps in the stop, where the force slips or rests for up to 0.12 mm.
     """
     start = find_contact_mm(curve) if contact_mm is None else contact_mm
     x, force, _ = curve.by_displacement()
@@ -127,15 +153,37 @@ def find_bottom_out_mm(curve: MeasuredCurve, contact_mm: float | None = None) ->
     if x.size < 8:
         return None
     slope = slope_cN_mm(x, force)
+    length = x[-1] - start
     # the stroke's own slope is read where a bump is mostly over and no stop has begun
-    body = slope[(x[:-1] > start + 0.4 * (x[-1] - start)) & (x[:-1] < start + 0.85 * (x[-1] - start))]
+    body = slope[(x[:-1] > start + 0.4 * length) & (x[:-1] < start + 0.85 * length)]
     typical = float(np.median(body)) if body.size else 0.0
     steep = slope > max(STOP_LEAST_cN_mm, typical + STOP_EXCESS_cN_mm)
     # the last samples may waver as the stage turns: the stop is the last steep run in the final tenth
-    late = np.flatnonzero(steep & (x[:-1] > start + 0.5 * (x[-1] - start)))
-    if not late.size or x[-1] - x[late[-1]] > 0.1 * (x[-1] - start):
+    late = np.flatnonzero(steep & (x[:-1] > start + 0.5 * length))
+    if not late.size or x[-1] - x[late[-1]] > 0.1 * length:
         return None
-    first = int(late[-1])
-    while first > 0 and steep[first - 1]:
-        first -= 1
-    return float(x[first])
+    return _knee_mm(x, force, _stop_start(x, force, *_runs(steep)))
+
+
+def _stop_start(
+    x: FloatArray, force: FloatArray, starts: npt.NDArray[np.intp], ends: npt.NDArray[np.intp]
+) -> int:
+    """Return where the stop's first steep run begins: back from the last run, over its gaps."""
+    first, bridged = int(starts[-1]), 0.0
+    for begin, end in zip(starts[-2::-1], ends[-2::-1], strict=True):
+        # the last steep slope reaches a window ahead
+        gap = max(0.0, float(x[first] - x[end - 1]) - WINDOW_mm)
+        if bridged + gap > STOP_GAPS_mm:
+            break
+        if force[begin : first + 1].max() - force[begin] >= STOP_RISE_cN:
+            first, bridged = int(begin), bridged + gap
+    return first
+
+
+def _knee_mm(x: FloatArray, force: FloatArray, first: int) -> float:
+    """Return where the curve lies farthest below the chord over the beginning of its steep rise."""
+    begin = int(np.searchsorted(x, x[first] - KNEE_BEFORE_mm))
+    end = max(int(np.searchsorted(x, x[first] + KNEE_AFTER_mm, side="right")), first + 2)
+    end = first + int(np.argmax(force[first:end]))
+    below = np.interp(x[begin : end + 1], x[[begin, end]], force[[begin, end]]) - force[begin : end + 1]
+    return float(x[begin + int(np.argmax(below))])

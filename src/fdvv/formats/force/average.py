@@ -57,7 +57,7 @@ def shape_of(cycle: Cycle) -> Shape:
         stroke: curve.by_displacement()[:2] for stroke in Stroke if (curve := cycle.of(stroke)) is not None
     }
     x, force = strokes.get(Stroke.PRESS) or strokes[Stroke.RELEASE]
-    return Shape(strokes, float(x[first_loaded(force)]), float(force.max()))
+    return Shape(strokes, float(x[first_loaded(x, force)]), float(force.max()))
 
 
 def how_differs(a: Shape, b: Shape) -> str:

@@ -187,7 +187,8 @@ def correct_slip(cycle: RawCycle, notes: Notes) -> RawCycle:
 def _contact_mm(track: Track) -> float:
     # at 10 cN, not at first touch: the air after a release rings
     order = np.argsort(track.x_mm, kind="stable")
-    return float(track.x_mm[order][first_loaded(track.force_cN[order])])
+    x, force = track.x_mm[order], track.force_cN[order]
+    return float(x[first_loaded(x, force)])
 
 
 def rising(track: Track, notes: Notes) -> tuple[FloatArray, FloatArray]:
