@@ -2,9 +2,9 @@
 
     python -m benchmarks.true_to_file [FOLDER]
 
-FOLDER (../shared/data) holds a folder for every bench, as library_likeness reads them. One line for each question of
-ROWS: what was found, what was wanted, whether it is met. To ask more, add a function to ROWS: it gets all files
-that can be read. Marks of bottom-out are in true_to_file_marks.csv, made by eye; of files that FOLDER lacks nothing is
+FOLDER (../shared/data) holds a folder for every bench, as library_likeness reads them. One function of ROWS
+asks one question; it gets all files that can be read, and yields lines: what was found and wanted, whether it
+is met. Marks of bottom-out are in true_to_file_marks.csv, made by eye; files that FOLDER lacks are not
 judged. Half of the files, by a hash of their names, may set thresholds; the other half only judges.
 """
 
@@ -64,7 +64,7 @@ def real_files(folder: Path) -> Iterator[RealFile]:
 
 
 def marks() -> dict[str, tuple[float, float]]:
-    """Read the marks: bottom-out and its doubt, in mm of the file, by key; NaN where a press ends before a stop."""
+    """Read the marks: bottom-out and its doubt in mm of the file, by key; NaN where there is no stop."""
     lines = (line for line in MARKS.read_text().splitlines() if not line.startswith("#"))
     return {
         row["file"]: (float(row["bottom_out_mm"] or "nan"), float(row["doubt_mm"] or "nan"))

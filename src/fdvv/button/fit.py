@@ -16,10 +16,10 @@ from fdvv.formats.force.average import Averaged, average_by_velocity
 from fdvv.formats.force.read import find_force_files, read_force_file
 from fdvv.formats.force.types import ForceFile
 from fdvv.io.documents import own_kind
-from fdvv.model.bump import find_bottom_out_mm, find_contact_mm
+from fdvv.model.bump import CONTACT_cN, find_bottom_out_mm, find_contact_mm
 from fdvv.model.curve import MeasuredCurve, Stroke, reading_order
 from fdvv.model.fit import BUMP_KEPT_ratio, CurveFit, FitMethod, active_part, fit_curve
-from fdvv.model.landmarks import Landmarks, landmarks
+from fdvv.model.landmarks import CUT_SHORT_mm, Landmarks, landmarks
 from fdvv.model.model import FDVVModel, Provenance
 
 DECIMALS_mm = 6
@@ -168,6 +168,7 @@ def measured_parts(file: ForceFile) -> MeasuredParts:
     for part in map(active_part, strokes):
         x = np.round(part.displacement_mm - zero, DECIMALS_mm)
         parts.append(MeasuredCurve(x, part.force_cN, part.stroke, part.velocity_mm_s))
+    warnings += [sentence for part in parts if (sentence := _cut_short(part))]
     return MeasuredParts(
         strokes=tuple(sorted(parts, key=reading_order)),
         zero_mm=zero,
@@ -177,6 +178,17 @@ def measured_parts(file: ForceFile) -> MeasuredParts:
         used=sum(len(group.used) for group in groups),
         cycles=len(file.cycles),
         warnings=tuple(dict.fromkeys(warnings)),
+    )
+
+
+def _cut_short(part: MeasuredCurve) -> str:
+    """Say where a release ends before the button is free."""
+    place_mm, force_cN = part.displacement_mm[0], part.force_cN[0]
+    if part.stroke is Stroke.PRESS or place_mm <= CUT_SHORT_mm or force_cN <= CONTACT_cN:
+        return ""
+    return (
+        f"the release ends {place_mm:.2f} mm from contact, at {force_cN:.1f} cN: what it gives back, and the "
+        f"loss, are not known"
     )
 
 

@@ -94,9 +94,6 @@ STOP_GAPS_mm, STOP_RISE_cN = 0.12, 8.0
 """Caps, probes and domes slip or settle inside the stop: what rises by 8 cN before such gaps, no wider than
 0.12 mm together, is the same stop."""
 
-KNEE_BEFORE_mm, KNEE_AFTER_mm = 0.1, 0.05
-"""The knee is looked for this far around the first steep slope."""
-
 ISOLATED_mm = 0.06
 """What carries the cap lasts longer; a spike of a bench is gone within this."""
 
@@ -106,13 +103,13 @@ def first_loaded(x_mm: FloatArray, force_cN: FloatArray) -> int:
 
     x_mm, force_cN : (n,), x not falling. A load that is gone within 60 um is a spike, which carries nothing.
     """
-    starts, ends = _runs(force_cN >= min(LOADED_cN, 0.5 * float(force_cN.max())))
+    starts, ends = bounds_of_runs(force_cN >= min(LOADED_cN, 0.5 * float(force_cN.max())))
     after = np.where(ends < x_mm.size, x_mm[np.minimum(ends, x_mm.size - 1)], np.inf)
     lasting = np.flatnonzero(after - x_mm[np.maximum(starts - 1, 0)] > ISOLATED_mm)
     return int(starts[lasting[0] if lasting.size else 0])
 
 
-def _runs(mask: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+def bounds_of_runs(mask: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
     """Return where each run of True begins, and where it has ended: the index after its last."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
     return edges[::2], edges[1::2]
@@ -162,7 +159,7 @@ def find_bottom_out_mm(curve: MeasuredCurve, contact_mm: float | None = None) ->
     late = np.flatnonzero(steep & (x[:-1] > start + 0.5 * length))
     if not late.size or x[-1] - x[late[-1]] > 0.1 * length:
         return None
-    return _knee_mm(x, force, _stop_start(x, force, *_runs(steep)))
+    return float(x[_stop_start(x, force, *bounds_of_runs(steep))])
 
 
 def _stop_start(
@@ -178,12 +175,3 @@ def _stop_start(
         if force[begin : first + 1].max() - force[begin] >= STOP_RISE_cN:
             first, bridged = int(begin), bridged + gap
     return first
-
-
-def _knee_mm(x: FloatArray, force: FloatArray, first: int) -> float:
-    """Return where the curve lies farthest below the chord over the beginning of its steep rise."""
-    begin = int(np.searchsorted(x, x[first] - KNEE_BEFORE_mm))
-    end = max(int(np.searchsorted(x, x[first] + KNEE_AFTER_mm, side="right")), first + 2)
-    end = first + int(np.argmax(force[first:end]))
-    below = np.interp(x[begin : end + 1], x[[begin, end]], force[[begin, end]]) - force[begin : end + 1]
-    return float(x[begin + int(np.argmax(below))])

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model.bump import Bump, STOP_LEAST_cN_mm, find_bump
+from fdvv.model.bump import Bump, CONTACT_cN, STOP_LEAST_cN_mm, find_bump
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.model.spread import PointSpread
@@ -18,6 +18,9 @@ STEP_mm = 0.005
 
 CONTACT_REACH_mm = 0.4
 """A contact step ends within this of contact; what is steep beyond it is the button's own."""
+
+CUT_SHORT_mm = 0.1
+"""A release that ends this far from contact, while the button still pushes, was not recorded to its end."""
 
 mJ_PER_cN_mm = 0.01
 """1 cN mm = 10 mN x 1 mm = 0.01 mJ."""
@@ -43,7 +46,7 @@ class Landmarks:
     pre_slope_cN_mm : mean slope from the end of the contact step to the peak (to bottom-out if no bump).
     post_slope_cN_mm : mean slope over the last quarter of the travel: the spring rate.
     steepest_fall_cN_mm : most negative slope of the press after the contact step, the sharpness of the snap.
-    work_mJ, release_work_mJ : area under each stroke over the travel.
+    work_mJ, release_work_mJ : area under each stroke over the travel; None of a release that is cut short.
     hysteresis_loss_mJ : work put in and not given back.
     """
 
@@ -94,6 +97,12 @@ def dense(curve: ForceCurve, end_mm: float) -> FloatArray:
     return np.linspace(curve.start_mm, end_mm, count)
 
 
+def is_cut_short(release: ForceCurve, contact_mm: float) -> bool:
+    """Whether a release ends more than 0.1 mm below contact with a force on the button, more than 2 cN."""
+    start = release.start_mm
+    return start - contact_mm > CUT_SHORT_mm and float(release.force_cN(start)) > CONTACT_cN
+
+
 def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks:
     """Read the landmarks of a model from its press curve nearest to a velocity (the slowest by default).
 
@@ -115,7 +124,8 @@ def landmarks(model: FDVVModel, velocity_mm_s: float | None = None) -> Landmarks
     if release is not None:
         xr = dense(release, model.travel_mm)
         given_cN = release.force_cN(xr)
-        release_bump, release_work = find_bump(xr, given_cN), _work_mJ(xr, given_cN)
+        release_bump = find_bump(xr, given_cN)
+        release_work = None if is_cut_short(release, press.start_mm) else _work_mJ(xr, given_cN)
     last = x >= x[-1] - 0.25 * (x[-1] - x[0])
     close = model.actuation_mm
     return Landmarks(

@@ -12,6 +12,7 @@ import numpy as np
 from fdvv.errors import InputError, ModelError
 from fdvv.formats.force import repair
 from fdvv.formats.force import theremingoat as goat
+from fdvv.formats.force.excursions import drop_spikes, drop_stuck_probe
 from fdvv.formats.force.haata import is_haata, read_haata
 from fdvv.formats.force.ods import is_ods, read_ods
 from fdvv.formats.force.plain_csv import read_plain_csv
@@ -53,10 +54,12 @@ LEAST_TRAVEL_mm = 0.02
 
 def build(source: Path, reading: Reading, notes: Notes) -> ForceFile:
     """Check a reading and make it a file; raises InputError if no stroke is left."""
-    cycles: list[Cycle] = []
+    parts: list[RawCycle] = []
     for raw in reading.cycles:
         possible = raw.map(lambda track: _possible(track, notes))
-        cycles += [_cycle(part, notes) for part in split_run(possible, notes)]
+        parts += split_run(possible, notes)
+    placed = [_placed(part, notes) for part in parts]
+    cycles = [_cycle(part, [other for other in placed if other is not part], notes) for part in placed]
     cycles = [cycle for cycle in cycles if cycle.press or cycle.release]
     if not cycles:
         why = notes.sentences[-1] if notes.sentences else "the displacement never changes"
@@ -84,14 +87,20 @@ def _long_enough(track: Track, notes: Notes) -> bool:
     return not short
 
 
-def _cycle(raw: RawCycle, notes: Notes) -> Cycle:
+def _placed(raw: RawCycle, notes: Notes) -> RawCycle:
+    """Point both strokes into the button, the samples of the turn and of a slip where they belong."""
     oriented = raw.map(lambda track: orient(track, notes))
-    raw = repair.correct_slip(hand_over_turn(oriented, notes), notes)
+    return repair.correct_slip(hand_over_turn(oriented, notes), notes)
+
+
+def _cycle(raw: RawCycle, others: Sequence[RawCycle], notes: Notes) -> Cycle:
+    presses = [other.press for other in others if other.press]
+    releases = [other.release for other in others if other.release]
     actuation = repair.switching_mm(raw.press, Stroke.PRESS, notes)
     reset = repair.switching_mm(raw.release, Stroke.RELEASE, notes)
     return Cycle(
-        _curve(raw.press, Stroke.PRESS, raw.velocity_mm_s, notes),
-        _curve(raw.release, Stroke.RELEASE, raw.velocity_mm_s, notes),
+        _curve(raw.press, Stroke.PRESS, raw.velocity_mm_s, presses, notes),
+        _curve(raw.release, Stroke.RELEASE, raw.velocity_mm_s, releases, notes),
         raw.actuation_mm if actuation is None else actuation,
         raw.reset_mm if reset is None else reset,
         raw.label,
@@ -99,17 +108,21 @@ def _cycle(raw: RawCycle, notes: Notes) -> Cycle:
     )
 
 
-def _curve(track: Track | None, stroke: Stroke, velocity: float | None, notes: Notes) -> MeasuredCurve | None:
+def _curve(
+    track: Track | None, stroke: Stroke, velocity: float | None, repeats: Sequence[Track], notes: Notes
+) -> MeasuredCurve | None:
     if track is None or not _long_enough(track, notes):
         return None
-    track = repair.drop_lost_tare(repair.drop_spikes(track, notes), notes)
+    track = repair.drop_lost_tare(drop_spikes(track, notes, repeats), notes)
     if stroke is Stroke.PRESS:
-        track = repair.drop_stuck_probe(track, notes)
+        track = drop_stuck_probe(track, notes, repeats)
     if not _long_enough(track, notes):
         return None
     repair.warn_of_jumps(track, notes)
     speed = repair.mean_velocity_mm_s(track) if velocity is None else velocity
-    return MeasuredCurve(*repair.rising(track, notes), stroke, speed)
+    curve = MeasuredCurve(*repair.rising(track, notes), stroke, speed)
+    repair.warn_of_touches(curve, track.where, notes)
+    return curve
 
 
 LARGEST_FILE = 64 * 2**20

@@ -10,32 +10,21 @@ from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
-from numpy.lib.stride_tricks import sliding_window_view
 
 from fdvv.formats.force.types import Notes, RawCycle, Track
-from fdvv.model.bump import first_loaded
-from fdvv.model.curve import Stroke
+from fdvv.model.bump import LOADED_cN, bounds_of_runs, find_contact_mm, first_loaded
+from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.units import FloatArray
 
 FAR_mm, STRONG_cN = 1000.0, 100_000.0
 """No button travels a metre or takes a kilonewton."""
-SPIKE_cN = 20.0
-SPIKE_HALF = 5
-SPIKE_WIDTH_mm = 0.06
-"""A spike stands 20 cN off the running median of 11 samples and is back within 60 um; the undershoot
-of a real snap stays below (15 cN in the loudest click bar measured)."""
-STUCK_DROP_cN = 15.0
-STUCK_RISE_cN_mm = 150.0
-STUCK_WIDTH_mm = 0.5
-"""A probe that sticks climbs like a stop (450 to 520 cN/mm seen) and falls in one sample back to where
-it came from; a click bar climbs at 20 to 40 cN/mm before its snap."""
 JUMP_mm = 0.5
 PULL_cN = -5.0
 AIR_cN = 2.0
 SLIP_mm = 0.25
 
 
-def _where_x(track: Track, first: int, last: int) -> str:
+def where_x(track: Track, first: int, last: int) -> str:
     a, b = float(track.x_mm[first]), float(track.x_mm[last])
     return f"{track.where} at {a:.3f} mm" if first == last else f"{track.where} from {a:.3f} to {b:.3f} mm"
 
@@ -62,69 +51,13 @@ def _drop(track: Track, bad: npt.NDArray[np.bool_], notes: Notes, fault: str) ->
         return track
     first = int(np.argmax(bad))
     said = fault.format(x_mm=track.x_mm[first], force_cN=track.force_cN[first])
-    notes.say(f"{track.where}, sample {first + 1}: {said}; {_samples(int(bad.sum()))} left out")
+    notes.say(f"{track.where}, sample {first + 1}: {said}; {samples(int(bad.sum()))} left out")
     return track.take(~bad)
 
 
-def drop_spikes(track: Track, notes: Notes) -> Track:
-    """Leave out isolated excursions of the force: there and back within 60 um.
-
-    A step that stays (a click bar's drop) is no excursion: the samples on both sides must agree.
-    """
-    force, x = track.force_cN, track.x_mm
-    if force.size < 2 * SPIKE_HALF + 1:
-        return track
-    padded = np.pad(force, SPIKE_HALF, mode="edge")
-    off = np.abs(force - np.median(sliding_window_view(padded, 2 * SPIKE_HALF + 1), axis=1))
-    spike = np.zeros(force.size, dtype=bool)
-    # the feet of a spike belong to it
-    for first, last in _runs(off > 0.2 * SPIKE_cN):
-        inside = first > 0 and last < force.size - 1
-        if not inside or off[first : last + 1].max() <= SPIKE_cN or last - first >= 2 * SPIKE_HALF:
-            continue
-        back = abs(force[last + 1] - force[first - 1]) < 0.5 * SPIKE_cN
-        if back and abs(x[last + 1] - x[first - 1]) <= SPIKE_WIDTH_mm:
-            spike[first : last + 1] = True
-            worst = first + int(np.argmax(np.abs(force[first : last + 1] - force[first - 1])))
-            notes.say(
-                f"{_where_x(track, first, last)}: the force leaps to {force[worst]:.1f} cN and back; "
-                f"{_samples(last - first + 1)} left out"
-            )
-    return track.take(~spike) if spike.any() else track
-
-
-def _runs(mask: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
-    return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
-
-
-def drop_stuck_probe(track: Track, notes: Notes) -> Track:
-    """Leave out where the probe stuck: a climb as steep as a stop, undone in one sample.
-
-    The force must come back to the level it climbed from, and that level must have been flat: the
-    climb of a stiff tact switch before its snap starts at contact and is left alone.
-    """
-    x, force = track.x_mm, track.force_cN
-    keep = np.ones(force.size, dtype=bool)
-    for last in np.flatnonzero(np.diff(force) < -STUCK_DROP_cN):
-        before = np.flatnonzero(force[:last] <= force[last + 1] + 1.0)
-        if not before.size or not keep[last]:
-            continue
-        first = int(before[-1])
-        peak = float(force[first : last + 1].max())
-        rise, width = peak - force[first], x[last] - x[first]
-        flat = np.flatnonzero((x[:first] > x[first] - 0.2) & (x[:first] < x[first] - 0.01))
-        if force[first] < 5.0 or not 0.0 < width <= STUCK_WIDTH_mm or flat.size < 3:
-            continue
-        base = abs(force[first] - force[flat[0]]) / (x[first] - x[flat[0]])
-        if rise / width > STUCK_RISE_cN_mm and base < 0.33 * rise / width:
-            keep[first + 1 : last + 1] = False
-            notes.say(
-                f"{_where_x(track, first + 1, int(last))}: the probe stuck, the force climbs to {peak:.1f} "
-                f"cN and falls by {force[last] - force[last + 1]:.1f} cN in one sample; "
-                f"{_samples(int(last) - first)} left out"
-            )
-    return track.take(keep) if not keep.all() else track
+def runs(mask: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Return the first and the last index of every run of True."""
+    return [(int(a), int(b) - 1) for a, b in zip(*bounds_of_runs(mask), strict=True)]
 
 
 def drop_lost_tare(track: Track, notes: Notes) -> Track:
@@ -132,15 +65,15 @@ def drop_lost_tare(track: Track, notes: Notes) -> Track:
     pulling = track.force_cN < PULL_cN
     if not pulling.any():
         return track
-    runs = _runs(pulling)
-    start = runs[0][1] + 1 if runs[0][0] == 0 else 0
-    end = runs[-1][0] if runs[-1][1] == pulling.size - 1 else pulling.size
+    pulls = runs(pulling)
+    start = pulls[0][1] + 1 if pulls[0][0] == 0 else 0
+    end = pulls[-1][0] if pulls[-1][1] == pulling.size - 1 else pulling.size
     if end - start < 4 or (start == 0 and end == pulling.size):
         return track
     at = 0 if start else pulling.size - 1
     notes.say(
         f"{track.where}, {'begins' if start else 'ends'} at {track.force_cN[at]:.1f} cN in the air, the "
-        f"tare was lost; {_samples(pulling.size - (end - start))} left out"
+        f"tare was lost; {samples(pulling.size - (end - start))} left out"
     )
     return track.take(slice(start, end))
 
@@ -170,21 +103,21 @@ def correct_slip(cycle: RawCycle, notes: Notes) -> RawCycle:
     leaps = np.flatnonzero((step < -JUMP_mm) & held)
     if not leaps.size:
         return cycle
-    apart = _contact_mm(press) - _contact_mm(release)
+    apart = contact_mm(press) - contact_mm(release)
     fell = float(release.x_mm[0] - release.x_mm[leaps[-1] + 1])
     if apart < SLIP_mm or abs(fell - apart) > 0.5:
         return cycle
     notes.say(
         f"{press.where}: the position counter slipped by {apart:.2f} mm as the stage turned (press and "
         f"release touch the cap that far apart); the press was moved by {-apart:.2f} mm and "
-        f"{_samples(int(leaps[-1]) + 1)} caught in the slip left out of the release"
+        f"{samples(int(leaps[-1]) + 1)} caught in the slip left out of the release"
     )
     # the turning samples handed over from the release carry the same slip, so the whole press moves
     moved = replace(press, x_mm=press.x_mm - apart)
     return replace(cycle, press=moved, release=release.take(slice(int(leaps[-1]) + 1, None)))
 
 
-def _contact_mm(track: Track) -> float:
+def contact_mm(track: Track) -> float:
     # at 10 cN, not at first touch: the air after a release rings
     order = np.argsort(track.x_mm, kind="stable")
     x, force = track.x_mm[order], track.force_cN[order]
@@ -220,7 +153,19 @@ def rising(track: Track, notes: Notes) -> tuple[FloatArray, FloatArray]:
     return x, force
 
 
-def _samples(count: int) -> str:
+def warn_of_touches(curve: MeasuredCurve, where: str, notes: Notes) -> None:
+    """Warn where the force reaches 10 cN in the air and falls back: that is not contact."""
+    air = curve.displacement_mm < find_contact_mm(curve)
+    touching = air & (curve.force_cN >= LOADED_cN)
+    if touching.any():
+        place = float(curve.displacement_mm[touching][0])
+        notes.say(
+            f"{where} at {place:.3f} mm: the force touches {curve.force_cN[touching].max():.1f} cN in the "
+            f"air and falls back; it is not taken for contact"
+        )
+
+
+def samples(count: int) -> str:
     return "1 sample was" if count == 1 else f"{count} samples were"
 
 
