@@ -4,7 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from fdvv.formats.force.read import read_force_file
 from fdvv.model.bump import find_bottom_out_mm, find_contact_mm
 from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.model.fit import active_part
@@ -75,3 +78,65 @@ def test_the_extent_of_real_cherry_switches_is_that_of_their_data_sheet(shared_d
     part = active_part(press)
     # total travel of an MX switch: 4 mm, less 0.5 mm at most (Cherry's data sheet)
     assert 3.5 <= part.displacement_mm[-1] - part.displacement_mm[0] <= 4.1
+
+
+@given(
+    width_mm=st.floats(0.01, 0.12),
+    depth_mm=st.floats(0.03, 0.08),
+    fall_cN=st.floats(0.0, 30.0),
+    stop_cN_mm=st.floats(400.0, 2000.0),
+)
+def test_a_gap_in_the_stop_does_not_move_the_knee(
+    width_mm: float, depth_mm: float, fall_cN: float, stop_cN_mm: float
+) -> None:
+    x = np.arange(-0.3, 4.4, 0.005)
+    force = np.where(x < 0, 0.0, np.minimum(500.0 * x, 35 + 12 * x))
+    rise = np.maximum(x - 4.0, 0.0)
+    whole = force + stop_cN_mm * rise
+    # the stop rests for the gap, falls by what it slips, and goes on
+    gap = np.clip(rise - depth_mm, 0.0, width_mm)
+    slipped = whole - stop_cN_mm * gap - min(fall_cN, 0.8 * stop_cN_mm * depth_mm) * gap / width_mm
+    found = [find_bottom_out_mm(MeasuredCurve(x, f, Stroke.PRESS)) for f in (whole, slipped)]
+    assert found[0] == pytest.approx(4.0, abs=0.021)
+    assert found[1] == pytest.approx(found[0], abs=0.02)
+
+
+def test_a_step_well_before_the_stop_is_not_part_of_it() -> None:
+    x, force = bench_stroke()
+    force[x > 3.8] += 10.0
+    assert find_bottom_out_mm(MeasuredCurve(x, force, Stroke.PRESS)) == pytest.approx(4.0, abs=0.021)
+
+
+@given(at=st.integers(2, 55), samples=st.integers(1, 8), spike_cN=st.floats(10.0, 1000.0))
+def test_a_spike_in_the_air_does_not_move_contact(at: int, samples: int, spike_cN: float) -> None:
+    x, force = bench_stroke()
+    plain = find_contact_mm(MeasuredCurve(x, force, Stroke.PRESS))
+    force[at : min(at + samples, 58)] = spike_cN
+    assert find_contact_mm(MeasuredCurve(x, force, Stroke.PRESS)) == pytest.approx(plain, abs=0.006)
+
+
+def test_a_lost_sample_after_contact_is_no_air() -> None:
+    x, force = bench_stroke()
+    force[np.searchsorted(x, 0.013)] = 0.0
+    assert find_contact_mm(MeasuredCurve(x, force, Stroke.PRESS)) == pytest.approx(0.0, abs=0.006)
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize(
+    ("log", "knee_mm"),
+    [
+        ("BKE_Redux_v1_Light_01/DataLog_1", 3.21),
+        ("BKE_Redux_v1_Light_01/DataLog_2", 3.21),
+        ("NiZ_Black_65g/NiZ_65g-DataLog_2", 3.90),
+        ("NiZ_Black_65g/NiZ_65g-DataLog_3", 3.95),
+        ("Topre_R1_45g/DataLog_1", 3.90),
+        ("Topre_R1_45g/DataLog_2", 3.92),
+        ("Topre_R1_45g/DataLog_3", 3.92),
+    ],
+)
+def test_the_knee_of_a_real_dome_is_above_the_slip_in_its_stop(
+    log: str, knee_mm: float, shared_data: Path
+) -> None:
+    press = read_force_file(shared_data / f"buddyog-topre/{log}.csv").cycles[0].press
+    assert press is not None
+    assert find_bottom_out_mm(press) == pytest.approx(knee_mm, abs=0.05)

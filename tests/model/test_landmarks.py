@@ -2,10 +2,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
 from fdvv.model.curve import ForceCurve, MeasuredCurve, Stroke
-from fdvv.model.fit import fit_curve
+from fdvv.model.fit import active_part, fit_curve
 from fdvv.model.landmarks import landmarks
 from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
@@ -64,3 +66,34 @@ def test_a_tactile_button_has_its_bump_where_the_curve_turns() -> None:
 def test_a_model_without_a_press_has_no_landmarks() -> None:
     with pytest.raises(ModelError, match="no press curve"):
         landmarks(FDVVModel("half", 4.0, (line(Stroke.RELEASE, 30, 10),)))
+
+
+def test_a_release_that_ends_under_load_has_neither_work_nor_loss() -> None:
+    press = line(Stroke.PRESS, 30.0, 10.0)
+    knots_mm = np.array([1.8, 1.8, 4.0, 4.0])
+    short = ForceCurve(Stroke.RELEASE, None, 1, knots_mm, np.array([40.0, 62.0]))
+    free = ForceCurve(Stroke.RELEASE, None, 1, knots_mm, np.array([0.0, 62.0]))
+    for release, known in ((short, False), (free, True)):
+        marks = landmarks(FDVVModel("cut", 4.0, (press, release)))
+        assert (marks.release_work_mJ is not None) is known
+        assert (marks.hysteresis_loss_mJ is not None) is known
+
+
+@settings(deadline=None, max_examples=30)
+@given(knee_mm=st.floats(2.0, 3.8), seed=st.integers(0, 99))
+def test_a_peak_is_above_the_knee(knee_mm: float, seed: int) -> None:
+    x = np.arange(-0.2, knee_mm + 0.4, 0.005)
+    rng = np.random.default_rng(seed)
+    stop = rng.uniform(300, 2000) * np.maximum(x - knee_mm, 0)
+    stop[x > knee_mm + 0.1] -= 0.5 * stop[x > knee_mm + 0.1][0]  # a slip deep in the stop
+    bump = rng.uniform(0, 30) * np.exp(-(((x - 0.4 * knee_mm) / 0.2) ** 2))
+    force = np.where(x < 0, 0.0, np.minimum(500 * x, 35 + 5 * x)) + bump + stop
+    marks = landmarks(fit_parts(MeasuredCurve(x, force, Stroke.PRESS)))
+    assert marks.bottom_out_mm <= knee_mm + 0.02
+    assert marks.peak_mm is None or marks.peak_mm < marks.bottom_out_mm
+
+
+def fit_parts(press: MeasuredCurve) -> FDVVModel:
+    part = active_part(press)
+    fit = fit_curve(part)
+    return FDVVModel("made", part.displacement_mm[-1], (fit.curve,))

@@ -23,6 +23,7 @@ KEPT = "{places}: the force leaps by up to {most:.1f} cN and back, alike in seve
 STUCK_DROP_cN = 15.0
 STUCK_RISE_cN_mm = 150.0
 STUCK_WIDTH_mm = 0.5
+STUCK_AFTER_mm = 0.05
 """A probe that sticks climbs like a stop (450 to 520 cN/mm seen) and falls in one sample back to where
 it came from; a click bar climbs at 20 to 40 cN/mm before its snap."""
 
@@ -136,6 +137,9 @@ def _stuck(track: Track) -> list[Excursion]:
         if force[first] < 5.0 or not 0.0 < width <= STUCK_WIDTH_mm or flat.size < 3:
             continue
         base = abs(force[first] - force[flat[0]]) / (x[first] - x[flat[0]])
-        if rise / width > STUCK_RISE_cN_mm and base < 0.33 * rise / width:
+        # inside a stop the climb goes on: the cap slipped, no probe stuck
+        after = force[last + 1 :][x[last + 1 :] <= x[last + 1] + STUCK_AFTER_mm]
+        onward = float(after[-1] - after[0]) / STUCK_AFTER_mm
+        if rise / width > STUCK_RISE_cN_mm and max(base, onward) < 0.33 * rise / width:
             found.append(Excursion(first + 1, last, worst, rise))
     return found
