@@ -52,8 +52,8 @@ def bumped(drop_cN: float, width_mm: float = 0.4) -> Callable[[FloatArray], Floa
 
 
 def dome(x: FloatArray) -> FloatArray:
-    """Build up to 60 cN at 1.2 mm and collapse to 33 cN at 2.6 mm."""
-    return np.interp(x, [0, 1.2, 2.6, 4.0], [0, 60, 33, 90])
+    """Build up to 60 cN at 1.2 mm, collapse to 33 cN at 2.6 mm, and stiffen as rubber does."""
+    return np.interp(x, [0, 1.2, 2.6, 3.4, 4.0], [0, 60, 33, 50, 90])
 
 
 def row(model: FDVVModel, button_id: str = "own:button", collection: str = "") -> ButtonRow:

@@ -17,36 +17,16 @@ from fdvv.button.fit import MeasuredParts, measured_parts, one_line
 from fdvv.errors import FdvvError, InputError
 from fdvv.formats.force.read import read_force_file
 from fdvv.io.documents import MODEL, own_kind
-from fdvv.library.row import NUMBERS, SKETCH_POINTS, ButtonRow, ButtonType, Origin, Sketch
-from fdvv.model.bump import Bump, find_bump, running_mean
+from fdvv.library.kind import bump_of, kind_of
+from fdvv.library.row import NUMBERS, SKETCH_POINTS, ButtonRow, Origin, Sketch
+from fdvv.library.stated import Stated, stated_type
+from fdvv.model.bump import running_mean
 from fdvv.model.curve import ForceCurve, MeasuredCurve, Stroke
 from fdvv.model.file import load_model
 from fdvv.model.landmarks import landmarks
 from fdvv.model.model import FDVVModel
-from fdvv.units import FloatArray
 
 AVERAGED_mm = 0.02
-SUDDEN_mm = 0.05
-STOP_SHARE_mm = 0.15
-"""A fall this near to the end of the travel is the stage turning or the stop giving way, not a bump."""
-
-CONTACT_STEP_mm = 0.15
-"""A peak within this of contact that the release does not repeat is breakaway friction."""
-
-SUDDEN_ratio, SUDDEN_drop_cN = 0.5, 10.0
-"""Click bars, leaves and buckling springs lose 0.64 to 0.93 of their fall within 50 um, tactile switches and
-MX Blue's jacket at most 0.36. Below 10 cN a jerk of the stage does the same."""
-
-DOME_rise_mm, DOME_fall_ratio = 0.14, 0.25
-"""Domes take 0.15 to 0.39 mm to reach half of their peak, switches with a contact step 0.03 to 0.12 mm; and
-they collapse over 0.29 to 0.45 of their travel, switches of that kind of rise over 0.1 to 0.18."""
-
-
-class ButtonKind(NamedTuple):
-    """What the force of a button does, and by which fact."""
-
-    kind: ButtonType
-    reason: str
 
 
 def polyline_model(parts: MeasuredParts, name: str) -> FDVVModel:
@@ -61,64 +41,6 @@ def _polyline(stroke: MeasuredCurve) -> ForceCurve:
     mean = np.interp(grid, x, running_mean(x, force, AVERAGED_mm))
     knots = np.concatenate([grid[:1], grid, grid[-1:]])
     return ForceCurve(stroke.stroke, stroke.velocity_mm_s, 1, knots, mean)
-
-
-def bump_of(model: FDVVModel, stroke: Stroke) -> Bump | None:
-    """Find the bump of the slowest curve of a stroke; what falls at the stop is none."""
-    found = _samples(model, stroke)
-    if found is None:
-        return None
-    x, force = found
-    inside = x < model.travel_mm - STOP_SHARE_mm
-    return find_bump(x[inside], force[inside]) if np.count_nonzero(inside) > 2 else None
-
-
-def _samples(model: FDVVModel, stroke: Stroke) -> tuple[FloatArray, FloatArray] | None:
-    curve = model.nearest(stroke)
-    if curve is None:
-        return None
-    end = max(model.travel_mm, curve.start_mm + 0.1)
-    x = np.linspace(curve.start_mm, end, max(8, round((end - curve.start_mm) / 0.01) + 1))
-    return x, curve.force_cN(x)
-
-
-def kind_of(model: FDVVModel) -> ButtonKind:
-    """Decide what the force does, from the slowest press and its release."""
-    found = _samples(model, Stroke.PRESS)
-    if found is None:
-        return ButtonKind(ButtonType.UNCLEAR, "no press was measured")
-    bump, back = bump_of(model, Stroke.PRESS), bump_of(model, Stroke.RELEASE)
-    if bump is None:
-        return ButtonKind(ButtonType.LINEAR, "the force of the press never falls by 4 cN")
-    fall = f"the press falls by {bump.drop_cN:.1f} cN at {bump.peak_mm:.2f} mm"
-    if back is None and model.of(Stroke.RELEASE):
-        if bump.peak_mm - found[0][0] <= CONTACT_STEP_mm:
-            reason = f"{fall}, breakaway at contact; the release never falls by 4 cN"
-            return ButtonKind(ButtonType.LINEAR, reason)
-        return ButtonKind(ButtonType.UNCLEAR, f"{fall}, but the release never falls by 4 cN")
-    return _bumpy(bump, fall, model.travel_mm, *found)
-
-
-def _bumpy(bump: Bump, fall: str, travel_mm: float, x: FloatArray, force: FloatArray) -> ButtonKind:
-    sudden = _sudden_ratio(bump, x, force)
-    if sudden >= SUDDEN_ratio:
-        share = f"{fall}, {100 * sudden:.0f} % of it within 50 um"
-        if bump.drop_cN < SUDDEN_drop_cN:
-            return ButtonKind(ButtonType.UNCLEAR, f"{share}: so small a jump may be the bench")
-        return ButtonKind(ButtonType.CLICKY, f"{share}; force alone does not tell the sound")
-    rise_mm = float(x[int(np.argmax(force >= 0.5 * bump.peak_cN))] - x[0])
-    long_ratio = (bump.valley_mm - bump.peak_mm) / travel_mm
-    if rise_mm >= DOME_rise_mm and long_ratio >= DOME_fall_ratio:
-        rise = f"half of the peak is reached after {rise_mm:.2f} mm, without a contact step"
-        return ButtonKind(ButtonType.DOME, f"{fall} over {100 * long_ratio:.0f} % of the travel; {rise}")
-    return ButtonKind(ButtonType.TACTILE, fall)
-
-
-def _sudden_ratio(bump: Bump, x: FloatArray, force: FloatArray) -> float:
-    """Return the largest share of the fall that happens within 50 um."""
-    near = (x >= bump.peak_mm - 0.1) & (x <= bump.valley_mm + 0.05)
-    later = np.interp(x[near] + SUDDEN_mm, x, force)
-    return min(1.0, float(np.max(force[near] - later)) / bump.drop_cN)
 
 
 def figures_of(model: FDVVModel) -> dict[str, float | None]:
@@ -151,6 +73,7 @@ def reasons_of(model: FDVVModel, figures: dict[str, float | None]) -> tuple[str,
         "bump": figures["peak_cN"] is None and "not detected: the force never falls by 4 cN",
         "release": (not release and "the source holds no release")
         or (figures["release_drop_cN"] is None and "no bump detected: the force never falls by 4 cN"),
+        "loss": release and figures["loss_mJ"] is None and "the release ends while the button still pushes",
         "actuation": figures["actuation_mm"] is None and "the source does not tell where the contact closes",
         "reset": figures["reset_mm"] is None and "the source does not tell where the contact opens",
         "speed": not model.velocities_mm_s(Stroke.PRESS) and "the source tells no speed: a slow bench",
@@ -215,7 +138,8 @@ def row_of_file(
     """Return the row of a file, read already or read here. Raises InputError."""
     dated = datetime.fromtimestamp(path.stat().st_mtime, UTC).date().isoformat()
     found = read or read_file(path)
-    return row_of_model(found.model, button_id, origin, collection, dated, found.parts)
+    stated = stated_type(found.model.name, collection, path)
+    return row_of_model(found.model, button_id, origin, collection, dated, found.parts, stated)
 
 
 UNREADABLE = (FdvvError, OSError, ValueError, ArithmeticError, LookupError, MemoryError)
@@ -236,18 +160,25 @@ def row_of_model(
     collection: str = "",
     date: str | None = None,
     parts: MeasuredParts | None = None,
+    stated: Stated | None = None,
 ) -> ButtonRow:
-    """Return the row of a model; parts : of a measured button, with its counts of presses."""
+    """Return the row of a model.
+
+    parts : of a measured button, with its counts of presses.
+    stated : its type, where more than its name is known.
+    """
     kind, figures = kind_of(model), figures_of(model)
+    stated = stated or stated_type(model.name, collection)
     said = f"{model.name} {collection} {model.provenance.source}".replace("_", " ").replace("-", " ")
+    words = [word.lower() for word in STATED.findall(said)] + ([stated.type] if stated else [])
     return ButtonRow(
         id=button_id,
         name=model.name,
         origin=origin,
         collection=collection,
-        stated=tuple(dict.fromkeys(word.lower() for word in STATED.findall(said))),
+        stated=tuple(dict.fromkeys(words)),
         kind=kind.kind,
-        kind_reason=kind.reason,
+        kind_reason=kind.reason(stated),
         **{name: None if value is None else round(value, 4) for name, value in figures.items()},  # type: ignore[arg-type]
         speeds_mm_s=tuple(round(v, 3) for v in model.velocities_mm_s(Stroke.PRESS)),
         cycles=parts.cycles if parts else None,

@@ -50,8 +50,10 @@ class ButtonRow(msgspec.Struct, frozen=True, kw_only=True):
     ----------
     id : ``builtin:NAME``, ``own:NAME`` or ``measured:`` and 16 hexadecimal digits.
     collection : the folder a measured file lies in, below the source and with it.
-    stated : words of the maker or the measurer ("silent", "linear" ...) in name and folder; not measured.
-    kind, kind_reason : decided from the force alone, and by what.
+    stated : words of the maker or the measurer ("silent", "linear" ...) in name, folder or a table beside the
+        file, and the type of a known make; not measured.
+    kind, kind_reason : decided from the force alone; what is stated, how often such a curve is right, and by
+        which fact.
     peak_cN, peak_mm, valley_cN, valley_mm, drop_cN, snap_ratio : of the bump of the press.
     release_drop_cN : of the bump of the release.
     actuation_mm, actuation_cN, reset_mm : of the electrical contact.
@@ -108,7 +110,7 @@ NUMBERS = (
 """Figures of a row that can be searched by range and sorted by."""
 
 
-CACHE_version = 1
+CACHE_version = 2
 """Of what a row holds and how it is found; another version's cache is not used."""
 
 

@@ -90,9 +90,9 @@ STOP_LEAST_cN_mm = 100.0
 """A slope this much above the stroke's own, and at least this steep, is the stop. Springs of switches
 have 3 to 25 cN/mm; stops of measured switches 400 to 3000 cN/mm, of rubber domes above 150 cN/mm."""
 
-STOP_GAPS_mm, STOP_RISE_cN = 0.12, 8.0
-"""Caps, probes and domes slip or settle inside the stop: what rises by 8 cN before such gaps, no wider than
-0.12 mm together, is the same stop."""
+STOP_GAPS_mm, STOP_RISE_cN, STOP_RISE_ratio = 0.12, 8.0, 0.1
+"""Caps, probes and domes slip or settle inside the stop: what rises by 8 cN, and by a tenth of the force
+there, before such gaps, no wider than 0.12 mm together, is the same stop. A smaller rise is texture."""
 
 ISOLATED_mm = 0.06
 """What carries the cap lasts longer; a spike of a bench is gone within this."""
@@ -101,11 +101,14 @@ ISOLATED_mm = 0.06
 def first_loaded(x_mm: FloatArray, force_cN: FloatArray) -> int:
     """Find the first sample that carries the cap: 10 cN, or half of the greatest force if that is less.
 
-    x_mm, force_cN : (n,), x not falling. A load that is gone within 60 um is a spike, which carries nothing.
+    x_mm, force_cN : (n,), x not falling. A load that is gone within 60 um, or after one sample, is a spike,
+    which carries nothing.
     """
     starts, ends = bounds_of_runs(force_cN >= min(LOADED_cN, 0.5 * float(force_cN.max())))
-    after = np.where(ends < x_mm.size, x_mm[np.minimum(ends, x_mm.size - 1)], np.inf)
-    lasting = np.flatnonzero(after - x_mm[np.maximum(starts - 1, 0)] > ISOLATED_mm)
+    after = np.minimum(ends, x_mm.size - 1)
+    wide = (ends == x_mm.size) | (x_mm[after] - x_mm[np.maximum(starts - 1, 0)] > ISOLATED_mm)
+    single = (ends - starts == 1) & (force_cN[after] < CONTACT_cN)
+    lasting = np.flatnonzero(wide & ~single)
     return int(starts[lasting[0] if lasting.size else 0])
 
 
@@ -172,6 +175,7 @@ def _stop_start(
         gap = max(0.0, float(x[first] - x[end - 1]) - WINDOW_mm)
         if bridged + gap > STOP_GAPS_mm:
             break
-        if force[begin : first + 1].max() - force[begin] >= STOP_RISE_cN:
+        least_cN = max(STOP_RISE_cN, STOP_RISE_ratio * float(force[begin]))
+        if force[begin : first + 1].max() - force[begin] >= least_cN:
             first, bridged = int(begin), bridged + gap
     return first
