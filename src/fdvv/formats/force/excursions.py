@@ -18,7 +18,7 @@ SPIKE_WIDTH_mm = 0.06
 of a real snap stays below (15 cN in the loudest click bar measured)."""
 SLIP_CLIMB_mm = 0.1
 RECURS_mm = 0.2
-"""Cycles of a bench meet their features within this, from contact."""
+"""The same feature of two cycles lies within this, from contact."""
 KEPT = "{places}: the force leaps by up to {most:.1f} cN and back, alike in several cycles; it was kept"
 STUCK_DROP_cN = 15.0
 STUCK_RISE_cN_mm = 150.0

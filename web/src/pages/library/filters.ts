@@ -10,8 +10,8 @@ import type { LibraryStore } from "./store";
 const KINDS: readonly (readonly [ButtonType, string])[] = [
   ["linear", "The force never drops by 4 cN"],
   ["tactile", "The force drops on the press and on the release"],
-  ["clicky?", "More than half of the drop within 50 µm; force alone does not show the sound"],
-  ["dome?", "The force builds up without a contact step, then drops"],
+  ["clicky?", "The force drops at once, or elsewhere on the release; force alone does not show the sound"],
+  ["dome?", "The force drops over a long way, then stiffens"],
   ["unclear", "The force drops, but not as in a button"],
 ];
 const ORIGINS: readonly (readonly [Origin, string])[] = [
