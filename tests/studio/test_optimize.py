@@ -411,12 +411,12 @@ def test_a_damaged_run_is_marked_in_the_list_and_hurts_no_other(
     assert rows[first]
 
 
+@pytest.mark.parametrize("also", [[], ["lost_ratio"]])
 def test_two_designs_are_compared_until_the_budget_is_spent(
-    ask: Callable[..., Any], client: TestClient
+    ask: Callable[..., Any], client: TestClient, also: list[str]
 ) -> None:
-    run = ask("create", **{**CREATE, "preference": True, "engine": "preference", "budget": 2, "start": None})[
-        "run"
-    ]
+    wanted = {**CREATE, "preference": True, "engine": "preference", "budget": 2, "start": None, "also": also}
+    run = ask("create", **wanted)["run"]
     for number, answer in enumerate(("second", "equal")):
         assert ask("pair", run=run) == ask("pair", run=run) == {"run": run, "pair": number}
         ask("answer", run=run, pair=number, answer=answer)

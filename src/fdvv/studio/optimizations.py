@@ -194,7 +194,8 @@ class Optimizations:
         if not done:
             return None
         if self._found.get(run, (0, {}))[0] != done:
-            several = len(session.problem.objectives) > 1
+            # designs that are compared have no scores, however many objectives an older run names
+            several = len(session.problem.objectives) > 1 and not session.setup.preference
             self._found[run] = (done, session.front().knee().design if several else session.best())
         return self._found[run][1]
 

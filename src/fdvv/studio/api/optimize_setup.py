@@ -53,8 +53,9 @@ class OptimizeCreate(Message):
 
     title : for people. engine, space : of the offers. preference : designs are compared, not scored.
     simulated : a simulated person plays. level : of temporal pointing.
-    also : objectives beside asynchrony. start : a button; None starts from what the engine suggests.
-    rig : must be able to render every design; None asks for none. budget : trials, or comparisons.
+    also : objectives beside asynchrony, of designs that are scored. start : a button; None starts from what
+    the engine suggests. rig : must be able to render every design; None asks for none.
+    budget : trials, or comparisons.
     task_presses : of a score, 20 in the paper. others : a grid to begin from, in the paper's space; None
     begins from nothing.
     """
@@ -120,13 +121,14 @@ def devices(_studio: Studio, _ask: Empty) -> OptimizeDevices:
 def create(studio: Studio, ask: OptimizeCreate) -> OptimizeAsk:
     space, start = _space(studio, ask)
     others, prior = _others(studio, ask)
+    also = () if ask.preference else ask.also
     setup = OptimizeSetup(
         space=space,
         engine=ask.engine,
         task="preference" if ask.preference else TASK,
         level=ask.level,
         simulated=ask.simulated,
-        objectives=tuple(Objective(name) for name in ("asynchrony_ms", *ask.also)),
+        objectives=tuple(Objective(name) for name in ("asynchrony_ms", *also)),
         seed=ask.seed,
         budget=ask.budget,
         start=start,
