@@ -1,7 +1,7 @@
 """What does compensation give, beside no learning, the law as printed and FD only? Simulated; some minutes.
 
-Run as ``python -m benchmarks.compensation``. MX Clear on the default rig, learned with seeds 11 to 13, judged
-with seeds 2001 to 2003 and 20 fresh presses per speed, in true displacement against the full model.
+Run as ``python -m benchmarks.compensation``. MX Clear on the rig `voltage`, learned with seeds 11 to 13,
+judged with seeds 2001 to 2003 and 20 fresh presses per speed, in true displacement against the full model.
 """
 
 from __future__ import annotations

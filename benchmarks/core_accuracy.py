@@ -1,7 +1,7 @@
 """How exact are the core's velocities and vibration onsets? ``python -m benchmarks.core_accuracy``.
 
 Even and speeding presses, simulated without a finger, at 25 phases of a 4 kHz tick; the readings are those of
-the default rig (converter steps, no noise). Each figure is the worst of its phases.
+the rig voltage (converter steps, no noise). Each figure is the worst of its phases.
 """
 
 from __future__ import annotations

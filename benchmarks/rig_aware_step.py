@@ -1,6 +1,6 @@
 """How long does learning from one press take? The finger waits for it.
 
-Run as ``python -m benchmarks.rig_aware_step``. Presses of the simulated default rig and of one with a loop of
+Run as ``python -m benchmarks.rig_aware_step``. Presses of the simulated rig voltage and of one with a loop of
 4 kHz at four speeds; median and largest of the steps that learn on a known rig, the one that identifies it
 apart, and of the tables for another button from what the rig has taught.
 """

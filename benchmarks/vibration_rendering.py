@@ -262,7 +262,7 @@ def print_fingers() -> None:
         likenesses(Bench(rig, draw_finger(np.random.default_rng(FIRST_SEED + i))), slot, wanted, 50.0)
         for i in range(20)
     ]
-    print(f"default rig, one drive, 20 drawn fingers, 50 mm/s: {summary(rows)}")
+    print(f"rig voltage, one drive, 20 drawn fingers, 50 mm/s: {summary(rows)}")
 
 
 def print_tones() -> None:
@@ -275,7 +275,7 @@ def print_tones() -> None:
     plant = RigPlant(rig, AWAY, seed=1, stop_us=settings.stop_zero_us + 4 * settings.stop_us_mm)
     plant.load(tone_image(frequencies, tone_s))
     sensor = rig.position_sensor
-    print("default rig, tones of 3 s at rest: cap and sensor over the free cap's motion, error um")
+    print("rig voltage, tones of 3 s at rest: cap and sensor over the free cap's motion, error um")
     for slot in (None, *range(len(frequencies))):
         positions_m = []
         for k in range(round((tone_s - 0.02) / rig.controller.tick_s)):
@@ -305,7 +305,7 @@ def print_filter() -> None:
     shape = wanted.acceleration_m_s2(times)
     response = free.response(np.fft.rfftfreq(times.size, 1 / RATE_HZ))
     strong = abs(complex(free.response(239.0)))
-    print("expected on the default rig, drive of 20 ms: likeness")
+    print("expected on the rig voltage, drive of 20 ms: likeness")
     print(f"  the waveform as it is {correlation(acceleration_m_s2(free, shape), shape):.2f}")
     for gain_dB in (5.0, 10.0, 15.0, 20.0):
         bound = (strong / 2 / 10 ** (gain_dB / 20)) ** 2
@@ -320,7 +320,7 @@ def print_onset() -> None:
     """Default rig: when the waveform lies where it is most like the target."""
     rig, wanted = uno(Rig()), target("239 Hz, 16 ms")
     made = render_vibration(wanted, true_exciter(rig))
-    print("default rig, 0.2 ms synthesiser: the waveform after its displacement, ms, at mm/s")
+    print("rig voltage, 0.2 ms synthesiser: the waveform after its displacement, ms, at mm/s")
     for name, slot, lead_s in (
         ("plain", plain_slot(wanted), 0.0),
         ("inverse, lead not positions_m", made.slot, 0.0),

@@ -97,10 +97,10 @@ def test_a_recording_is_processed_into_the_same_model(fdvv: Run) -> None:
 
 
 def test_what_a_rig_taught_is_used(fdvv: Run) -> None:
-    known = ("--velocity", "100", "--rounds", "0", "--rig", "default", "--rig-known", "twin.rig.json")
+    known = ("--velocity", "100", "--rounds", "0", "--rig", "voltage", "--rig-known", "twin.rig.json")
     learned = fdvv("compensate", "mx-red", *known, "-o", "red.actuation.json")
     assert (learned["presses"], len(learned["curves"])) == (0, 2)
-    on = ("--rig", "default", "--velocity", "100", "--presses", "1")
+    on = ("--rig", "voltage", "--velocity", "100", "--presses", "1")
     judged = fdvv("probe", "mx-clear", "learned.actuation.json", *on)
     assert len(judged["curves"]) == 2
 

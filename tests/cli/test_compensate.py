@@ -98,6 +98,18 @@ def test_a_rig_can_be_met_without_learning_on_it(fdvv: Run, tmp_path: Path) -> N
     assert load_learned_rig(tmp_path / "new.rig.json").rig.presses == 4
 
 
+def test_a_session_on_a_rig_goes_on_under_the_name_the_rig_had_before(fdvv: Run) -> None:
+    paper = ("compensate", "mx-clear", "--velocity", "100", "--method", "paper", "--presses", "2")
+    before = fdvv(*paper, "--rounds", "1", "--rig", "voltage", "--session", "s", "--json")
+    again = fdvv(*paper, "--rounds", "1", "--rig", "default", "--session", "s", "--json")
+    assert (before.status, again.status) == (0, 0)
+    assert again.json["curves"] == before.json["curves"]
+    other = fdvv(*paper, "--rounds", "1", "--rig", "light", "--session", "s")
+    assert other.status == 2
+    unknown = fdvv(*paper, "--rig", "simple")
+    assert "one of recommended, ideal, light, paper, voltage" in unknown.err
+
+
 def test_the_papers_law_is_there_by_its_name(fdvv: Run) -> None:
     paper = ("compensate", "mx-clear", "--velocity", "50", "--method", "paper", "--presses", "2")
     ran = fdvv(*paper, "--rounds", "1", "--json")
@@ -109,7 +121,7 @@ def test_the_papers_law_is_there_by_its_name(fdvv: Run) -> None:
 
 
 def test_a_probe_ends_with_its_verdict_and_the_next_step_and_draws_them(fdvv: Run, tmp_path: Path) -> None:
-    probe = ("probe", "mx-clear", "--rig", "default", "--velocity", "50", "--presses", "2", "--seed", "7")
+    probe = ("probe", "mx-clear", "--rig", "voltage", "--velocity", "50", "--presses", "2", "--seed", "7")
     ran = fdvv(*probe, "--figure", "f.svg", "--report", "r.html")
     assert ran.status == 0
     lines = ran.out.splitlines()

@@ -28,7 +28,7 @@ from .conftest import Run
 
 PAPER = ("--method", "paper")
 SERIAL = ("--device", "serial:/dev/rig", *PAPER)
-DEFAULT = ("--rig", "default")
+VOLTAGE = ("--rig", "voltage")
 SHORT = ("--velocity", "50", "--velocity", "100", "--rounds", "1", "--presses", "4", *PAPER)
 LONG = ("--velocity", "50", "--velocity", "200", "--rounds", "2", "--presses", "12", *PAPER)
 FDVV = (sys.executable, "-m", "fdvv")
@@ -211,7 +211,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_any_press(fdvv: Run, 
 
 
 def test_a_probe_keeps_its_presses_and_shows_its_receipt(fdvv: Run, tmp_path: Path) -> None:
-    probe = ("probe", "mx-clear", *DEFAULT, "--velocity", "50", "--presses", "3", "--session", "p")
+    probe = ("probe", "mx-clear", *VOLTAGE, "--velocity", "50", "--presses", "3", "--session", "p")
     first = fdvv(*probe)
     assert first.status == 0
     # as many again with the button's vibration
@@ -233,7 +233,7 @@ def test_show_tells_the_receipt_of_an_actuation(fdvv: Run) -> None:
 
 
 def test_a_board_without_a_force_sensor_is_not_learned_from(fdvv: Run) -> None:
-    ran = fdvv("compensate", "mx-clear", *SHORT, "--device", "host", *DEFAULT)
+    ran = fdvv("compensate", "mx-clear", *SHORT, "--device", "host", *VOLTAGE)
     assert ran.status == 1
     assert "no force sensor in its settings" in ran.err
     assert ran.err.count("\n") == 1

@@ -23,13 +23,13 @@ HARD = model_space(CLEAR, ["force_ratio", "snap_mm"], {"force_ratio": (0.5, 16.0
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("project")
-    RigCatalog(folder).rig("shipped:default")
+    RigCatalog(folder).rig("shipped:voltage")
     return folder
 
 
 @pytest.fixture(scope="module")
 def rig(project: Path) -> AvailableRig:
-    return RigCatalog(project).rig("shipped:default")
+    return RigCatalog(project).rig("shipped:voltage")
 
 
 def held(rig: AvailableRig) -> DesignSpace:
@@ -41,7 +41,7 @@ def test_a_rig_bears_the_button_and_not_one_with_far_too_much_force(rig: Availab
     space = held(rig)
     assert space.broken({"force_ratio": 1.0, "snap_mm": 0.5}) == ()
     broken = space.broken({"force_ratio": 16.0, "snap_mm": 0.5})
-    assert "shipped:default" in broken[0].text
+    assert "shipped:voltage" in broken[0].text
 
 
 def test_slacks_are_those_of_a_report(rig: AvailableRig) -> None:
@@ -63,11 +63,11 @@ def test_slack_falls_all_the_way_as_the_force_grows(rig: AvailableRig) -> None:
 
 def test_a_run_carries_its_button_and_its_rig_with_it(tmp_path: Path, project: Path) -> None:
     space = model_space_setup(
-        CLEAR, ["force_ratio", "snap_mm"], {"force_ratio": (0.5, 16.0)}, "shipped:default"
+        CLEAR, ["force_ratio", "snap_mm"], {"force_ratio": (0.5, 16.0)}, "shipped:voltage"
     )
     setup = OptimizeSetup(engine="sobol", space=space, budget=3)
     Optimization.create(tmp_path / "run", setup, project).close()
-    assert [path.name for path in (tmp_path / "run" / "rigs").iterdir()] == ["default.simulated.rig.json"]
+    assert [path.name for path in (tmp_path / "run" / "rigs").iterdir()] == ["voltage.simulated.rig.json"]
     with Optimization.open(tmp_path / "run") as session:
         for trial in session.ask(3):
             assert not session.space.broken(trial.design)

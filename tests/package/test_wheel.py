@@ -27,7 +27,7 @@ NEEDED = (
     "study/templates/realism.toml",
     "study/templates/buttons/mx-red.fdvv.json",
     "studio/static/index.html",
-    "twin/rigs/default.toml",
+    "twin/rigs/voltage.toml",
     "twin/rigs/light.toml",
     "twin/rigs/paper.toml",
     "twin/fingers/paper.toml",

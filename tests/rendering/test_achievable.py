@@ -41,12 +41,28 @@ def test_a_shipped_rig_is_met_once_and_kept_in_the_project(project: Path, light:
     again = RigCatalog(project)
     assert again.rig("shipped:light").known == light.known
     assert kept.stat().st_mtime_ns == written
-    assert {e.rig_id: e.known for e in again.entries()} == {
-        "shipped:default": False,
-        "shipped:paper": False,
-        "shipped:light": True,
-    }
+    assert [(e.rig_id, e.known) for e in again.entries()] == [
+        ("shipped:recommended", False),
+        ("shipped:light", True),
+        ("shipped:paper", False),
+        ("shipped:voltage", False),
+    ]
     assert light.entry.simulated
+
+
+def test_a_rig_is_found_by_its_old_name_in_projects_of_earlier_versions(
+    tmp_path: Path, light: AvailableRig
+) -> None:
+    # "voltage" was called "default"; what it once taught is in a file of that name
+    old = tmp_path / "rigs" / "default.simulated.rig.json"
+    save_rig(light.known, old)
+    catalog = RigCatalog(tmp_path)
+    assert {e.rig_id: e.known for e in catalog.entries()}["shipped:voltage"]
+    found = catalog.rig("shipped:default")
+    assert (found.known, found.entry.rig_id) == (light.known, "shipped:voltage")
+    catalog.lend("shipped:default", tmp_path / "run")
+    lent = RigCatalog(tmp_path / "run").rig("shipped:default")
+    assert lent.known == light.known
 
 
 def test_a_file_of_a_person_is_on_the_shelf_and_not_called_simulated(
@@ -62,7 +78,9 @@ def test_a_file_of_a_person_is_on_the_shelf_and_not_called_simulated(
 
 @pytest.mark.parametrize("rig_id", ["own:../rigs/light", "shipped:heavy", "", "own:light.simulated"])
 def test_an_unknown_rig_is_refused_with_those_there_are(project: Path, rig_id: str) -> None:
-    with pytest.raises(InputError, match="choose one of shipped:default, shipped:paper, shipped:light"):
+    with pytest.raises(
+        InputError, match="choose one of shipped:recommended, shipped:light, shipped:paper, shipped:voltage"
+    ):
         RigCatalog(project).rig(rig_id)
 
 

@@ -59,7 +59,7 @@ def page(studio: Studio) -> Iterator[Page]:
 
 
 def test_the_scope_shows_a_press_on_the_firmware(studio: Studio, page: Page) -> None:
-    found = part.connect.function(studio, DeviceConnect("host"))
+    found = part.connect.function(studio, DeviceConnect("host", "voltage"))
     assert (found.device, found.simulated, found.streams, found.fault) == ("host", True, True, "")
     page.wait(ScopeFrame)
     assert part.upload.function(studio, CLEAR).programmed == "mx-clear"
@@ -67,7 +67,7 @@ def test_the_scope_shows_a_press_on_the_firmware(studio: Studio, page: Page) -> 
     deep = page.wait(ScopeFrame, lambda frame: max(frame.displacement_high_mm) > 3.5)
     assert deep.bin_s == 0.01
     assert max(max(frame.commanded_high_cN) for frame in page.of(ScopeFrame)) > 20
-    # the default rig has no force sensor
+    # this rig has no force sensor
     assert {force for frame in page.of(ScopeFrame) for force in frame.force_high_cN} == {None}
     seen = page.wait(PressSeen)
     assert seen.simulated
@@ -102,7 +102,7 @@ def test_the_twin_shows_presses_without_firmware(studio: Studio, page: Page) -> 
 
 
 def test_facts_and_self_test_are_those_of_the_firmware(studio: Studio) -> None:
-    part.connect.function(studio, DeviceConnect("host"))
+    part.connect.function(studio, DeviceConnect("host", "voltage"))
     facts = {fact.name: fact.value for fact in part.facts.function(studio, Empty()).facts}
     assert (facts["name"], facts["simulated"]) == ("host", "True")
     verdicts = {found.part: found.verdict for found in part.selftest.function(studio, Empty()).parts}

@@ -25,7 +25,9 @@ def post(client: TestClient, name: str, question: dict[str, Any], status: int = 
 
 def test_the_shipped_rigs_are_listed_and_said_to_be_simulated(client: TestClient) -> None:
     rigs = post(client, "rigs", {})["rigs"]
-    assert [r["rig_id"] for r in rigs] == ["shipped:default", "shipped:paper", "shipped:light"]
+    assert [r["rig_id"] for r in rigs] == [
+        f"shipped:{name}" for name in ("recommended", "light", "paper", "voltage")
+    ]
     assert all(r["simulated"] and not r["known"] for r in rigs)
 
 
@@ -37,7 +39,8 @@ def test_a_rig_answers_for_both_strokes_of_the_speed_asked(client: TestClient) -
     sizes = {len(press[name]) for name in ("displacement_mm", "intended_cN", "achievable_cN")}
     assert sizes == {201}
     assert press["verdict"] in ("can follow", "follows in part", "cannot")
-    assert post(client, "rigs", {})["rigs"][2]["known"]
+    known = {rig["rig_id"]: rig["known"] for rig in post(client, "rigs", {})["rigs"]}
+    assert known["shipped:light"]
 
 
 @pytest.mark.parametrize(

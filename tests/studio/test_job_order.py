@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 
 from fdvv.errors import InputError
 from fdvv.library.catalog import Catalog
 from fdvv.model.file import model_from_json
-from fdvv.studio.jobs.file import RESULT_FOLDERS, result_file, result_names
+from fdvv.studio.jobs.file import RESULT_FOLDERS, result_file, result_names, rig_name
 from fdvv.studio.jobs.inputs import inputs_of
-from fdvv.studio.jobs.orders import CaptureOrder, Order
+from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order
+from fdvv.twin.files import load_rig, rig_to_toml
 from tests.studio.jobs import DEVICES, learning, tuning
+
+OLD_JOB = Path(__file__).parents[1] / "files" / "old" / "project" / "jobs" / "0001" / "job.json"
 
 
 def checked(order: Order, project: Path) -> Any:
@@ -48,6 +53,18 @@ WRONG: list[tuple[Order, str]] = [
     (CaptureOrder("x", device="host"), "no capture bench"),
     (CaptureOrder("x", paces_mm_s=(10.0,)), "velocities"),
 ]
+
+
+def test_an_order_names_no_rig_and_gets_the_recommended_one(tmp_path: Path) -> None:
+    for order in (learning(), tuning()):
+        assert checked(order, tmp_path).files["rig.toml"] == rig_to_toml(load_rig("recommended"))
+
+
+def test_an_order_of_an_earlier_version_gets_its_rig_by_the_old_name(tmp_path: Path) -> None:
+    order = msgspec.convert(json.loads(OLD_JOB.read_text())["order"], CompensateOrder)
+    assert order.rig == "default"
+    assert checked(order, tmp_path).files["rig.toml"] == rig_to_toml(load_rig("voltage"))
+    assert rig_name(order) == "twin-voltage"
 
 
 @pytest.mark.parametrize(("order", "message"), WRONG, ids=lambda value: str(value)[:60])

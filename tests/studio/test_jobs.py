@@ -58,7 +58,7 @@ def test_work_tells_every_press_and_leaves_its_results_in_the_project(studio: St
     assert set(row.results) == {
         JobResult("actuation", "clear"),
         JobResult("measured", "clear"),
-        JobResult("rig", "twin-default"),
+        JobResult("rig", "twin-recommended"),
     }
     learned = load_actuation(studio.project / "actuations" / "clear.actuation.json")
     outcome = next(e for e in follower.events if isinstance(e, JobOutcome) and e.stage == "compensate")
@@ -127,7 +127,7 @@ def test_work_that_fails_says_why_and_a_damaged_job_hinders_no_other(tmp_path: P
     (folder / JOB).write_text("{")
     jobs = Studio(tmp_path).part(Jobs)
     assert jobs.rows() == ()
-    row = begin(jobs, learning(device="host")).over()
+    row = begin(jobs, learning(device="host", rig="voltage")).over()
     assert (row.job, row.state) == ("0008", "failed")
     assert "no force sensor" in row.line
     assert "\n" not in row.line

@@ -122,7 +122,7 @@ def quantisation_limit_N_m(rig: Rig) -> float:
 
 
 def bare_loop(tick_s: float = 1e-3) -> Rig:
-    """Return the default rig as LinearLoop has it: linear, without friction, weight or exciter."""
+    """Return the rig voltage as LinearLoop has it: linear, without friction, weight or exciter."""
     linear = Coil(droop_ratio=0.0, source_ohm=0.0, reluctance_H_m=0.0, copper_1_K=0.0, command_bits=0)
     return Rig(
         coil=linear,

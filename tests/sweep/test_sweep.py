@@ -168,6 +168,20 @@ def test_another_plan_in_the_same_folder_is_refused(pressed: Path, tmp_path: Pat
         run_sweep(PRESS, tmp_path, Here())
 
 
+def test_a_sweep_of_an_earlier_version_goes_on_under_the_present_name_of_its_rig(tmp_path: Path) -> None:
+    plan = plan_with(measure="feasible", factors={}, settings={"velocities_mm_s": [50.0]})
+    first = run_sweep(plan, tmp_path / "run", Here())
+    begun = tmp_path / "run" / "sweep.json"
+    text = begun.read_text()
+    assert "rig voltage" in text
+    begun.write_text(text.replace("rig voltage", "rig default"))
+    again = run_sweep(plan, tmp_path / "run", Here())
+    assert (first.worked, again.worked) == (1, 0)
+    begun.write_text(begun.read_text().replace('"rig default": "', '"rig default": "0'))
+    with pytest.raises(InputError, match="other files"):
+        run_sweep(plan, tmp_path / "run", Here())
+
+
 def test_files_of_a_plan_that_changed_are_noticed(tmp_path: Path) -> None:
     from fdvv.twin.files import finger_to_toml
 

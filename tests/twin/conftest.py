@@ -44,7 +44,7 @@ def flat(force_cN: float) -> ForceSurface:
 
 @dataclass
 class Bench:
-    """The kernel with every number open: the default rig without noise, settling or exciter, then changed."""
+    """The kernel with every number open: the rig voltage without noise, settling or exciter, then changed."""
 
     surface: ForceSurface
     gesture: Gesture

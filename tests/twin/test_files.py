@@ -35,7 +35,7 @@ from fdvv.twin.quantity import about
 from fdvv.twin.rig import Controller, Rig
 from fdvv.twin.rig_moves import Mover
 
-DEFAULT = Path(fdvv.twin.__file__).parent / "rigs" / "default.toml"
+VOLTAGE = Path(fdvv.twin.__file__).parent / "rigs" / "voltage.toml"
 
 
 def write(tmp_path: Path, text: str) -> Path:
@@ -45,13 +45,13 @@ def write(tmp_path: Path, text: str) -> Path:
 
 
 def test_the_shipped_rig_is_the_default_one_written_out() -> None:
-    assert DEFAULT.read_text() == rig_to_toml(Rig())
-    assert load_rig(DEFAULT) == Rig()
+    assert VOLTAGE.read_text() == rig_to_toml(Rig())
+    assert load_rig(VOLTAGE) == Rig()
 
 
 def test_a_shipped_rig_or_finger_is_read_by_its_name() -> None:
-    assert load_rig("default") == Rig()
-    folder = DEFAULT.parents[1]
+    assert load_rig("voltage") == load_rig("default") == Rig()
+    folder = VOLTAGE.parents[1]
     assert load_rig("paper") == load_rig(folder / "rigs" / "paper.toml") != Rig()
     assert load_finger("paper") == load_finger(folder / "fingers" / "paper.toml") != Finger()
 

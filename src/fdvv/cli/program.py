@@ -214,7 +214,11 @@ def compile_(
 )
 @ui.option("--learned", type=ui.FILE, help="*.actuation.json of a button whose surfaces the program has.")
 @ui.option("--device", "spec", default="twin", help="'twin' is simulated; see fdvv device.")
-@ui.option("--rig", type=ui.RIG, help="Of the twin: recommended, light, paper ..., or a TOML file.")
+@ui.option(
+    "--rig",
+    type=ui.RIG,
+    help="Of the twin: a TOML file or a name, recommended unless you say.",
+)
 @ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the twin.")
 @ui.speeds_option("--velocity", "velocities_mm_s", help="mm/s; repeatable.")
 @ui.option("--presses", type=click.IntRange(1, 50), default=3, help="Per speed, as it is and rendered.")

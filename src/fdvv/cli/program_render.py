@@ -9,6 +9,7 @@ import click
 from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.options import opened
+from fdvv.cli.rendering.session import recommended_for
 from fdvv.compensation.identification.rig_file import LearnedRig, load_learned_rig
 from fdvv.device.contract import Device
 from fdvv.device.twin import TwinDevice
@@ -41,7 +42,7 @@ def render(
     if rig_known is None:
         raise InputError("--rig-known", "option", "the rig is not known", IDENTIFY)
     program, known = open_program(name), load_learned_rig(rig_known)
-    with opened(spec, None, rig, seed) as device:
+    with opened(spec, None, rig or recommended_for(spec), seed) as device:
         rendering = _rendering(program, device, known, learned)
         if output:
             write_atomic(output, rendering.image)

@@ -257,12 +257,12 @@ class RigName(click.ParamType[Path]):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         if str(value).isidentifier() and not Path(value).exists():
-            from fdvv.twin.files import shipped_rigs
+            from fdvv.twin.files import current_rig_name, shipped_rigs
 
-            found = shipped_rigs()
-            if value not in found:
+            found, name = shipped_rigs(), str(current_rig_name(value))
+            if name not in found:
                 self.fail(f"there is no rig {value!r}; name a file, or one of {', '.join(found)}", param, ctx)
-            return found[value]
+            return found[name]
         return FILE.convert(value, param, ctx)
 
 

@@ -23,15 +23,19 @@ from fdvv.model.model import FDVVModel
 from fdvv.protocol.tables import Settings
 from fdvv.rendering.compensate import compensate
 from fdvv.rendering.feasibility import CurveFeasibility, feasibility
+from fdvv.twin.files import OLD_RIG_NAMES, current_rig_name
 from fdvv.twin.files import load_rig as load_plant
 
 SHIPPED_RIGS = {
-    "default": "voltage drive, mover of 20 g",
-    "paper": "one that could have been the paper's: current drive, 12 g",
-    "light": "current drive, mover of 6 g, loop of 10 kHz",
+    "recommended": "the rig to build: load cell in the cap, current drive, mover of 12 g, loop of 10 kHz",
+    "light": "current drive, mover of 6 g, loop of 10 kHz, no load cell",
+    "paper": "one that could have been the paper's: current drive, 12 g, loop of 1 kHz, no load cell",
+    "voltage": "voltage drive, mover of 20 g, loop of 1 kHz, no load cell",
 }
-"""Rigs that come with the package, and what each is."""
-OWN_ABOUT = "your rig file; limits of force and time are those of the shipped default rig"
+"""Rigs that come with the package, and what each is; the first unless there is a reason for another."""
+OWN_RIG = "voltage"
+"""Settings of a rig of one's own are taken from here: the slowest loop promises nothing that it cannot do."""
+OWN_ABOUT = "your rig file; limits of force and time are those of the shipped rig voltage"
 SUFFIX, SIMULATED = ".rig.json", ".simulated.rig.json"
 IDENTIFIED_ON, IDENTIFIED_AT_mm_s, IDENTIFIED_SEED = "mx-clear", (50.0, 100.0, 150.0, 200.0), 1
 """Button, speeds and seed that identify a shipped rig."""
@@ -62,7 +66,7 @@ class AvailableRig:
     Attributes
     ----------
     known : the model of the rig. settings, info : of the device; for a person's own file, which holds no
-        settings, those of the shipped default rig.
+        settings, those of the shipped OWN_RIG.
     """
 
     entry: RigEntry
@@ -98,6 +102,7 @@ class RigCatalog:
 
         Raises InputError on an unknown id and on a file that cannot be read.
         """
+        rig_id = _current_id(rig_id)
         with self._lock:
             entry = next((e for e in self.entries() if e.rig_id == rig_id), None)
             if entry is None:
@@ -109,18 +114,19 @@ class RigCatalog:
 
     def lend(self, rig_id: str, project: Path) -> None:
         """Copy the file of a rig to another project. Raises InputError on an unknown id, OSError."""
-        self.rig(rig_id)
-        file = _file_of(rig_id)
+        file = _file_of(self.rig(rig_id).entry.rig_id)
         write_atomic(project / "rigs" / file, self._files()[file].read_bytes())
 
     def _load(self, entry: RigEntry) -> AvailableRig:
         """Read a rig's file; a shipped rig without one is identified by simulated presses, and saved."""
-        plant = entry.rig_id.removeprefix("shipped:") if entry.simulated else "default"
+        plant = entry.rig_id.removeprefix("shipped:") if entry.simulated else OWN_RIG
         device = TwinDevice(load_plant(plant), seed=IDENTIFIED_SEED)
         file = _file_of(entry.rig_id)
         if path := self._files().get(file):
             return AvailableRig(entry, load_rig(path), device.settings(), device.info())
-        learned = compensate(device, load_builtin(IDENTIFIED_ON), IDENTIFIED_AT_mm_s, RigAware()).learned_rig
+        # a file holds what the loop leaves alone, which the first press at each speed has shown
+        law = RigAware(rounds=1) if device.load_cell else RigAware()
+        learned = compensate(device, load_builtin(IDENTIFIED_ON), IDENTIFIED_AT_mm_s, law).learned_rig
         assert learned is not None  # RigAware always returns one
         save_rig(learned, self._folder / file)
         return AvailableRig(entry, learned.rig, device.settings(), device.info())
@@ -129,7 +135,16 @@ class RigCatalog:
         """Return the rig files by name; an id is looked up here, never made into a path."""
         if not self._folder.is_dir():
             return {}
-        return {p.name: p for p in self._folder.iterdir() if p.name.endswith(SUFFIX) and p.is_file()}
+        found = {p.name: p for p in self._folder.iterdir() if p.name.endswith(SUFFIX) and p.is_file()}
+        for old, name in OLD_RIG_NAMES.items():
+            if path := found.pop(f"{old}{SIMULATED}", None):
+                found.setdefault(f"{name}{SIMULATED}", path)
+        return found
+
+
+def _current_id(rig_id: str) -> str:
+    kind, _, name = rig_id.partition(":")
+    return f"{kind}:{current_rig_name(name)}" if kind == "shipped" else rig_id
 
 
 def _file_of(rig_id: str) -> str:

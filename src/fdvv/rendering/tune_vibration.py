@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fdvv.compensation.method import UNTUNED, Tuning
 from fdvv.compensation.presses import judge_press
 from fdvv.device.contract import Device
 from fdvv.errors import DeviceError, InputError, ModelError
@@ -17,16 +18,21 @@ from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.model.vibration import Vibration
 from fdvv.rendering.compensate import check_speeds
+from fdvv.rendering.evaluation.vibration_presses import has_exciter
 from fdvv.rendering.exciter import prepare_exciter
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
 from fdvv.rendering.session import Session, now, plain, table_digest
 from fdvv.rendering.session_log import REMEDY, AnswerLog, AnswerRecord
 from fdvv.rendering.session_run import Guide, PressRequest, clear_latched, how_to_resume, released
 from fdvv.rendering.tune_candidates import Candidates, candidate_image, candidates_for, tuned_model
+from fdvv.rendering.tuning import tune
 from fdvv.vibration.exciter import KnownExciter
 from fdvv.vibration.templates import TemplateGrid
 from fdvv.vibration.tune import Job, Method, Preferred, Question, Ranking, Rating, TuningState
 
+NOTHING_VIBRATES = (
+    "this rig has no exciter, nothing of the vibration is felt; name one that has (--rig voltage)"
+)
 OBSERVERS = ("person", "simulated observer")
 
 
@@ -40,12 +46,14 @@ class TuneSetup:
     exciter : if identified, vibrations are played through its inverse.
     grid : of templates.
     observer : "person", or "simulated observer", whose results are no evidence.
+    tuning : of the controller, learned with the surface.
     """
 
     surface: ForceSurface | None = None
     exciter: KnownExciter | None = None
     grid: TemplateGrid = field(default_factory=TemplateGrid)
     observer: str = OBSERVERS[0]
+    tuning: Tuning = UNTUNED
 
     def __post_init__(self) -> None:
         if self.observer not in OBSERVERS:
@@ -155,6 +163,8 @@ def tune_vibration(
     speeds = check_speeds(velocities_mm_s)
     candidates = candidates_for(model, speeds, setup.grid, setup.exciter)
     surface = setup.surface or ForceSurface.of_model(model, speeds)
+    if setup.surface:
+        tune(device, setup.tuning)
     if setup.exciter:
         prepare_exciter(device, setup.exciter)
     upload = _uploader(device, model, surface, setup.exciter)
@@ -164,6 +174,8 @@ def tune_vibration(
     with session.open_log(manifest, AnswerLog) as log:
         state = _replayed(method, candidates, log)
         _greet(guide, log, method.done(state))
+        if not has_exciter(device):
+            guide.notice(NOTHING_VIBRATES)
         plan = _TuningPlan(device, candidates, upload, answer, session, guide, model.travel_mm, answered)
         state = _ask_questions(plan, method, state, log)
         entries = [given.entry for given in log.entries]

@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 import msgspec
 
+from fdvv.compensation.method import UNTUNED
 from fdvv.device.open import open_device
 from fdvv.device.remote import Remote
 from fdvv.errors import DeviceError, FdvvError, InputError
@@ -20,14 +21,14 @@ from fdvv.program.compile import compile_program
 from fdvv.protocol.tables import Fault
 from fdvv.rendering.compensate import CompensationResult
 from fdvv.rendering.press_check import intended_press, rendered_press
-from fdvv.rendering.tuning import settings_with
+from fdvv.rendering.tuning import tune
 from fdvv.studio.contract import Message, Tell
 from fdvv.studio.device_thread import DeviceThread, mode_of
 from fdvv.studio.devices import DeviceLocks, require_listed
 from fdvv.studio.jobs.inputs import RIGS, check_speeds
 from fdvv.studio.rounding import finite_row, rounded
 from fdvv.studio.studio import Studio
-from fdvv.twin.files import load_rig
+from fdvv.twin.files import FIRST_RIG, current_rig_name, load_rig
 
 STEP_mm = 0.05
 HOLDER = "the device view"
@@ -38,7 +39,7 @@ class DeviceConnect(Message):
     """Connect a device of the list. rig, seed : of a simulated one."""
 
     device: str
-    rig: str = "default"
+    rig: str = FIRST_RIG
     seed: int = 0
 
 
@@ -112,12 +113,13 @@ def with_faults(known: DeviceStatus, remote: Remote) -> DeviceStatus:
 def put_button(
     held: DeviceThread, model: FDVVModel, learned: CompensationResult | None, speeds_mm_s: list[float]
 ) -> None:
-    """Put a button on a device: what was learned under its tuning, or the button's own program."""
+    """Put a button on a device: what was learned under its tuning, or the button's own program.
+
+    Tuning, loop included, belongs to what is learned: the button's own program is rendered without any.
+    """
     device = held.device
+    tune(device, learned.outcome.tuning if learned else UNTUNED)
     if learned:
-        wanted = settings_with(device.settings(), learned.outcome.tuning)
-        if wanted != device.settings():
-            device.configure(wanted)
         device.upload(learned.surface, learned.travel_mm, learned.outcome.tuning.paced)
         return
     if not model.of("press"):
@@ -158,14 +160,14 @@ class DeviceSession:
     def connect(self, ask: DeviceConnect, devices: tuple[str, ...]) -> DeviceStatus:
         """Open a device of the list. InputError, DeviceError."""
         require_listed("device", ask.device, devices, "choose one of the list")
-        require_listed("rig", ask.rig, RIGS)
+        rig = str(current_rig_name(ask.rig))
+        require_listed("rig", rig, RIGS)
         with self._lock:
             if self._held:
                 reason = f"{self._status.device} is connected"
                 raise InputError("device", "device", reason, "disconnect it first")
             with self._locks.acquired(ask.device, HOLDER):
-                rig = load_rig(ask.rig) if ask.rig != "default" else None
-                device = open_device(ask.device, rig, None, ask.seed)
+                device = open_device(ask.device, load_rig(rig), None, ask.seed)
                 self._held = DeviceThread(device, self._ticks, self._lost)
             self._status = DeviceStatus(ask.device)
         return self.refresh("")

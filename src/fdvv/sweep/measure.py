@@ -168,7 +168,7 @@ SPEEDS_mm_s = (50.0, 100.0, 200.0)
 MEASURES = {
     "probe": Measure(
         "compensate a rig for a model, then judge it on held-out presses in true displacement",
-        {"rig": "default", "finger": "default", "button": "mx-clear", "method": "rig-aware"},
+        {"rig": "voltage", "finger": "default", "button": "mx-clear", "method": "rig-aware"},
         {"velocities_mm_s": list(SPEEDS_mm_s), "presses": 5, "rounds": 3},
         (
             Figure("mean_error_cN", "mean error of all strokes and speeds"),
@@ -185,7 +185,7 @@ MEASURES = {
     ),
     "feasible": Measure(
         "show whether a rig that was identified from its presses can render a model",
-        {"rig": "default", "finger": "default", "button": "mx-clear"},
+        {"rig": "voltage", "finger": "default", "button": "mx-clear"},
         {"velocities_mm_s": list(SPEEDS_mm_s)},
         (
             Figure("expected_error_cN", "error to expect of the worst after learning, an estimate"),

@@ -23,7 +23,7 @@ from fdvv.optimize.population.plan import seed_of
 from fdvv.parallel.campaign import Progress, run_campaign
 from fdvv.parallel.executor import DEADLY, Executor
 from fdvv.sweep.plan import REPEAT, Row, SweepPlan, SweepWork, Value, sweep_schema, sweep_work
-from fdvv.twin.files import button_to_toml, finger_to_toml, rig_to_toml
+from fdvv.twin.files import OLD_RIG_NAMES, button_to_toml, finger_to_toml, rig_to_toml
 
 if TYPE_CHECKING:
     from pyarrow import Table
@@ -177,10 +177,20 @@ def _begin(folder: Path, plan: SweepPlan, work: SweepWork) -> None:
         stored = msgspec.json.decode(path.read_bytes(), type=dict[str, Any])
     except msgspec.MsgspecError as error:
         raise InputError(path, "whole file", f"is damaged ({error})", "name a new folder") from error
+    stored["sha256"] = _renamed(stored.get("sha256", {}), record["sha256"])
     other = [name for name in {**record, **stored} if stored.get(name) != record.get(name)]
     if other:
         reason = f"holds a sweep with other {', '.join(name.replace('sha256', 'files') for name in other)}"
         raise InputError(folder, "folder", reason, "give the same plan to go on, or name a new folder")
+
+
+def _renamed(stored: dict[str, str], wanted: dict[str, str]) -> dict[str, str]:
+    """Return digests with the present name of a rig that an older plan left out."""
+    found = dict(stored)
+    for old, name in OLD_RIG_NAMES.items():
+        if f"rig {name}" in wanted and f"rig {old}" in found:
+            found[f"rig {name}"] = found.pop(f"rig {old}")
+    return found
 
 
 def _digests(work: SweepWork) -> dict[str, str]:

@@ -47,17 +47,29 @@ def finger_to_toml(finger: Finger) -> str:
 
 
 def load_rig(name: Path | str) -> Rig:
-    """Read a shipped rig by its name ("recommended", "default", "light", "paper"), or any by its path.
+    """Read a shipped rig by its name ("recommended", "voltage", "light", "paper"), or any by its path.
 
     InputError names file, key, bound and remedy of the first thing that is wrong.
     """
-    return _load_named(name, Rig)
+    return _load_named(current_rig_name(name), Rig)
+
+
+FIRST_RIG = "recommended"
+"""The rig to use unless there is a reason for another; lists begin with it."""
+OLD_RIG_NAMES = {"default": "voltage"}
+"""Names that rigs had before, as they are in older files and in habits."""
+
+
+def current_rig_name(name: Path | str) -> Path | str:
+    """Return the name that a shipped rig has now; any other name or path as it is."""
+    return OLD_RIG_NAMES.get(name, name) if isinstance(name, str) else name
 
 
 def shipped_rigs() -> dict[str, Path]:
-    """Return the files of the shipped rigs by their names."""
+    """Return the files of the shipped rigs by their names, FIRST_RIG first."""
     folder = Path(str(resources.files("fdvv.twin"))) / "rigs"
-    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    found = {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    return {FIRST_RIG: found[FIRST_RIG], **found}
 
 
 def load_finger(name: Path | str) -> Finger:
@@ -125,7 +137,7 @@ LARGEST_bytes = 1_000_000
 
 
 def _parse(path: Path) -> dict[str, Any]:
-    remedy = "correct it; see the shipped default.toml"
+    remedy = "correct it; see the shipped voltage.toml"
     return read_toml(read_limited(path, LARGEST_bytes, remedy), path, remedy)
 
 

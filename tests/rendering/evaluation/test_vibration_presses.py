@@ -105,7 +105,7 @@ def test_a_stroke_that_ends_too_soon_after_the_onset_is_not_measured() -> None:
 
 
 def uno() -> Rig:
-    """Return the default rig with a synthesiser instead of a card."""
+    """Return the rig voltage with a synthesiser instead of a card."""
     return replace(Rig(), exciter=replace(Rig().exciter, latency_s=2e-4, jitter_s=0.0))
 
 

@@ -21,7 +21,7 @@ from fdvv.device.contract import Device
 from fdvv.device.open import pressed_by_person
 from fdvv.rendering.session import MANIFEST, Session, read_manifest
 from fdvv.rendering.session_run import Guide, PressDone, PressRequest, VelocityProgress
-from fdvv.twin.files import shipped_rigs
+from fdvv.twin.files import FIRST_RIG, shipped_rigs
 
 if TYPE_CHECKING:
     from rich.live import Live
@@ -129,6 +129,11 @@ RECOMMENDED_ON = ("twin", "host")
 """Devices that simulate whatever rig is named; the others have one."""
 
 
+def recommended_for(device: str) -> Path | None:
+    """Return the rig to simulate where none is named; None for a device that has its own."""
+    return shipped_rigs()[FIRST_RIG] if device in RECOMMENDED_ON else None
+
+
 @dataclass(frozen=True)
 class Pressing:
     """The device that presses, the speeds, and where the presses are kept."""
@@ -143,12 +148,12 @@ class Pressing:
 
     def on_recommended_rig(self) -> Pressing:
         """Return the same on the recommended rig, if a device that can simulate it has no other."""
-        if self.rig or self.device not in RECOMMENDED_ON or self._began_without_rig():
+        if self.rig or self._began_without_rig():
             return self
-        return replace(self, rig=shipped_rigs()["recommended"])
+        return replace(self, rig=recommended_for(self.device))
 
     def _began_without_rig(self) -> bool:
-        """Whether the presses in the folder were made on the twin's own default rig, as before 0.2."""
+        """Whether the presses in the folder were made on the twin's own rig, as before 0.2."""
         if not (self.folder and (self.folder / MANIFEST).is_file()):
             return False
         return "rig_toml_sha256" not in read_manifest(self.folder / MANIFEST).device
@@ -174,7 +179,7 @@ session_options = packed(
     "pressing",
     Pressing,
     ui.option("--device", default="twin", help="'twin' is simulated; see fdvv device."),
-    ui.option("--rig", type=ui.RIG, help="Of the twin, a TOML file or name: recommended, for tune default."),
+    ui.option("--rig", type=ui.RIG, help="Of the twin: a TOML file or a name, recommended unless you say."),
     ui.option("--finger", type=ui.FILE, help="TOML file of the twin's finger."),
     ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the twin."),
     ui.speeds_option("--velocity", "velocities_mm_s", help="mm/s; repeatable."),

@@ -13,6 +13,7 @@ from fdvv.cli import ui
 from fdvv.cli.cue import show_cue
 from fdvv.cli.options import closing, exciter_option, opened_exciter
 from fdvv.cli.rendering.session import Pressing, beside, session_options
+from fdvv.compensation.method import UNTUNED
 from fdvv.device.open import pressed_by_person
 from fdvv.errors import InputError
 from fdvv.model.file import MODEL_SUFFIX, save_model
@@ -139,8 +140,13 @@ def tune(
     learned = load_actuation(actuation) if actuation else None
     grid = TemplateGrid(**ratios)
     setup = TuneSetup(
-        learned.surface if learned else None, known, grid, "simulated observer" if simulated else "person"
+        learned.surface if learned else None,
+        known,
+        grid,
+        "simulated observer" if simulated else "person",
+        learned.outcome.tuning if learned else UNTUNED,
     )
+    pressing = pressing.on_recommended_rig()
     session, speeds = pressing.session(beside(output, button, "tune-session")), pressing.velocities_mm_s
     view = TuneView(not simulated, as_json)
     answer = view.answer

@@ -20,6 +20,7 @@ from fdvv.optimize.run.player import POINTING, about_player, task_named
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS, SUFFIX
+from fdvv.twin.files import current_rig_name
 
 OPTION = "--prior"
 GRID = "name the folder of a finished fdvv optimize population --grid"
@@ -162,6 +163,7 @@ def _shelf_of(within: str | None) -> Iterator[tuple[Path | None, str | None]]:
     if within is None:
         yield None, None
         return
+    within = str(current_rig_name(within))
     if within in SHIPPED_RIGS:
         yield None, f"shipped:{within}"
         return

@@ -23,6 +23,7 @@ from fdvv.io.files import read_limited, write_atomic
 from fdvv.studio.contract import Message
 from fdvv.studio.jobs.events import JobEvent
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, KindName, Order
+from fdvv.twin.files import current_rig_name
 
 JOB, EVENTS = "job.json", "events.jsonl"
 REMEDY = "put the job's folder elsewhere, or begin the work anew"
@@ -210,7 +211,7 @@ def rig_name(order: Order) -> str:
         return order.device
     simulated = isinstance(order, CompensateOrder) and not pressed_by_person(order.device)
     where = order.device.rpartition("/")[2] if "/" in order.device else order.device.replace(":", "-")
-    return f"{where}-{order.rig}" if simulated else where
+    return f"{where}-{current_rig_name(order.rig)}" if simulated else where
 
 
 def _put(project: Path, kind: str, name: str, content: bytes) -> JobResult:

@@ -17,9 +17,10 @@ from fdvv.studio.devices import require_listed
 from fdvv.studio.jobs.file import JobFolder, check_name, result_file
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order, RigOrder, TuneOrder, kind_of
 from fdvv.twin.capture.participant import PARTICIPANTS
-from fdvv.twin.files import button_names, load_rig, rig_to_toml
+from fdvv.twin.files import button_names, current_rig_name, load_rig, rig_to_toml
 
-RIGS = tuple(sorted(SHIPPED_RIGS))
+RIGS = tuple(SHIPPED_RIGS)
+"""Of simulated devices, the one to use first."""
 SLOWEST_mm_s, FASTEST_mm_s, MOST_SPEEDS = 5.0, 500.0, 12
 MOST = {
     "rounds": (0, 20),
@@ -91,10 +92,12 @@ def _capture(order: CaptureOrder) -> Inputs:
 def _shared_files(order: RigOrder, model: FDVVModel, project: Path) -> dict[str, str | bytes]:
     """Copy the button, the simulated rig, and what was learned before."""
     names = JobFolder(Path())
-    require_listed("rig", order.rig, RIGS)
-    files: dict[str, str | bytes] = {names.button.name: model_to_json(model)}
-    if order.rig != "default":
-        files[names.rig.name] = rig_to_toml(load_rig(order.rig))
+    rig = str(current_rig_name(order.rig))
+    require_listed("rig", rig, RIGS)
+    files: dict[str, str | bytes] = {
+        names.button.name: model_to_json(model),
+        names.rig.name: rig_to_toml(load_rig(rig)),
+    }
     learned = (("rig", "known_rig", names.known_rig), ("actuation", "actuation", names.actuation))
     for kind, attribute, copy in learned:
         if name := getattr(order, attribute, ""):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal, cast
 
 from fdvv.studio.contract import Message
+from fdvv.twin.files import FIRST_RIG
 
 
 class RigOrder(Message):
@@ -13,7 +14,7 @@ class RigOrder(Message):
     button: str
     name: str
     device: str = "twin"
-    rig: str = "default"
+    rig: str = FIRST_RIG
     seed: int = 0
     velocities_mm_s: tuple[float, ...] = (50.0, 100.0, 150.0, 200.0)
     pace_ratio: float = 0.35

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from fdvv.compensation.method import UNTUNED
 from fdvv.model.file import load_model, save_model
 from fdvv.model.vibration import Vibration
 from fdvv.rendering.tune_candidates import Candidates, candidates_for, simulated_observer
@@ -25,6 +26,7 @@ WAVE_Hz, QUIET_s = 8000, 0.005
 def tune(work: Work, order: TuneOrder) -> None:
     """Press and ask until nothing is left to ask, and keep the best in a model."""
     model, learned = load_model(work.folder.button), work.learned()
+    surface, tuning = (learned.surface, learned.outcome.tuning) if learned else (None, UNTUNED)
     grid = TemplateGrid(order.frequency_ratios, order.gain_ratios)
     candidates = candidates_for(model, sorted(order.velocities_mm_s), grid)
     with work.session(order, work.folder.session, order.seed) as (device, session):
@@ -36,7 +38,7 @@ def tune(work: Work, order: TuneOrder) -> None:
             order.velocities_mm_s,
             _method(order),
             _answerer(work, order, candidates),
-            TuneSetup(learned.surface if learned else None, None, grid, order.observer),
+            TuneSetup(surface, None, grid, order.observer, tuning),
             session,
             work.guide(order.device),
             lambda progress: work.tell(_answered(progress)),
