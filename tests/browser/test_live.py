@@ -33,8 +33,9 @@ def set_field(page: Page, label: str, value: str) -> None:
 
 
 def learn(page: Page, speeds: str, rounds: str, presses: str, judged: str = "0") -> None:
-    """Order the paper's law, whose errors fall press by press."""
+    """Order the paper's law on a rig without a load cell, where errors fall press by press."""
     opened(page, "compensate")
+    page.get_by_label("Simulated rig").select_option("voltage")
     page.get_by_label("Button", exact=True).select_option("builtin:mx-clear")
     set_field(page, "Speeds", speeds)
     page.get_by_label("Method").select_option("paper")
@@ -63,17 +64,46 @@ def test_a_rig_learns_a_button_and_the_error_is_seen_to_fall(page: Page) -> None
     assert re.search(r"table\s+mx-clear", kept)
     assert re.search(r"measured on held-out presses\s+mx-clear", kept)
     table = page.get_by_role("table", name="Presses, newest first").locator("tbody tr")
-    # held-out presses without the button's vibration, and as many with it
-    expect(table).to_have_count(16)
+    # two presses without compensation, two held-out ones, and as many with the button's vibration
+    expect(table).to_have_count(18)
+    headline = page.locator(".outcome-headline").inner_text()
+    assert re.search(r"Mean error [\d.]+ → [\d.]+ cN, largest [\d.]+ → [\d.]+; a finger would", headline)
     expect(page.locator(".outcome").nth(1)).to_contain_text("A finger would not notice the force on")
     noticed = page.get_by_role("table", name="What a finger would notice").locator("tbody tr")
     expect(noticed).to_have_count(2)
+    assert re.search(r"\d+ % → \d+ %", noticed.nth(0).inner_text())
     assert audit(page) == []
     page.get_by_role("button", name="New job").click()
     page.get_by_label("or only evaluate, with the table").select_option("mx-clear")
     page.get_by_role("button", name="Evaluate", exact=True).click()
     page.get_by_role("heading", name="Probe mx-clear on twin").wait_for()
     page.wait_for_selector(DONE, timeout=LONG_ms)
+
+
+def test_the_recommended_rig_comes_first_and_its_result_beside_no_compensation(page: Page) -> None:
+    opened(page, "compensate")
+    page.get_by_label("Button", exact=True).select_option("builtin:mx-clear")
+    rigs = page.get_by_label("Simulated rig").locator("option").all_inner_texts()
+    assert rigs == ["recommended", "light", "paper", "voltage"]
+    set_field(page, "Speeds", "50")
+    set_field(page, "Rounds", "1")
+    set_field(page, "Held-out presses", "2")
+    page.get_by_role("button", name="Start learning").click()
+    page.wait_for_selector(DONE, timeout=LONG_ms)
+    assert page.locator(".outcome-headline").inner_text().endswith("; a finger would not notice it")
+    assert "twin-recommended" in page.locator(".job-results").inner_text()
+    before, after = (
+        (
+            page.get_by_role("table", name="What a finger would notice")
+            .locator("tbody tr")
+            .nth(0)
+            .locator("td")
+        )
+        .nth(1)
+        .inner_text()
+        .split(" → ")
+    )
+    assert float(after) < 0.5 * float(before)
 
 
 def test_a_page_that_is_reloaded_finds_its_job_stops_it_and_goes_on(page: Page) -> None:

@@ -9,13 +9,18 @@ from typing import Any
 
 import pytest
 
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError, InputError
+from fdvv.model.file import load_builtin
+from fdvv.rendering.compensate import compensate
 from fdvv.studio.api import device as part
 from fdvv.studio.api.device import DevicePress, ScopeFrame, WatchScope
 from fdvv.studio.contract import Empty
-from fdvv.studio.device_session import DeviceConnect, DeviceStatus, DeviceUpload, PressSeen
+from fdvv.studio.device_session import DeviceConnect, DeviceSession, DeviceStatus, DeviceUpload, PressSeen
 from fdvv.studio.jobs.jobs import Jobs
 from fdvv.studio.studio import Studio
+from fdvv.twin.files import load_rig
 from tests.studio.jobs import DEVICES, PATIENCE_s, learning
 
 CLEAR = DeviceUpload("builtin:mx-clear")
@@ -73,6 +78,18 @@ def test_the_scope_shows_a_press_on_the_firmware(studio: Studio, page: Page) -> 
     assert seen.simulated
     assert max(force for force in seen.felt_press_cN if force is not None) > 20
     assert len(seen.intended_press_cN) == len(seen.displacement_mm) == len(seen.felt_release_cN)
+
+
+def test_a_learned_table_closes_the_loop_of_its_rig_and_a_buttons_own_force_opens_it(studio: Studio) -> None:
+    session = studio.part(DeviceSession)
+    part.connect.function(studio, DeviceConnect("host"))
+    model = load_builtin("mx-clear")
+    learned = compensate(TwinDevice(load_rig("recommended")), model, [100.0], RigAware(rounds=0))
+    session.upload(CLEAR, model, learned)
+    assert session.held().device.loop == learned.outcome.tuning.loop  # type: ignore[attr-defined]
+    assert part.press.function(studio, DevicePress(100.0)).fault == ""
+    session.upload(CLEAR, model, None)
+    assert session.held().device.loop is None  # type: ignore[attr-defined]
 
 
 def test_a_device_falls_to_zero_force_when_nobody_looks_on(studio: Studio, page: Page) -> None:

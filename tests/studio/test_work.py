@@ -8,13 +8,18 @@ from typing import Any
 
 import pytest
 
+from fdvv.device.twin import TwinDevice
 from fdvv.model.file import load_builtin, save_model
 from fdvv.project.measured_bands import measured_button
+from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.probe import probe
 from fdvv.studio.jobs.events import CurveIntended, JobEvent, JobOutcome, PressEvent
 from fdvv.studio.jobs.file import JobFolder, JobRecord, publish, utc_now
 from fdvv.studio.jobs.orders import Order
 from fdvv.studio.jobs.process import ended
 from fdvv.studio.jobs.work import Work
+from fdvv.studio.jobs.work_learn import PROBE_SEED
+from fdvv.twin.files import load_rig, rig_to_toml
 from tests.studio.jobs import learning, tuning
 
 
@@ -46,6 +51,28 @@ def test_measured_presses_are_reported_and_stored_as_the_editor_reads_them(tmp_p
     for press in (e for e in events if isinstance(e, PressEvent)):
         assert press.felt
         assert len(press.felt.press_cN) == len(press.felt.release_cN) == len(intended.displacement_mm)
+
+
+def test_what_was_learned_is_judged_beside_the_same_presses_without_compensation(tmp_path: Path) -> None:
+    events: list[JobEvent] = []
+    order = learning(rounds=2, probe_presses=3)
+    work = work_of(order, tmp_path / "job", events.append)
+    work.folder.rig.write_text(rig_to_toml(load_rig("recommended")))
+    assert ended(work).state == "done"
+    stages = [e.stage for e in events if isinstance(e, PressEvent)]
+    assert [stages.count(stage) for stage in ("baseline", "probe")] == [3, 3]
+    outcome = next(e for e in events if isinstance(e, JobOutcome) and e.stage == "probe")
+    device = TwinDevice(load_rig("recommended"), seed=order.seed + PROBE_SEED)
+    model = load_builtin("mx-clear")
+    alone = probe(device, model, uncompensated(device, model, [100.0]), [100.0], 3).curves
+    for found, bare in zip(outcome.noticed, alone, strict=True):
+        assert found.before_mean_cN == pytest.approx(bare.outcome.mean_error_cN, abs=1e-3)
+        assert found.mean_cN is not None
+        assert bare.outcome.mean_error_cN > 3 * found.mean_cN
+        assert found.before_ratio is not None
+        assert found.before_ratio > found.force_ratio
+    before = sum(c.outcome.mean_error_cN for c in alone) / len(alone)
+    assert outcome.headline.startswith(f"Mean error {before:.0f} → ")
 
 
 def test_work_that_is_interrupted_ends_as_cancelled_and_goes_on(tmp_path: Path) -> None:

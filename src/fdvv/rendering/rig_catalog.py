@@ -98,7 +98,7 @@ class RigCatalog:
         return (*shipped, *own)
 
     def rig(self, rig_id: str) -> AvailableRig:
-        """Return a rig by its id; a shipped one is identified at first use, which takes about a second.
+        """Return a rig by its id; a shipped one is identified at first use, which takes a few seconds.
 
         Raises InputError on an unknown id and on a file that cannot be read.
         """

@@ -13,6 +13,7 @@ from fdvv.rendering.evaluation.probe_curve import ProbeCurve
 from fdvv.rendering.evaluation.verdict import (
     STEPS,
     RenderingMeans,
+    headline,
     next_step,
     outcome_words,
     short_outcome,
@@ -78,6 +79,25 @@ def test_the_share_is_that_of_the_places(curves: list[ProbeCurve]) -> None:
     found = verdict([off(curves[0], count // 4), curves[1]])
     share = 100 - 100 * (count // 4) / count
     assert f"{share:.0f} % of the press and 100 % of the release" in found
+
+
+def test_the_headline_says_what_fell_to_what_and_at_which_speeds_a_finger_notices(
+    curves: list[ProbeCurve],
+) -> None:
+    count = curves[0].target_cN.size
+    bad = [off(curve, count) for curve in curves]
+    fine = [replace(curve, velocity_mm_s=50.0) for curve in curves]
+    worst_cN = max(float(np.abs(c.rendered_cN - c.target_cN).max()) for c in bad)
+    assert headline(fine, bad).startswith("Mean error ")
+    assert f" → 0.0 cN, largest {worst_cN:.0f} → 0.0; a finger would not notice it" in headline(fine, bad)
+    assert headline([*fine, *bad]).endswith("; a finger would notice it at 100 mm/s only")
+    assert headline(bad).endswith("a finger would notice it")
+    three = [*fine, *bad, *(replace(c, velocity_mm_s=200.0) for c in bad)]
+    assert headline(three).endswith("at 100 and 200 mm/s only")
+    assert headline(three[2:]).endswith("at every speed")
+    assert headline([]) == ""
+    # a tenth of a stroke and less counts as little, as for the next step
+    assert "would not" in headline([off(curves[0], count // 11), curves[1]])
 
 
 def test_what_became_of_the_vibration_is_said_in_its_own_numbers(curves: list[ProbeCurve]) -> None:

@@ -54,6 +54,17 @@ def verdict(curves: Sequence[ProbeCurve]) -> str:
     return f"{_force(curves)}; {_vibration(curves)}."
 
 
+def headline(curves: Sequence[ProbeCurve], before: Sequence[ProbeCurve] = ()) -> str:
+    """Return what is left of the error, and at which speeds a finger would notice it, in one line.
+
+    before : the same without compensation, whose errors come first. Empty without a curve.
+    """
+    if not curves:
+        return ""
+    parts = (_fell(_mean_cN(before), _mean_cN(curves)), _fell(_largest_cN(before), _largest_cN(curves)))
+    return f"Mean error {parts[0]} cN, largest {parts[1]}; {_noticed_where(curves)}"
+
+
 def next_step(curves: Sequence[ProbeCurve], means: RenderingMeans) -> str:
     """Return what improves the rendering most, judged by the worst that was found; empty without a curve."""
     if not curves:
@@ -86,6 +97,33 @@ def _for_vibration(curves: Sequence[ProbeCurve], means: RenderingMeans) -> str:
     if not any(e.played for e in errors):
         return "play" if means.exciter else ("fit" if max(e.total_JND for e in errors) > 1 else "")
     return "tune" if means.exciter_known else "identify"
+
+
+def _mean_cN(curves: Sequence[ProbeCurve]) -> float | None:
+    return float(np.mean([c.outcome.mean_error_cN for c in curves])) if curves else None
+
+
+def _largest_cN(curves: Sequence[ProbeCurve]) -> float | None:
+    return max((c.outcome.max_error_cN for c in curves), default=None)
+
+
+def _fell(before_cN: float | None, after_cN: float | None) -> str:
+    return " → ".join(f"{cN:.{0 if cN >= 10 else 1}f}" for cN in (before_cN, after_cN) if cN is not None)
+
+
+def _noticed_where(curves: Sequence[ProbeCurve]) -> str:
+    speeds = list(dict.fromkeys(sorted(c.velocity_mm_s for c in curves)))
+    found = [
+        v
+        for v in speeds
+        if any(noticed(c.force_JND).above_ratio > FEW_ratio for c in curves if c.velocity_mm_s == v)
+    ]
+    if not found:
+        return "a finger would not notice it"
+    if len(found) == len(speeds):
+        return "a finger would notice it" + (" at every speed" if len(speeds) > 1 else "")
+    *first, last = (f"{v:g}" for v in found)
+    return f"a finger would notice it at {', '.join(first)}{' and ' if first else ''}{last} mm/s only"
 
 
 def _force(curves: Sequence[ProbeCurve]) -> str:

@@ -82,7 +82,7 @@ class JobStarted(Message, tag="begun"):
 class StageEvent(Message, tag="stage"):
     """A part of the work begins."""
 
-    stage: Literal["compensate", "probe", "capture", "process", "tune"]
+    stage: Literal["compensate", "baseline", "probe", "capture", "process", "tune"]
     text: str
 
 
@@ -144,6 +144,7 @@ class PressAsked(Message, tag="press_asked"):
 class PressEvent(Message, tag="press"):
     """A press that is on file.
 
+    stage : "baseline" is pressed without compensation, to compare.
     done, total : presses used, and those it takes.
     skipped : why it was not used and what to do; empty if it was.
     achieved_mm_s : None if it has no speed. summary : what the method says that it changed.
@@ -151,7 +152,7 @@ class PressEvent(Message, tag="press"):
     curves : of this velocity, as far as known. felt : None if there is no record.
     """
 
-    stage: Literal["compensate", "probe"]
+    stage: Literal["compensate", "baseline", "probe"]
     velocity_mm_s: float
     done: int
     total: int
@@ -221,6 +222,8 @@ class CurveNoticed(Message):
     displacement_mm, noticed_ratio : (n,) part of the presses that would be noticed at each place.
     force_ratio, total_ratio : part of the stroke above one JND, of force and with vibration.
     vibration : how it came out, in a few words.
+    before_ratio, before_mean_cN, before_max_cN : force_ratio and errors without compensation; None where that
+        was not measured, as in older jobs. mean_cN, max_cN : errors that are left.
     """
 
     stroke: StrokeName
@@ -230,12 +233,17 @@ class CurveNoticed(Message):
     force_ratio: float
     total_ratio: float
     vibration: str
+    before_ratio: float | None = None
+    before_mean_cN: float | None = None
+    before_max_cN: float | None = None
+    mean_cN: float | None = None
+    max_cN: float | None = None
 
 
 class JobOutcome(Message, tag="outcome"):
     """What came out of a part of the work.
 
-    next_step, noticed : of a probe; empty otherwise, and in older jobs.
+    headline, next_step, noticed : of a probe; empty otherwise, and in older jobs.
     sentence : in words. presses : made in all, or answers. skipped : of them not used.
     curves : error_k as the rig measured it while it learned, or in true displacement as the probe did.
     """
@@ -249,6 +257,7 @@ class JobOutcome(Message, tag="outcome"):
     rankings: tuple[TuneRanking, ...] = ()
     warnings: tuple[str, ...] = ()
     next_step: str = ""
+    headline: str = ""
     noticed: tuple[CurveNoticed, ...] = ()
 
 

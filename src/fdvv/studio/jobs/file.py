@@ -63,7 +63,7 @@ class JobFolder:
     actuation : the learned table that is worked on; absent where there is none.
     known_rig : what is known of the rig from before; absent where nothing is.
     rig : the simulated rig. session : the presses or answers.
-    probe : the fresh presses that judge what was learned.
+    probe : the fresh presses that judge what was learned. baseline : the same without compensation.
     """
 
     def __init__(self, path: Path) -> None:
@@ -74,6 +74,7 @@ class JobFolder:
         self.rig = path / "rig.toml"
         self.session = path / "session"
         self.probe = path / "probe-session"
+        self.baseline = path / "baseline-session"
         self.recording = path / "capture.recording.jsonl"
 
     def result(self, kind: str) -> Path:

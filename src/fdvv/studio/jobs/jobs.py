@@ -66,7 +66,7 @@ class JobProgress:
             case events.QuestionAnswered():
                 return JobProgress("running", f"answer {event.number} is kept", event.number, event.total)
             case events.JobOutcome():
-                return JobProgress("running", event.sentence, self.done, self.total)
+                return JobProgress("running", event.headline or event.sentence, self.done, self.total)
         started = self.state != "waiting"
         return self if started else dataclasses.replace(self, state="running", question=0)
 

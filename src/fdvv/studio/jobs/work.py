@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
+
+import msgspec
 
 from fdvv.compensation.method import CurveOutcome
 from fdvv.compensation.presses import AcceptanceLimits
@@ -28,6 +30,8 @@ from fdvv.studio.jobs import events
 from fdvv.studio.jobs.file import JobFolder
 from fdvv.studio.jobs.orders import RigOrder
 from fdvv.studio.rounding import DIGITS, finite_or_none, finite_row, rounded
+
+PressStage = Literal["compensate", "baseline", "probe"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +64,8 @@ class Work:
             middles_cN = noticeable_cN(model, velocity)
             self.tell(events.CurveIntended(velocity, x_mm, down_cN, up_cN, *middles_cN, *steps_cN))
 
-    def pressed(self, travel_mm: float) -> Callable[[PressDone], None]:
-        return lambda done: self.tell(press_event(done, travel_mm))
+    def pressed(self, travel_mm: float, stage: PressStage) -> Callable[[PressDone], None]:
+        return lambda done: self.tell(press_event(done, travel_mm, stage))
 
     def learned(self) -> CompensationResult | None:
         """Return the learned table that is worked on; None: the model's own force."""
@@ -83,11 +87,11 @@ class Work:
         self.tell(events.JobStarted(self.run, info.name, info.simulated))
 
 
-def press_event(done: PressDone, travel_mm: float) -> events.PressEvent:
+def press_event(done: PressDone, travel_mm: float, stage: PressStage) -> events.PressEvent:
     standing = next((s for s in done.progress() if s.velocity_mm_s == done.velocity_mm_s), None)
     rendered = rendered_press(done.press, travel_mm) if done.press else None
     return events.PressEvent(
-        "probe" if done.stage == "probe" else "compensate",
+        stage,
         done.velocity_mm_s,
         done.presses_done,
         done.presses_total,
@@ -103,9 +107,9 @@ def press_event(done: PressDone, travel_mm: float) -> events.PressEvent:
     )
 
 
-def curve_noticed(curve: ProbeCurve) -> events.CurveNoticed:
-    """Return what a finger could notice of a judged curve."""
-    return events.CurveNoticed(
+def curve_noticed(curve: ProbeCurve, before: ProbeCurve | None) -> events.CurveNoticed:
+    """Return what a finger could notice of a judged curve; before : the same without compensation."""
+    found = events.CurveNoticed(
         "press" if str(curve.stroke) == "press" else "release",
         curve.velocity_mm_s,
         rounded(curve.displacement_mm),
@@ -113,6 +117,16 @@ def curve_noticed(curve: ProbeCurve) -> events.CurveNoticed:
         round(noticed(curve.force_JND).above_ratio, DIGITS),
         round(curve.total.above_ratio, DIGITS),
         short_outcome(curve.vibration),
+        mean_cN=finite_or_none(curve.outcome.mean_error_cN),
+        max_cN=finite_or_none(curve.outcome.max_error_cN),
+    )
+    if before is None:
+        return found
+    return msgspec.structs.replace(
+        found,
+        before_ratio=round(noticed(before.force_JND).above_ratio, DIGITS),
+        before_mean_cN=finite_or_none(before.outcome.mean_error_cN),
+        before_max_cN=finite_or_none(before.outcome.max_error_cN),
     )
 
 

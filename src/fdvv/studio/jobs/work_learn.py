@@ -18,6 +18,8 @@ from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.actuation_file import save_actuation
 from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.evaluation.probe_curve import ProbeCurve
+from fdvv.rendering.evaluation.verdict import headline
 from fdvv.rendering.evaluation.vibration_presses import Playback
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session import Session
@@ -35,26 +37,25 @@ def learn(work: Work, order: CompensateOrder) -> None:
     with work.session(order, work.folder.session, order.seed) as (device, session):
         _begin(work, device, model, order)
         work.tell(StageEvent("compensate", "learning what makes the rig feel like the button"))
-        report_press, guide = work.pressed(model.travel_mm), work.guide(order.device)
+        report_press, guide = work.pressed(model.travel_mm, "compensate"), work.guide(order.device)
         law, speeds = _law(work, order), order.velocities_mm_s
         result = compensate(device, model, speeds, law, report_press, session, guide)
     _keep(work, result)
     if order.probe_presses:
+        before = _baseline(work, order, model, order.seed + PROBE_SEED, order.probe_presses)
         with work.session(order, work.folder.probe, order.seed + PROBE_SEED) as pressed:
-            _probe(work, order, pressed, model, _table(result), order.probe_presses)
+            _probe(work, order, pressed, model, _table(result), order.probe_presses, before)
 
 
 def judge(work: Work, order: ProbeOrder) -> None:
     """Judge a learned table, or the model's own force, on fresh presses."""
     model, learned = load_model(work.folder.button), work.learned()
-    with work.session(order, work.folder.probe, order.seed) as (device, session):
+    with work.session(order, work.folder.probe, order.seed) as (device, _session):
         _begin(work, device, model, order)
-        if learned:
-            table = _table(learned)
-        else:
-            surface = uncompensated(device, model, order.velocities_mm_s)
-            table = _Table(surface, "not compensated", Tuning())
-        _probe(work, order, (device, session), model, table, order.presses)
+    before = _baseline(work, order, model, order.seed, order.presses) if learned else ()
+    with work.session(order, work.folder.probe, order.seed) as (device, session):
+        table = _table(learned) if learned else _uncompensated(device, model, order)
+        _probe(work, order, (device, session), model, table, order.presses, before)
 
 
 class _Table(NamedTuple):
@@ -69,6 +70,21 @@ def _table(learned: CompensationResult) -> _Table:
     return _Table(learned.surface, learned.method, learned.outcome.tuning)
 
 
+def _uncompensated(device: Device, model: FDVVModel, order: RigOrder) -> _Table:
+    return _Table(uncompensated(device, model, order.velocities_mm_s), "not compensated", Tuning())
+
+
+def _baseline(
+    work: Work, order: RigOrder, model: FDVVModel, seed: int, presses: int
+) -> tuple[ProbeCurve, ...]:
+    """Press without compensation as often as what is judged, a simulated person in the same way."""
+    with work.session(order, work.folder.baseline, seed) as (device, session):
+        work.tell(StageEvent("baseline", "pressing without compensation, to compare"))
+        surface, method, tuning = _uncompensated(device, model, order)
+        about = (work.pressed(model.travel_mm, "baseline"), method, session, work.guide(order.device), tuning)
+        return probe(device, model, surface, order.velocities_mm_s, presses, *about).curves
+
+
 def _probe(
     work: Work,
     order: RigOrder,
@@ -76,11 +92,12 @@ def _probe(
     model: FDVVModel,
     table: _Table,
     presses: int,
+    before: tuple[ProbeCurve, ...],
 ) -> None:
     device, session = pressed
     surface, method, tuning = table
     work.tell(StageEvent("probe", "judging on fresh presses, in true displacement"))
-    report_press, guide = work.pressed(model.travel_mm), work.guide(order.device)
+    report_press, guide = work.pressed(model.travel_mm, "probe"), work.guide(order.device)
     speeds = order.velocities_mm_s
     about = (method, session, guide, tuning, Playback(presses))
     result = probe(device, model, surface, speeds, presses, report_press, *about)
@@ -90,8 +107,10 @@ def _probe(
     counts = result.presses, len(result.skipped)
     found = result.to_dict()
     outcome = JobOutcome("probe", found["verdict"].removesuffix("."), *counts, result.simulated, curves)
-    marks = tuple(map(curve_noticed, result.curves))
-    work.tell(replace(outcome, next_step=found["next_step"], noticed=marks))
+    bare = {(curve.stroke, curve.velocity_mm_s): curve for curve in before}
+    marks = tuple(curve_noticed(c, bare.get((c.stroke, c.velocity_mm_s))) for c in result.curves)
+    line = headline(result.curves, before)
+    work.tell(replace(outcome, next_step=found["next_step"], headline=line, noticed=marks))
 
 
 def _keep(work: Work, result: CompensationResult) -> None:

@@ -34,7 +34,7 @@ const CHOSEN = "fdvv-edit-rig";
 export function lookAtRigs(editor: EditorController, id: () => string): RigView {
   const view: RigView = {
     rigs: signal<readonly RigChoice[]>([]),
-    rig_id: signal(localStorage.getItem(CHOSEN) ?? "shipped:default"),
+    rig_id: signal(localStorage.getItem(CHOSEN) ?? "shipped:recommended"),
     curves: signal<readonly AchievableForce[]>([]),
     measured: signal<MeasuredPresses | null>(null),
     wrong: signal(""),

@@ -37,7 +37,7 @@ function words(editor: EditorController, rig: RigView): HTMLElement[] {
   if (rig.wrong()) return [h("span", { class: "wrong" }, rig.wrong())];
   const made = rig.curves().find((curve) => curve.stroke === editor.active().stroke);
   if (!made)
-    return [h("span", { class: "muted" }, rig.waiting() ? "Identifying the rig, about a second…" : "")];
+    return [h("span", { class: "muted" }, rig.waiting() ? "Identifying the rig, a few seconds…" : "")];
   const kind = made.verdict === "can follow" ? "good" : made.verdict === "cannot" ? "bad" : "partly";
   const at = editor.active().velocity_mm_s === null ? ` at ${made.velocity_mm_s} mm/s` : "";
   return [

@@ -13,7 +13,7 @@ const draft = {
   button: signal(""),
   name: signal(""),
   device: signal("twin"),
-  rig: signal("default"),
+  rig: signal("recommended"),
   speeds: signal<readonly number[]>([50, 100, 150, 200]),
   method: signal<"rig-aware" | "paper">("rig-aware"),
   rounds: signal(3),

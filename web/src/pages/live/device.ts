@@ -24,7 +24,7 @@ import { scopePanel } from "./scopeview";
 
 const draft = {
   device: signal("host"),
-  rig: signal("default"),
+  rig: signal("recommended"),
   seed: signal(0),
   button: signal(""),
   actuation: signal(""),

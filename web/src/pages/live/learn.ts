@@ -27,7 +27,8 @@ export function learnView(): Child {
 
 function part(): Part {
   const { presses } = watched().picture;
-  const judged = presses.at(-1)?.press.stage === "probe";
+  const last = presses.at(-1)?.press.stage;
+  const judged = last === "probe" || last === "baseline";
   return (
     chosen() ??
     (judged && !presses.some((press) => press.press.stage === "compensate") ? "evaluate" : "learn")
@@ -78,6 +79,7 @@ function outcome(one: JobOutcome): HTMLElement {
     "div",
     { class: "outcome" },
     h("h3", {}, one.stage === "probe" ? "Evaluated on held-out presses" : "Learned", simulated),
+    one.headline ? h("p", { class: "outcome-headline" }, one.headline) : null,
     h("p", {}, `${one.sentence.replace(/\+-/g, "±")}. ${counted}.`),
     one.next_step ? h("p", {}, h("strong", {}, "Next: "), one.next_step) : null,
     one.noticed?.length ? noticedTable(one.noticed) : null,
@@ -88,14 +90,27 @@ function outcome(one: JobOutcome): HTMLElement {
 function noticedTable(curves: readonly CurveNoticed[]): HTMLElement {
   const percent = (ratio: number) => `${Math.round(100 * ratio)} %`;
   const vibrates = curves.some((curve) => curve.vibration !== NOT_ASKED);
+  const fell = (before: string | undefined, after: string) => (before ? `${before} → ${after}` : after);
+  const error = (before?: number | null, after?: number | null) =>
+    typeof after === "number" ? fell(before?.toFixed(1), after.toFixed(1)) : "–";
   const rows = curves.map((curve) => [
     curveName(curve),
-    percent(curve.force_ratio),
-    ...(vibrates ? [percent(curve.total_ratio)] : []),
-    curve.vibration,
+    fell(
+      typeof curve.before_ratio === "number" ? percent(curve.before_ratio) : "",
+      percent(curve.force_ratio),
+    ),
+    error(curve.before_mean_cN, curve.mean_cN),
+    error(curve.before_max_cN, curve.max_cN),
+    ...(vibrates ? [percent(curve.total_ratio), curve.vibration] : []),
   ]);
-  const heads = ["force", ...(vibrates ? ["with vibration"] : []), "vibration"];
-  const about = "Part of the stroke that is off by more than one just noticeable difference:";
+  const heads = [
+    "noticed",
+    "mean error, cN",
+    "largest, cN",
+    ...(vibrates ? ["noticed with vibration", "vibration"] : []),
+  ];
+  const compared = curves.some((curve) => typeof curve.before_ratio === "number");
+  const about = `Noticed: part of the stroke that is off by more than one just noticeable difference${compared ? "; before the arrow, without compensation" : ""}.`;
   return h(
     "div",
     {},

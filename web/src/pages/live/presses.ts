@@ -5,6 +5,7 @@ import { watched } from "./jobs";
 import type { NumberedPress, StrokeName } from "./picture";
 
 const SHOWN = 40;
+const PARTS = { compensate: "learn", baseline: "uncompensated", probe: "evaluate" } as const;
 const onlySkipped = signal(false);
 
 export function pressTable(): Child {
@@ -67,7 +68,7 @@ function line({ number, press }: NumberedPress): HTMLElement {
     "tr",
     { class: press.skipped ? "skipped" : "" },
     h("td", { class: "number" }, number),
-    h("td", {}, press.stage === "probe" ? "evaluate" : "learn"),
+    h("td", {}, PARTS[press.stage]),
     h("td", { class: "number" }, press.velocity_mm_s),
     h("td", { class: "number" }, press.achieved_mm_s === null ? "–" : press.achieved_mm_s.toFixed(0)),
     error("press"),

@@ -8,6 +8,7 @@ import type { NumberedPress } from "./picture";
 import { spans } from "./spans";
 
 const SHOWN = 3;
+const BARE_DASH = [1, 3];
 /** Speed that is looked at; "last" follows the presses. */
 const chosen = signal("last");
 
@@ -42,7 +43,11 @@ function view(speeds: readonly number[]): HTMLElement {
     swatch(0, "intended"),
     swatch(1, "rendered, press"),
     swatch(2, "rendered, release"),
-    h("span", { class: "muted" }, "Grey: ± 1 JND of force. Bars: where held-out presses would be noticed."),
+    h(
+      "span",
+      { class: "muted" },
+      "Grey: ± 1 JND of force. Dotted grey: without compensation. Bars: where held-out presses would be noticed.",
+    ),
   );
   return h("div", { class: "stack" }, h("div", { class: "row spread" }, pick, legend), plot.element);
 }
@@ -55,8 +60,17 @@ function speed(): number | null {
 
 function lastPresses(velocity_mm_s: number): readonly NumberedPress[] {
   return watched()
-    .picture.presses.filter((press) => press.press.velocity_mm_s === velocity_mm_s && press.press.felt)
+    .picture.presses.filter(
+      ({ press }) => press.velocity_mm_s === velocity_mm_s && press.felt && press.stage !== "baseline",
+    )
     .slice(-SHOWN);
+}
+
+/** The last press without compensation, to compare. */
+function bare(velocity_mm_s: number): NumberedPress | undefined {
+  return watched().picture.presses.findLast(
+    ({ press }) => press.velocity_mm_s === velocity_mm_s && press.felt && press.stage === "baseline",
+  );
 }
 
 function whole(): { x: Range; y: Range } {
@@ -73,13 +87,16 @@ function draw(brush: Brush, view_: View): void {
   if (!wanted || velocity_mm_s === null) return;
   const x = wanted.displacement_mm.map((mm) => view_.x.px(mm));
   const line = (values: readonly (number | null)[], n: number, opacity: number, width_px: number) => {
-    const { colour, dash } = series(n);
+    const { colour, dash } = n < 0 ? { colour: palette().muted, dash: BARE_DASH } : series(n);
     const y = values.map((cN) => (cN === null ? NaN : view_.y.px(cN)));
     brush.line(x, y, { colour, dash, opacity, width_px });
   };
   band(brush, view_, x, wanted.press_cN, wanted.press_jnd_cN ?? []);
   band(brush, view_, x, wanted.release_cN, wanted.release_jnd_cN ?? []);
   markNoticed(brush, view_, velocity_mm_s);
+  const before = bare(velocity_mm_s)?.press.felt;
+  line(before?.press_cN ?? [], -1, 1, 1.5);
+  line(before?.release_cN ?? [], -1, 1, 1.5);
   const presses = lastPresses(velocity_mm_s);
   presses.forEach(({ press }, i) => {
     const opacity = (i + 1) / presses.length;

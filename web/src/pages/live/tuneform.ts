@@ -13,7 +13,7 @@ const draft = {
   name: signal(""),
   actuation: signal(""),
   device: signal("twin"),
-  rig: signal("default"),
+  rig: signal("recommended"),
   speeds: signal<readonly number[]>([100]),
   observer: signal<"person" | "simulated observer">("person"),
   asking: signal<"compare" | "rate">("compare"),
