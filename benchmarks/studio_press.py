@@ -26,6 +26,7 @@ from fdvv.model.file import load_builtin
 
 STEP_s, SIMULATED_s = 0.004, 10.0
 RIGS = (
+    ("recommended, 10 kHz, force loop", PressMode.COMPENSATED, "recommended"),
     ("paper, 1 kHz, not compensated", PressMode.RENDERED, "paper"),
     ("paper, 1 kHz, compensated", PressMode.COMPENSATED, "paper"),
     ("light, 10 kHz, compensated", PressMode.COMPENSATED, "light"),

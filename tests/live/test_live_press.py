@@ -13,7 +13,7 @@ from fdvv.live.press_subject import PressMode, PressSubject, drawn_trace, model_
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
 from fdvv.program.library import load_shipped, programs
-from fdvv.protocol.tables import Fault, Mode
+from fdvv.protocol.tables import Fault, LoopFault, Mode
 from fdvv.twin.interactive import InteractiveTicks
 
 
@@ -57,6 +57,50 @@ def test_as_intended_a_slow_finger_feels_the_models_force(name: str) -> None:
         off = error_cN(subject, ticks, stroke)
         assert off.mean() < 0.3, stroke
         assert np.percentile(off, 95) < 1.0, stroke
+
+
+def test_a_rig_with_a_cell_holds_the_force_with_its_loop_closed() -> None:
+    """Far nearer to the model than its tables alone, with the loop open, on the same rig."""
+    subject = model_subject(load_builtin("mx-red"), PressMode.COMPENSATED)
+    assert (subject.rig_name, subject.loop is None) == ("recommended", False)
+    means = []
+    for one in (subject, replace(subject, loop=None)):
+        strokes = slow(LivePress(one, 0), 20.0, subject.travel_mm)
+        means.append(np.mean([error_cN(one, t, s).mean() for t, s in zip(strokes, Stroke, strict=True)]))
+    assert means[0] < 0.5
+    assert means[1] > 3 * means[0]
+
+
+@pytest.mark.parametrize("name", sorted(recipe.name for recipe in programs()))
+def test_a_program_on_a_rig_with_a_cell_is_pressed_with_its_loop_sound(name: str) -> None:
+    subject = program_subject(load_shipped(name), PressMode.COMPENSATED)
+    press = LivePress(subject)
+    press.replay(drawn_trace("drumming"))
+    ticks, events = press.advance(1.5)
+    assert ticks.displacement_mm.max() > 2.0
+    # this one throws its cap at the finger, harder than the cell can read
+    found = {"the force loop opened, cell saturated"} if name == "fast-tapping" else set()
+    assert {event.message.partition(":")[0] for event in events if event.message} == found
+
+
+def test_a_loop_that_opened_is_reported_once_and_closed_again_after_the_press() -> None:
+    press = LivePress(model_subject(load_builtin("mx-red"), PressMode.COMPENSATED))
+    press.push(600.0)  # beyond the cell's 4.45 N
+    opened = [event for event in press.advance(0.6)[1] if event.kind is LiveEventKind.LOOP]
+    assert [event.message for event in opened] == [
+        "the force loop opened, cell saturated: tables render this press"
+    ]
+    press.lift()
+    assert LiveEventKind.PRESSED in kinds(press.advance(0.5)[1])
+    press.lead(5.0, near_1_s=20.0)
+    assert LiveEventKind.LOOP not in kinds(press.advance(0.4)[1])
+    assert press.rig.loop_fault is LoopFault.SOUND
+    press.fail(Fault.POSITION_STUCK)
+    press.advance(0.1)
+    press.clear_fault()
+    press.push(80.0)
+    press.advance(0.6)
+    assert press.rig.loop_fault is LoopFault.SOUND
 
 
 @pytest.mark.slow
@@ -198,7 +242,7 @@ def test_a_sensor_that_dies_is_found_by_the_firmware_itself() -> None:
 
 
 def test_an_unknown_rig_and_a_program_that_is_refused_say_what_to_do() -> None:
-    with pytest.raises(InputError, match="paper, light"):
+    with pytest.raises(InputError, match="recommended, light, paper"):
         model_subject(load_builtin("mx-red"), PressMode.RENDERED, "no-such-rig")
     program = load_shipped("fast-tapping")
     sinking = replace(program, states=(replace(program.states[0], transitions=()), *program.states[1:]))

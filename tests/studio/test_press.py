@@ -63,7 +63,7 @@ def test_what_can_be_pressed_is_listed_with_the_persons_own(client: TestClient, 
     assert {"own:mine", "builtin:mx-clear"} <= {item["id"] for item in found["buttons"]}
     assert {"own:odd", "shipped:multi-level"} <= {item["id"] for item in found["programs"]}
     assert all(item["hint"] for item in found["programs"])
-    assert found["rigs"] == ["paper", "light"]
+    assert found["rigs"] == ["recommended", "light", "paper"]
     assert len(found["traces"]) > 3
 
 
@@ -108,7 +108,7 @@ def _is(found: object, wanted: object) -> None:
         ({"button": "own:../secret"}, "no button is called"),
         ({"program": "own:../secret"}, "no such program"),
         ({"program": "shipped:none"}, "use one of"),
-        ({"button": "builtin:mx-red", "mode": "rendered", "rig": "/etc/passwd"}, "paper, light"),
+        ({"button": "builtin:mx-red", "mode": "rendered", "rig": "/etc/passwd"}, "recommended, light, paper"),
         ({"model": {"format": "nonsense"}}, ""),
     ],
 )

@@ -20,7 +20,7 @@ from fdvv.live.press_replay import DisplacementPath, path_of
 from fdvv.live.press_subject import PressSubject
 from fdvv.live.press_trace import PressTrace
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
-from fdvv.protocol.tables import NONE, Fault, Mode, Refusal
+from fdvv.protocol.tables import NONE, Fault, LoopFault, Mode, Refusal
 from fdvv.twin.interactive import InteractiveRig, InteractiveTicks
 from fdvv.twin.plant import NEAR_1_s
 from fdvv.units import FloatArray
@@ -37,6 +37,7 @@ class LiveEventKind(StrEnum):
 
     actuation, reset : the key went down, came up. level : it changed from one level to another.
     vibration : a signal starts at the cap. pressed : a press is over. fault : the firmware fell to no force.
+    loop : the firmware opened its force loop by itself; after this press it is closed again.
     """
 
     ACTUATION = "actuation"
@@ -45,6 +46,7 @@ class LiveEventKind(StrEnum):
     VIBRATION = "vibration"
     PRESSED = "pressed"
     FAULT = "fault"
+    LOOP = "loop"
 
 
 class LiveEvent(Struct, frozen=True):
@@ -56,7 +58,7 @@ class LiveEvent(Struct, frozen=True):
     displacement_mm : of the cap then; of a press, how deep it went.
     velocity_mm_s : of the cap, positive downward; of a press, its mean speed from 0.1 mm to nine tenths of
         its depth.
-    number : key level, or slot of the vibration's signal. message : the reason of a fault.
+    number : key level, or slot of the vibration's signal. message : the reason of a fault or an open loop.
     """
 
     kind: LiveEventKind
@@ -132,11 +134,12 @@ class LivePress:
 
     def __init__(self, subject: PressSubject, seed: int | None = 0) -> None:
         self.subject = subject
-        self.rig = InteractiveRig(subject.image, subject.rig, subject.finger, subject.settings, seed)
+        runs = subject.image, subject.rig, subject.finger, subject.settings
+        self.rig = InteractiveRig(*runs, seed, subject.loop)
         self._tick_s = subject.rig.controller.tick_s
         self._latency_s = subject.rig.exciter.latency_s
         self.due_s = 0.0
-        self._key, self._faulted = 0, False
+        self._key, self._faulted, self._opened = 0, False, False
         self._path: DisplacementPath | None = None
         self._descent = Descent()
 
@@ -219,7 +222,7 @@ class LivePress:
             name = core.fault.name.lower()
             raise DeviceError(f"the fault {name} cannot be cleared: its cause is still there")
         self.lift()
-        core.arm()
+        self.rig.arm()
         self._faulted = False
 
     def _lead_along(self, ticks: int) -> int:
@@ -234,7 +237,7 @@ class LivePress:
         return min(ticks, max(1, round(step.holds_s / self._tick_s)))
 
     def _events(self, columns: InteractiveTicks) -> tuple[LiveEvent, ...]:
-        kinds = (self._keys, self._vibrations, self._presses, self._faults)
+        kinds = (self._keys, self._vibrations, self._loop, self._presses, self._faults)
         return tuple(sorted((event for of in kinds for event in of(columns)), key=attrgetter("t_s")))
 
     def _keys(self, columns: InteractiveTicks) -> list[LiveEvent]:
@@ -258,7 +261,19 @@ class LivePress:
         ended = [event for event in found if event]
         for event in ended:
             self.rig.announce(float(np.clip(event.velocity_mm_s, *PACE_mm_s)))
+        if ended and self._opened:
+            self.rig.close_loop()
+            self._opened = False
         return ended
+
+    def _loop(self, columns: InteractiveTicks) -> list[LiveEvent]:
+        found = self.rig.loop_fault
+        if self._opened or found is LoopFault.SOUND or not columns.t_s.size:
+            return []
+        self._opened = True
+        reason = found.name.lower().replace("_", " ")
+        event = _event(LiveEventKind.LOOP, columns, -1, int(found))
+        return [replace(event, message=f"the force loop opened, {reason}: tables render this press")]
 
     def _faults(self, columns: InteractiveTicks) -> list[LiveEvent]:
         fell = np.flatnonzero(columns.mode == Mode.FAULT)

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 
+from fdvv.compensation.force_loop.gains import force_loop_gains
 from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.method import Tuning
 from fdvv.compensation.rig_aware import RigAware
@@ -20,26 +21,28 @@ from fdvv.model.file import MODEL_SUFFIX, builtin_names, load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.program.button import button_program
 from fdvv.program.check import require_accepted
-from fdvv.program.compensate import commands
+from fdvv.program.compensate import commands, loop_targets
 from fdvv.program.compile import compile_program
 from fdvv.program.condition import When
 from fdvv.program.program import Program, Signal
 from fdvv.program.surface import Limits
 from fdvv.program.surface import Surface as ProgramSurface
 from fdvv.project.programs import ProgramCatalog
-from fdvv.protocol.tables import Settings
+from fdvv.protocol.tables import ForceLoopGains, Settings
 from fdvv.rendering.compensate import CompensationResult, compensate
 from fdvv.rendering.program_render import tuning_with
 from fdvv.rendering.tuning import settings_with
-from fdvv.twin.files import load_finger, load_rig
+from fdvv.twin.files import FIRST_RIG, load_finger, load_rig
 from fdvv.twin.finger import Finger
 from fdvv.twin.rig import Rig
-from fdvv.twin.settings import settings_of
+from fdvv.twin.settings import cell_of, settings_of
 from fdvv.units import FloatArray, cN_from_N
 
 IDEAL_RIG = "ideal"
-PRESS_RIGS = ("paper", "light")
+PRESS_RIGS = (FIRST_RIG, "light", "paper")
 """Shipped rigs that one may choose between; intended renders on the ideal one."""
+TABLES_RIG = "paper"
+"""Renders what was learned without a force loop, where nothing says on which rig: as in earlier versions."""
 
 TEACHER = "mx-clear"
 """The button whose presses identify a rig."""
@@ -77,7 +80,7 @@ class PressSubject:
     ----------
     name, mode, rig_name : what is pressed, how, on which shipped rig.
     description : one sentence for people: how this button is rendered.
-    image, settings, rig, finger : what runs.
+    image, settings, rig, finger : what runs. loop : gains of its force loop; None where that is open.
     travel_mm : displacement at the bottom stop.
     actuation_mm, reset_mm : where a plain button's key goes down and up; None of a program.
     marks : places of the stroke, those two or the places of a program's transitions.
@@ -102,6 +105,7 @@ class PressSubject:
     signals: tuple[Signal, ...]
     press: ProgramSurface
     release: ProgramSurface
+    loop: ForceLoopGains | None = None
 
     @property
     def displacement_mm(self) -> FloatArray:
@@ -131,7 +135,12 @@ def model_subject(
 
 
 def learned_subject(model: FDVVModel, learned: CompensationResult, rig_name: str) -> PressSubject:
-    """Make a model ready as a rig was compensated for it. Raises InputError as model_subject does."""
+    """Make a model ready as a rig was compensated for it. Raises InputError as model_subject does.
+
+    What was learned with the force loop is rendered on FIRST_RIG if the named rig has no load cell.
+    """
+    if learned.outcome.tuning.loop and not load_rig(rig_name).has_cell:
+        rig_name = FIRST_RIG
     description = f"on the simulated rig {rig_name!r}, by an actuation learned before"
     mode = PressMode.COMPENSATED
     return _of_model(model, mode, *_rig(mode, rig_name), learned, description)
@@ -166,15 +175,18 @@ def program_subject(
 ) -> PressSubject:
     """Make a program ready to be pressed. Raises InputError on an unknown rig or a program that is refused.
 
-    Compensated, its rig looks ahead and pushes against its own forces; its tables are this rig's commands.
+    Compensated, its rig looks ahead and pushes against its own forces, and its tables are this rig's
+    commands; with a load cell they are the targets of its force loop.
     """
     require_accepted(program)
     name, rig = _rig(mode, rig_name)
     description = _description(mode, name, program=True)
     if mode is not PressMode.COMPENSATED:
         return _subject(program, mode, name, rig, Tuning(), description)
-    known, limit_cN = learned_rig(name), rig_limits(rig).force_cN
-    tuning, made = tuning_with(known, program.travel_mm), commands(program, known, limit_cN)
+    known, cell = learned_rig(name), cell_of(rig)
+    gains = force_loop_gains(known.rig, cell, rig.controller.tick_s) if cell else None
+    tuning = tuning_with(known, program.travel_mm, gains)
+    made = loop_targets(program) if cell else commands(program, known, rig_limits(rig).force_cN)
     subject = _subject(made, mode, name, rig, tuning, description, learned=True)
     press, release = _surfaces(program)
     return replace(subject, press=press, release=release)
@@ -182,9 +194,11 @@ def program_subject(
 
 @cache
 def learned_rig(rig_name: str) -> LearnedRig:
-    """Return a shipped rig identified from 16 simulated presses on TEACHER; once per process."""
+    """Return a shipped rig identified from simulated presses on TEACHER, 4 or 16; once per process."""
     device = TwinDevice(load_rig(rig_name), load_finger("paper"), seed=1)
-    learned = compensate(device, load_builtin(TEACHER), TAUGHT_mm_s, RigAware()).learned_rig
+    # the loop's errors are left as they are, what it learns on one button is not carried to another
+    law = RigAware(rounds=0) if device.load_cell else RigAware()
+    learned = compensate(device, load_builtin(TEACHER), TAUGHT_mm_s, law).learned_rig
     assert learned is not None  # the method keeps one
     return learned
 
@@ -239,6 +253,7 @@ def _subject(
         tuple(state.name for state in program.states),
         program.signals,
         *_surfaces(program),
+        tuning.loop,
     )
 
 
@@ -262,6 +277,9 @@ def _description(mode: PressMode, rig_name: str, program: bool = False) -> str:
         return f"as intended: {parts}; vibrations are heard, not felt"
     if mode is PressMode.RENDERED:
         return f"on the simulated rig {rig_name!r}, not compensated: its own forces come on top"
+    if load_rig(rig_name).has_cell:
+        how = "which holds the force at the finger with its loop of 10 kHz"
+        return f"on the simulated rig {rig_name!r}, {how}; identified from presses on {TEACHER}"
     if program:
         return f"on the simulated rig {rig_name!r}, which looks ahead and pushes against its own forces"
     return f"on the simulated rig {rig_name!r}, compensated after 16 presses on {TEACHER}"

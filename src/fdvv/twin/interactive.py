@@ -14,7 +14,7 @@ from fdvv._native import address
 from fdvv.errors import ModelError
 from fdvv.firmware.core import OUTPUTS, Core
 from fdvv.protocol.messages import MM_S16_PER_mm_s
-from fdvv.protocol.tables import Fault, Settings, TickFlag
+from fdvv.protocol.tables import Fault, ForceLoopGains, LoopFault, Settings, TickFlag
 from fdvv.twin.finger import Finger
 from fdvv.twin.noise import Effort, Noise
 from fdvv.twin.plant import CursorInput, LIFTED_m, NEAR_1_s, RunningRig
@@ -105,6 +105,7 @@ class InteractiveRig(RunningRig):
     rig, finger : the default ones if None.
     settings : of the firmware; settings_of(rig) if None.
     seed : of all noise; None: no noise at all.
+    loop : gains that the force loop is closed with, on a rig with a load cell; None leaves it open.
 
     It begins armed and at rest, the finger LIFTED_m above the cap. Time passes only in advance(); the host is
     heard in every tick. The same calls at the same times give the same columns, however time is cut.
@@ -120,9 +121,13 @@ class InteractiveRig(RunningRig):
         finger: Finger | None = None,
         settings: Settings | None = None,
         seed: int | None = 0,
+        loop: ForceLoopGains | None = None,
     ) -> None:
         super().__init__(rig, finger, seed)
+        if loop and not self.rig.has_cell:
+            raise ModelError("this rig has no load cell to close a force loop with")
         self.core = Core(settings or settings_of(self.rig), image)
+        self._loop = loop
         self._grid = replace(self._grid, steps_per_row=self._grid.steps_per_tick)
         self.effort = Effort(self.finger.habit, self.rig.controller.tick_s)
         self._noise, self._used = self._draw(), 0
@@ -164,6 +169,21 @@ class InteractiveRig(RunningRig):
         """Say how fast the next press is meant to be, until its own speed is known."""
         self.core.announce(min(65535, max(0, round(MM_S16_PER_mm_s * velocity_mm_s))))
 
+    def arm(self) -> None:
+        """Render again after a fault, which has opened the loop. DeviceError as Core.arm."""
+        self.core.arm()
+        self.close_loop()
+
+    @property
+    def loop_fault(self) -> LoopFault:
+        """Why the core has opened the loop by itself."""
+        return self.core.loop_fault
+
+    def close_loop(self) -> None:
+        """Close the loop anew, if there are gains: the core has opened it by itself."""
+        if self._loop:
+            self.core.close_loop(self._loop.pack())
+
     def fail(self, fault: Fault) -> None:
         """Latch a fault, as one that a board finds outside its tick."""
         self.core.fail(fault)
@@ -200,6 +220,7 @@ class InteractiveRig(RunningRig):
 
     def _begin(self) -> None:
         """Arm the core and let everything come to rest under a lifted finger."""
+        self.close_loop()
         self.core.arm()
         model, counts, held = plant_of(self.rig, self.finger), self._grid.counts(), address(self._memory)
         parts = (ctypes.byref(model), ctypes.byref(counts), self.core.image_address, address(self._inputs))

@@ -36,7 +36,7 @@ export const page: Page = {
 };
 
 function begin(place: HTMLElement, stage: PressStage, list: PressList, route: Route): void {
-  const chooser = new Chooser(list, pickOf(route), { item: SECOND, mode: "intended", rig: "paper" });
+  const chooser = new Chooser(list, pickOf(route), { item: SECOND, mode: "intended", rig: "recommended" });
   place.prepend(chooser.element);
   stage.element.querySelector(".press-left")?.append(replayPanel(stage.session, list.traces));
   addShortcuts({ keys: "X", does: "Swap A and B, also while pressing", act: () => chooser.swap() });
@@ -56,7 +56,7 @@ function pickOf(route: Route): Pick {
   return {
     item,
     mode: (route.query.get("mode") as Mode | null) ?? "intended",
-    rig: route.query.get("rig") ?? "paper",
+    rig: route.query.get("rig") ?? "recommended",
   };
 }
 

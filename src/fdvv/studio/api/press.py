@@ -85,7 +85,7 @@ class PressStart(Message, tag="start"):
     model: dict[str, Any] | None = None
     code: dict[str, Any] | None = None
     mode: PressMode = PressMode.INTENDED
-    rig: str = "paper"
+    rig: str = PRESS_RIGS[0]
     seed: Count = 0
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from msgspec import structs
 
 from fdvv.errors import DeviceError, FdvvError, InputError
-from fdvv.live.press_subject import PRESS_RIGS
+from fdvv.live.press_subject import TABLES_RIG
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.program.surface import Limits
@@ -148,7 +148,7 @@ def _force_cN(model: FDVVModel, x: np.ndarray, v: np.ndarray, stroke: Stroke) ->
 def twin_problems(
     plan: StudyPlan,
     folder: Path,
-    rig_name: str = PRESS_RIGS[0],
+    rig_name: str = TABLES_RIG,
     opened: Mapping[Stimulus, FDVVModel] = MappingProxyType({}),
 ) -> tuple[str, ...]:
     """List what of a study the twin cannot render, in one line each; empty if it renders all.

@@ -10,7 +10,7 @@ from pathlib import Path
 from fdvv.errors import ModelError
 from fdvv.live.binary_finger import BinaryFinger
 from fdvv.live.press import LivePress
-from fdvv.live.press_subject import PRESS_RIGS
+from fdvv.live.press_subject import TABLES_RIG
 from fdvv.study.plan.plan import Stimulus
 from fdvv.study.stimulus.renderer import ConstantTimeSwitch, TwinLabels, check_label
 
@@ -39,7 +39,7 @@ class SimulatedFingerRenderer(TwinLabels):
         self,
         folder: Path,
         presses: int = 1,
-        rig_name: str = PRESS_RIGS[0],
+        rig_name: str = TABLES_RIG,
         seed: int = 0,
         switch_s: float = 0.0,
         clock: Callable[[], float] = time.monotonic,

@@ -15,7 +15,7 @@ import numpy as np
 
 from fdvv.errors import DeviceError, InputError
 from fdvv.live.press import LiveEvent, LiveEventKind, LivePress, PACE_mm_s
-from fdvv.live.press_subject import IDEAL_RIG, PRESS_RIGS, PressSubject, learned_subject, model_subject
+from fdvv.live.press_subject import IDEAL_RIG, TABLES_RIG, PressSubject, learned_subject, model_subject
 from fdvv.model.file import builtin_names, load_builtin, load_model
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
@@ -147,7 +147,7 @@ class PreparedStimulus:
 
 
 def prepare_stimulus(
-    stimulus: Stimulus, folder: Path, rig_name: str = PRESS_RIGS[0], model: FDVVModel | None = None
+    stimulus: Stimulus, folder: Path, rig_name: str = TABLES_RIG, model: FDVVModel | None = None
 ) -> PreparedStimulus:
     """Prepare a stimulus: rendered ideally, or with its actuation on the named rig. Raises InputError.
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from fdvv.live.press import LiveEventKind, LivePress
-from fdvv.live.press_subject import PRESS_RIGS
+from fdvv.live.press_subject import TABLES_RIG
 from fdvv.live.run import LiveFrame, LiveRun, SILENT_s
 from fdvv.program.program import Signal
 from fdvv.study.plan.plan import Stimulus
@@ -100,7 +100,7 @@ class TwinRenderer(TwinLabels):
         show: Callable[[PersonFrame], None],
         failed: Callable[[str], None] = lambda _line: None,
         switch_s: float = 0.6,
-        rig_name: str = PRESS_RIGS[0],
+        rig_name: str = TABLES_RIG,
         seed: int = 0,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,

@@ -65,6 +65,7 @@ function limits(session: PressSession): string {
   if (!frame) return "";
   const notes = [];
   if (frame.saturated) notes.push("the command is clipped at a limit of the rig");
+  if (session.opened()) notes.push(session.opened());
   if (frame.mode === DERATED) notes.push("the coil is warm: less force");
   if (frame.dropped_s > 0) notes.push(`${shown(frame.dropped_s, 2)} s dropped: this machine was busy`);
   return notes.join("; ");

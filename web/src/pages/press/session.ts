@@ -40,6 +40,8 @@ export class PressSession {
   readonly actuations: Signal<number> = signal(0);
   readonly lastPress: Signal<PressHappened | null> = signal<PressHappened | null>(null);
   readonly fault: Signal<string> = signal("");
+  /** Why the force loop is open; empty while it is not, and on rigs without one. */
+  readonly opened: Signal<string> = signal("");
   readonly rows = new Rolling();
   readonly latency = new Latency();
   /** Called with every frame as soon as it arrives. */
@@ -71,6 +73,7 @@ export class PressSession {
       this.standing.set("starting");
       this.reason.set("");
       this.fault.set("");
+      this.opened.set("");
     });
     this.channel.send({ type: "start", ...choice.what, mode: choice.mode, rig: choice.rig, seed: 0 });
   }
@@ -158,7 +161,9 @@ export class PressSession {
   private takeEvent(event: PressHappened): void {
     if (event.kind === "actuation") this.actuations.update((n) => n + 1);
     else if (event.kind === "fault") this.fault.set(event.told);
+    else if (event.kind === "loop") this.opened.set(event.told);
     else if (event.kind === "pressed") {
+      this.opened.set("");
       this.presses.update((n) => n + 1);
       this.lastPress.set(event);
     }

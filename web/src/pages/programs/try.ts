@@ -38,7 +38,7 @@ function followEdits(book: ProgramBook, stage: PressStage): void {
     const accepted = book.check()?.accepted ?? false;
     if (!accepted || book.checking()) return;
     const what = { code: { ...untracked(book.document) } };
-    stage.start({ what, mode: "intended", rig: "paper" });
+    stage.start({ what, mode: "intended", rig: "recommended" });
   });
 }
 
