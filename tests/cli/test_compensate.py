@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,8 @@ import pytest
 from fdvv.compensation.identification.rig_file import load_learned_rig, load_rig, save_rig
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.rendering.actuation_file import load_actuation
+from fdvv.twin.files import load_rig as load_plant
+from fdvv.twin.files import rig_to_toml
 
 from .conftest import Run
 
@@ -24,7 +27,6 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     from fdvv.device.twin import TwinDevice
     from fdvv.model.file import load_builtin
     from fdvv.rendering.compensate import compensate
-    from fdvv.twin.files import load_rig as load_plant
 
     path = tmp_path_factory.mktemp("rig") / "bench.rig.json"
     device = TwinDevice(load_plant("recommended"), seed=0)
@@ -85,10 +87,24 @@ def test_a_changed_rig_is_reported_also_when_json_is_printed(
     ran = fdvv(*AT_ONCE[:-1], "1", "--rig", "rig.toml", "--json")
     assert ran.status == 0
     assert ran.json["presses"] >= 2
-    assert ran.err.startswith("warning: the rig has changed since its identification: ")
+    assert ran.err.startswith("warning: the rig is not as its file says: ")
     assert ran.err.count("\n") == 1
     same = fdvv(*AT_ONCE[:-1], "1", "--seed", "8", "--json")
     assert (same.status, same.err) == (0, "")
+
+
+def test_a_probe_says_that_a_table_was_made_for_another_rig(fdvv: Run, tmp_path: Path, taught: bytes) -> None:
+    (tmp_path / "bench.rig.json").write_bytes(taught)
+    plant = load_plant("recommended")
+    rough = replace(plant, mover=replace(plant.mover, coulomb_N=0.1))
+    (tmp_path / "rig.toml").write_text(rig_to_toml(rough))
+    assert fdvv(*AT_ONCE, "-o", "red.actuation.json").status == 0
+    probe = ("probe", "mx-red", "red.actuation.json", *SHORT, "--presses", "2", "--json")
+    same = fdvv(*probe)
+    assert (same.status, same.err) == (0, "")
+    other = fdvv(*probe, "--rig", "rig.toml")
+    assert other.err.startswith("warning: the rig is not as its file says: friction rose")
+    assert other.err.count("\n") == 1
 
 
 def test_a_rig_can_be_met_without_learning_on_it(fdvv: Run, tmp_path: Path) -> None:

@@ -128,7 +128,7 @@ def test_a_rig_that_has_changed_is_reported_once_after_its_first_press(
     session = Session(tmp_path / "s")
     notices = notices_of(TwinDevice(worn, learned.finger, 31), learned.memory, session)
     assert len(notices) == 1
-    assert notices[0].startswith("warning: the rig has changed since its identification: ")
+    assert notices[0].startswith("warning: the rig is not as its file says: ")
     assert "mass rose" in notices[0] or "weight rose" in notices[0]
     assert "\n" not in notices[0]
     # a session that is only read again has nothing new to tell of the rig

@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 
 from fdvv.compensation.force_loop.constants import of_earlier_version
+from fdvv.compensation.identification.rig_file import RigRecord, rig_document, rig_of
 from fdvv.compensation.method import CurveOutcome, Outcome, Tuning
 from fdvv.errors import InputError, ModelError
 from fdvv.io.documents import ACTUATION, own_kind
@@ -22,7 +23,8 @@ from fdvv.rendering.run_summary import RunSummary, read_run_summary
 
 FORMAT = "fdvv-actuation"
 VERSION, LOOP_VERSION = 2, 3
-"""The second only where the force loop is closed: older versions of fdvv read the other files."""
+"""The second only where the force loop is closed or the rig was known from its file: older versions of fdvv
+read the other files."""
 READ = (1, 2, 3)
 LARGEST_bytes = 20_000_000
 """Version 1 had no receipt."""
@@ -41,7 +43,10 @@ class CurveRecord(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """Tables of actuation for one device, and how they were learned."""
+    """Tables of actuation for one device, and how they were learned.
+
+    rig : what was taken for granted of the rig, as in its file; null where it was identified.
+    """
 
     format: Literal["fdvv-actuation"]
     version: Literal[1, 2, 3]
@@ -60,19 +65,22 @@ class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
     simulated: bool
     receipt: RunSummary | None = None
     tuning: dict[str, float | bool | dict[str, Any]] = {}
+    rig: RigRecord | None = None
 
 
 def save_actuation(result: CompensationResult, path: Path | str) -> None:
     """Write a result to an ``*.actuation.json`` file, whole or not at all. Raises OSError."""
     record: dict[str, Any] = {
         "format": FORMAT,
-        "version": LOOP_VERSION if result.outcome.tuning.loop else VERSION,
+        "version": LOOP_VERSION if result.outcome.tuning.loop or result.known_rig else VERSION,
         **result.to_dict(),
         "travel_mm": result.travel_mm,
         **{name: column.tolist() for name, column in vars(result.surface).items()},
         "tuning": result.outcome.tuning.to_dict(),
         "receipt": result.receipt.to_dict() if result.receipt else None,
     }
+    if result.known_rig:
+        record["rig"] = rig_document(result.known_rig)
     write_atomic(Path(path), json.dumps(record, indent=1, allow_nan=False) + "\n")
 
 
@@ -126,4 +134,6 @@ def _result(record: ActuationRecord) -> CompensationResult:
     tuning = msgspec.convert(held, Tuning)
     outcome = Outcome(surface, curves, learned, True, record.explanation, tuning)
     names = record.method, record.model, record.device, record.travel_mm
-    return CompensationResult(*names, outcome, tuple(record.skipped), record.simulated, record.receipt)
+    known = rig_of(record.rig) if record.rig else None
+    about = tuple(record.skipped), record.simulated, record.receipt
+    return CompensationResult(*names, outcome, *about, known_rig=known)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
 from fdvv.compensation.force_loop.method import ForceLoop
-from fdvv.compensation.identification.drift import detect_drift
 from fdvv.compensation.identification.rig_file import LearnedRig
+from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.compensation.method import CompensationJob, CurveOutcome, Method, Outcome, PressCount
 from fdvv.compensation.paper import PaperLaw
 from fdvv.compensation.per_curve import PerCurve
@@ -18,40 +17,19 @@ from fdvv.compensation.presses import judge_press
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.contract import Device, ForceLoopDevice
 from fdvv.device.remote import Remote
-from fdvv.errors import DeviceError, FitError, InputError
+from fdvv.errors import DeviceError, InputError
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
+from fdvv.rendering.known_rig import with_rig_check
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
 from fdvv.rendering.session import Session
 from fdvv.rendering.session_log import PressLog
-from fdvv.rendering.session_run import Guide, PressDone, Progress, SessionPlan, VelocityProgress, run
-
-REMEDY = "leave out its rig file to identify it again"
+from fdvv.rendering.session_run import Guide, Progress, SessionPlan, VelocityProgress, run
 
 
-def warn_on_drift(method: Method[Any], plan: SessionPlan[Any], log: PressLog) -> Progress:
-    """Wrap a plan's progress so that the first used press on a rig identified earlier is checked for drift.
-
-    A change is reported as a notice. An uninformative press leaves the check to the next; a resumed session
-    has been checked already.
-    """
-    learned = method.learned_rig if isinstance(method, RigAware) else None
-    if learned is None or log.used:
-        return plan.progress
-    checked = False
-
-    def progress(done: PressDone) -> None:
-        nonlocal checked
-        if not checked and done.press is not None and not done.skipped:
-            with suppress(FitError):
-                change = detect_drift(learned.rig, done.press, plan.travel_mm)
-                checked = True
-                if change:
-                    text = f"the rig has changed since its identification: {change}; {REMEDY}"
-                    plan.guide.notice(f"warning: {text}")
-        plan.progress(done)
-
-    return progress
+def _known_rig(method: Method[Any]) -> LearnedRig | None:
+    """Return the rig that a method was given instead of identifying it."""
+    return method.learned_rig if isinstance(method, RigAware | ForceLoop) else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +45,7 @@ class CompensationResult:
     simulated : the presses came from the twin.
     receipt : summary of the session; None in files of version 1.
     learned_rig : the rig, for other buttons; None for methods that learn tables only, and in files.
+    known_rig : what was taken for granted of the rig, from its file; None where it was identified.
     """
 
     method: str
@@ -78,6 +57,7 @@ class CompensationResult:
     simulated: bool
     receipt: RunSummary | None = None
     learned_rig: LearnedRig | None = None
+    known_rig: RigModel | None = None
 
     @property
     def surface(self) -> ForceSurface:
@@ -137,7 +117,7 @@ def compensate(
     """
     method, session = _method(law, device), session or Session()
     job = _job(device, model, velocities_mm_s, method)
-    start = method.init(job)
+    start, known = method.init(job), _known_rig(method)
     if method.trial(start) is not None:
         check_force_sensor(device)
     speeds = job.target.velocity_mm_s.tolist()
@@ -153,7 +133,9 @@ def compensate(
             progress or (lambda _done: None),
             guide or Guide(),
         )
-        plan = replace(plan, progress=warn_on_drift(method, plan, log))
+        if known and not log.used:  # a resumed session has been checked already
+            about = known.rig, job.travel_mm, isinstance(method, ForceLoop)
+            plan = replace(plan, progress=with_rig_check(plan.progress, plan.guide.notice, *about))
         state = run(device, plan, start, log)
         outcome = method.done(state)
         if not outcome.complete:
@@ -164,7 +146,8 @@ def compensate(
     names = method.name, model.name, info.name, model.travel_mm
     # other methods learn tables only
     learned = method.learned(state) if isinstance(method, RigAware | ForceLoop) else None
-    return CompensationResult(*names, outcome, skipped, info.simulated, receipt, learned)
+    taken = known.rig if known else None
+    return CompensationResult(*names, outcome, skipped, info.simulated, receipt, learned, taken)
 
 
 def velocity_progress(

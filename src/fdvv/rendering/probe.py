@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import partial
 from typing import Any
 
+from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.compensation.method import UNTUNED, PressCount, Trial, Tuning
 from fdvv.compensation.presses import FROM_mm, STOP_GUARD_mm, judge_press
 from fdvv.device.contract import Device
@@ -27,6 +28,7 @@ from fdvv.rendering.evaluation.vibration_presses import (
     upload_vibrating,
 )
 from fdvv.rendering.exciter import prepare_exciter
+from fdvv.rendering.known_rig import with_rig_check
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
 from fdvv.rendering.session import MANIFEST, Session, plain, read_manifest, table_digest
 from fdvv.rendering.session_log import PressEntry, PressLog
@@ -164,6 +166,7 @@ def probe(
     guide: Guide | None = None,
     tuning: Tuning = UNTUNED,
     playback: Playback | None = None,
+    known_rig: RigModel | None = None,
 ) -> ProbeResult:
     """Upload a surface once, press it afresh at every speed, and compare the rendered force with the model.
 
@@ -172,6 +175,8 @@ def probe(
     judged but counted, with its reason; being at its limit is the rig's own doing and is judged.
     progress, session, guide : as in ``compensate``. tuning : of the controller, as it was learned with the
     surface; the device keeps it afterwards.
+    known_rig : what the surface was computed from, if not from presses on this device: the first presses are
+        held against it.
     playback : also press with the model's vibrations, where it has some and the device an exciter; force is
     judged on the presses without. None, and in a session begun without: the cap's own motion is compared.
 
@@ -206,6 +211,10 @@ def probe(
         partial(upload_vibrating, model=model, playback=playback) if playback else None,
     )
     with session.open_log(manifest, PressLog) as log:
+        if not log.used:
+            about = known_rig, model.travel_mm, tuning.loop is not None
+            heard = with_rig_check(session_plan.progress, session_plan.guide.notice, *about)
+            session_plan = replace(session_plan, progress=heard)
         found = run(device, session_plan, plan.init(), log)
         curves = _with_vibrations(model, plan, found)
         outcomes = [curve.outcome for curve in curves]

@@ -117,7 +117,8 @@ def probe(
         surface = learned.surface if learned else uncompensated(found, model, speeds)
         tuning = learned.outcome.tuning if learned else Tuning()
         about = (method, session, guide, tuning, playback if playback.presses else None)
-        result = judge(found, model, surface, speeds, presses, view.done, *about)
+        known = learned.known_rig if learned else None
+        result = judge(found, model, surface, speeds, presses, view.done, *about, known_rig=known)
     document = {**result.to_dict(), **_receipt(result)}
     _draw(result, figure, report)
     if as_json:

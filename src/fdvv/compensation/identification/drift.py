@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from fdvv.compensation.identification.balance import (
     STICK,
     VISCOUS,
     WEIGHT,
+    Sensor,
     ticks_of,
 )
 from fdvv.compensation.identification.estimation import RigEstimation
@@ -39,6 +40,9 @@ SHARED_ratio = 0.25
 UNINFORMATIVE_VARIANCE = 1e6
 """Variance of a change already reported, in squares of the prior's spread."""
 LEAST_drag_ratio, LEAST_drag_N_s_m = 0.15, 0.2
+POSITION_LAG = "position lag"
+ESTIMATED = Sensor(filter_s=0.0, cone_g=0.0)
+"""Of the force in the record of a press with the loop closed."""
 LEAST_lag_ms, LEAST_spring_cN_mm = 0.2, 2.0
 ERRORS = {
     0: "gain",
@@ -71,14 +75,22 @@ class _Change:
 
 
 def detect_drift(
-    rig: RigModel, press: Press, travel_mm: float = float("inf"), prior: Prior | None = None
+    rig: RigModel,
+    press: Press,
+    travel_mm: float = float("inf"),
+    prior: Prior | None = None,
+    loop_closed: bool = False,
 ) -> str:
     """Describe what has changed on a rig since its identification, from one press; empty if nothing has.
 
     travel_mm : position of the bottom stop; the end of the press if not given.
+    loop_closed : the press was made with the force loop closed. Its record holds the loop's estimates, of the
+        place without lag and of the force at the finger.
     The press must hold its rig's own columns. Raises FitError if it is not informative enough.
     """
     prior = prior or Prior()
+    if loop_closed:
+        rig, prior = replace(rig, position_lag_s=0.0), replace(prior, sensor=ESTIMATED)
     problem = RigEstimation([ticks_of(press, "the press", prior.tick_s)], travel_mm, prior)
     problem.mean = numbers = parameter_vector(rig, problem.own_step_mm)
     runs = problem.runs(numbers)
@@ -86,9 +98,8 @@ def detect_drift(
     outlier_cN = max(OUTLIER_RESIDUAL_ratio * rig.residual_cN, rig.residual_cN + OUTLIER_RESIDUAL_cN)
     outlier = residual_cN(problem, numbers, runs) > outlier_cN
     slopes = gradient, matrix - np.eye(numbers.size)
-    changes = _largest_changes(
-        problem.unroot, _changes(rig, problem.own_step_mm), _doubt(rig), slopes, outlier
-    )
+    possible = [c for c in _changes(rig, problem.own_step_mm) if not (loop_closed and c.name == POSITION_LAG)]
+    changes = _largest_changes(problem.unroot, possible, _doubt(rig), slopes, outlier)
     messages = [_message(change, size) for change, size in changes]
     left = residual_cN(problem, numbers + sum(size * change.along for change, size in changes), runs)
     if left > outlier_cN:
@@ -154,7 +165,7 @@ def _changes(rig: RigModel, own_step_mm: float) -> list[_Change]:
         _Change("spring", "cN/mm", along((OWN, places)), stiffness, LEAST_spring_cN_mm, -np.inf),
         _Change("mass", "g", along((MASS, 1.0)), rig.mass_g, 2.0),
         _Change("play", "cN", along((PLAY, 0.5)), rig.play_cN, 2.0),
-        _Change("position lag", "ms", along((LAG, 1e-3)), 1e3 * rig.position_lag_s, LEAST_lag_ms),
+        _Change(POSITION_LAG, "ms", along((LAG, 1e-3)), 1e3 * rig.position_lag_s, LEAST_lag_ms),
         _Change("delay", "ms", along((DELAY, 1e-3)), 1e3 * rig.delay_s, LEAST_lag_ms),
     ]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import msgspec
 import numpy as np
@@ -120,14 +120,24 @@ class RigRecord(msgspec.Struct, forbid_unknown_fields=True):
 
 def save_rig(rig: RigModel | LearnedRig, path: Path | str) -> None:
     """Write a rig, or a learned rig, to a ``*.rig.json`` file, atomically. Raises OSError."""
-    model = rig.rig if isinstance(rig, LearnedRig) else rig
-    numbers = {f.name: getattr(model, f.name) for f in fields(model)}
-    numbers |= {"gain": list(model.gain), "error": dict(model.error)}
-    numbers |= {"own_cN": list(model.own_cN), "at_bound": list(model.at_bound)}
+    numbers = rig_document(rig.rig if isinstance(rig, LearnedRig) else rig)
     if isinstance(rig, LearnedRig):
         tables = {name: column.tolist() for name, column in vars(rig.residual).items()}
         numbers["learned"] = {"travel_mm": rig.travel_mm, **tables, "error_cN": rig.error_cN.tolist()}
-    write_atomic(Path(path), pretty({"format": _KIND.format, "version": _KIND.version, **numbers}) + "\n")
+    write_atomic(Path(path), pretty(numbers) + "\n")
+
+
+def rig_document(model: RigModel) -> dict[str, Any]:
+    """Return the document of a rig alone, as JSON holds it."""
+    numbers = {f.name: getattr(model, f.name) for f in fields(model)}
+    numbers |= {"gain": list(model.gain), "error": dict(model.error)}
+    numbers |= {"own_cN": list(model.own_cN), "at_bound": list(model.at_bound)}
+    return {"format": _KIND.format, "version": _KIND.version, **numbers}
+
+
+def rig_of(record: RigRecord) -> RigModel:
+    """Return the rig of a record. Raises ModelError on values that no rig has."""
+    return RigModel(**{f.name: getattr(record, f.name) for f in fields(RigModel)})
 
 
 def load_rig(path: Path | str) -> RigModel:
@@ -149,7 +159,7 @@ def _read(path: Path | str) -> tuple[RigModel, LearnedRig | None]:
     record = read_document(text, path, _KIND, Decoder(RigRecord).decode, lambda _place: None)
     place = "$"
     try:
-        rig = RigModel(**{f.name: getattr(record, f.name) for f in fields(RigModel)})
+        rig = rig_of(record)
         place = "$.learned"
         return rig, _learned_rig(rig, record.learned) if record.learned else None
     except ValueError as error:  # rows of different lengths, or values the records reject

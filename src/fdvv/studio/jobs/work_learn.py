@@ -8,6 +8,7 @@ from typing import NamedTuple
 from msgspec.structs import replace
 
 from fdvv.compensation.identification.rig_file import load_learned_rig, save_rig
+from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.compensation.method import Tuning
 from fdvv.compensation.paper import PaperLaw
 from fdvv.compensation.rig_aware import RigAware
@@ -64,10 +65,11 @@ class _Table(NamedTuple):
     surface: ForceSurface
     method: str
     tuning: Tuning
+    known_rig: RigModel | None = None
 
 
 def _table(learned: CompensationResult) -> _Table:
-    return _Table(learned.surface, learned.method, learned.outcome.tuning)
+    return _Table(learned.surface, learned.method, learned.outcome.tuning, learned.known_rig)
 
 
 def _uncompensated(device: Device, model: FDVVModel, order: RigOrder) -> _Table:
@@ -80,7 +82,7 @@ def _baseline(
     """Press without compensation as often as what is judged, a simulated person in the same way."""
     with work.session(order, work.folder.baseline, seed) as (device, session):
         work.tell(StageEvent("baseline", "pressing without compensation, to compare"))
-        surface, method, tuning = _uncompensated(device, model, order)
+        surface, method, tuning, _ = _uncompensated(device, model, order)
         about = (work.pressed(model.travel_mm, "baseline"), method, session, work.guide(order.device), tuning)
         return probe(device, model, surface, order.velocities_mm_s, presses, *about).curves
 
@@ -95,11 +97,11 @@ def _probe(
     before: tuple[ProbeCurve, ...],
 ) -> None:
     device, session = pressed
-    surface, method, tuning = table
+    surface, method, tuning, known = table
     work.tell(StageEvent("probe", "judging on fresh presses, in true displacement"))
     report_press, guide = work.pressed(model.travel_mm, "probe"), work.guide(order.device)
     speeds = order.velocities_mm_s
-    about = (method, session, guide, tuning, Playback(presses))
+    about = (method, session, guide, tuning, Playback(presses), known)
     result = probe(device, model, surface, speeds, presses, report_press, *about)
     report = {**result.to_dict(), "button": order.button}
     write_atomic(work.folder.result("measured"), json.dumps(report, allow_nan=False) + "\n")
