@@ -5,14 +5,44 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 
-from fdvv.compensation.identification.drift import detect_drift
+from fdvv.compensation.identification.drift import find_drift
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import FitError
+from fdvv.model.press import Press
 from fdvv.rendering.session_run import PressDone, Progress
 
 CHECKED_presses = 2
-"""A difference that the first press does not show stands out in the second, at another place of its noise."""
 REMEDY = "it has changed, or is another one: leave out its rig file to identify it anew"
+
+
+class RigCheck:
+    """Holds the first presses on a rig against what is known of it.
+
+    A press that the known rig cannot explain counts by itself, a change of some quantity only once each of
+    the CHECKED_presses shows one: single presses of the same rig do now and then.
+    loop_closed : presses are made with the force loop closed.
+    """
+
+    def __init__(self, rig: RigModel, travel_mm: float, loop_closed: bool) -> None:
+        self._rig, self._travel_mm, self._loop_closed = rig, travel_mm, loop_closed
+        self._found: list[str] = []
+        self._over = False
+
+    def difference(self, press: Press) -> str:
+        """Return what differs as far as this press shows it, at most once; empty if nothing does.
+
+        An uninformative press leaves the check to the next.
+        """
+        if self._over:
+            return ""
+        with suppress(FitError):
+            found = find_drift(self._rig, press, self._travel_mm, loop_closed=self._loop_closed)
+            self._found.append(found.summary)
+            whole = len(self._found) == CHECKED_presses
+            differs = found.unexplained or (whole and all(self._found))
+            self._over = whole or differs
+            return found.summary if differs else ""
+        return ""
 
 
 def with_rig_check(
@@ -25,22 +55,14 @@ def with_rig_check(
     """Wrap what is called after every press, so that the first ones used are held against a known rig.
 
     notice : gets one line with what differs and what to do, at most once. rig : None checks nothing.
-    loop_closed : presses are made with the force loop closed. An uninformative press leaves the check to the
-    next.
     """
     if rig is None:
         return progress
-    left = CHECKED_presses
+    check = RigCheck(rig, travel_mm, loop_closed)
 
     def checked(done: PressDone) -> None:
-        nonlocal left
-        if left and done.press is not None and not done.skipped:
-            with suppress(FitError):
-                change = detect_drift(rig, done.press, travel_mm, loop_closed=loop_closed)
-                left -= 1
-                if change:
-                    left = 0
-                    notice(f"warning: the rig is not as its file says: {change}; {REMEDY}")
+        if done.press is not None and not done.skipped and (found := check.difference(done.press)):
+            notice(f"warning: the rig is not as its file says: {found}; {REMEDY}")
         progress(done)
 
     return checked

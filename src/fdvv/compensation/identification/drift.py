@@ -81,7 +81,32 @@ def detect_drift(
     prior: Prior | None = None,
     loop_closed: bool = False,
 ) -> str:
-    """Describe what has changed on a rig since its identification, from one press; empty if nothing has.
+    """Describe what `find_drift` finds in one line; empty if nothing has changed."""
+    return find_drift(rig, press, travel_mm, prior, loop_closed).summary
+
+
+@dataclass(frozen=True)
+class RigDrift:
+    """What one press shows of a change.
+
+    Attributes
+    ----------
+    summary : in one line; empty if nothing has changed.
+    unexplained : the known rig leaves far more of the press than of those it was identified from.
+    """
+
+    summary: str
+    unexplained: bool
+
+
+def find_drift(
+    rig: RigModel,
+    press: Press,
+    travel_mm: float = float("inf"),
+    prior: Prior | None = None,
+    loop_closed: bool = False,
+) -> RigDrift:
+    """Find what has changed on a rig since its identification, from one press, the most significant first.
 
     travel_mm : position of the bottom stop; the end of the press if not given.
     loop_closed : the press was made with the force loop closed. Its record holds the loop's estimates, of the
@@ -106,7 +131,7 @@ def detect_drift(
         messages.append(
             f"{left:.1f} cN rms unexplained, {rig.residual_cN:.1f} before; identify the rig again"
         )
-    return ", ".join(messages)
+    return RigDrift(", ".join(messages), outlier)
 
 
 def _largest_changes(
