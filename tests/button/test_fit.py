@@ -140,7 +140,7 @@ def test_a_stroke_that_stops_short_is_reported(tmp_path: Path) -> None:
 
 def test_too_few_samples_for_the_points_are_refused_by_name(tmp_path: Path) -> None:
     path = tmp_path / "few.csv"
-    rows = "\n".join(f"{x / 10},{10 * x}" for x in range(10))
+    rows = "\n".join(f"{x / 5},{10 * x}" for x in range(10))
     path.write_text("displacement_mm,force_cN\n" + rows + "\n")
     with pytest.raises(InputError, match=r"few\.csv: curve: .*10 distinct displacements.* got 15"):
         fit_file(path)

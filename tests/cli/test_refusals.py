@@ -27,6 +27,10 @@ def blue() -> dict[str, object]:
 def bad(tmp_path: Path) -> Path:
     """Fill the test's folder with files and folders that cannot be used."""
     tactile_csv(tmp_path / "good.csv")
+    pounds = (
+        (tmp_path / "good.csv").read_text().replace("force_cN", "force_lbf").replace("force_gf", "force_lbf")
+    )
+    (tmp_path / "pounds.csv").write_text(pounds)
     (tmp_path / "empty.csv").touch()
     (tmp_path / "empty").mkdir()
     (tmp_path / "refused").mkdir()
@@ -63,6 +67,9 @@ REFUSED = {
     "a built-in to fit": (("fit", "mx-blue"), "'mx-blue' does not exist"),
     "an empty file": (("fit", "empty.csv"), "empty.csv: whole file: it is empty"),
     "an empty folder": (("fit", "empty"), "empty: folder: no .csv"),
+    "a force that no button has": (("fit", "pounds.csv"), "pounds.csv: press: the force reaches"),
+    "a force that no button has, to import": (("import", "pounds.csv", *OUT), "check the units"),
+    "a force that no button has, to show": (("show", "pounds.csv"), "fdvv fit --accept-implausible"),
     "a folder of nothing usable": (("fit", "refused"), "text.csv"),
     "a binary file": (("fit", "binary.csv"), "binary.csv: whole file: it is a binary file"),
     "a model to fit": (("fit", "good.fdvv.json"), "holds an FDVV model, not a measurement"),

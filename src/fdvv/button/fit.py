@@ -11,9 +11,18 @@ from typing import Any
 
 import numpy as np
 
+from fdvv.button.plausible import (
+    OPTION,
+    Implausible,
+    implausible_cycles,
+    implausible_end,
+    implausible_fit,
+    implausible_strokes,
+)
 from fdvv.errors import FdvvError, InputError
 from fdvv.formats.force.average import Averaged, average_by_velocity
 from fdvv.formats.force.read import find_force_files, read_force_file
+from fdvv.formats.force.split import CYCLE
 from fdvv.formats.force.types import ForceFile
 from fdvv.io.documents import own_kind
 from fdvv.model.bump import CONTACT_cN, find_bottom_out_mm, find_contact_mm
@@ -28,12 +37,16 @@ DECIMALS_mm = 6
 
 @dataclass(frozen=True)
 class FitSettings:
-    """How to fit; the fields are fdvv.model.fit.fit_curve's."""
+    """How to fit; the fields are fdvv.model.fit.fit_curve's.
+
+    accept_implausible : fit also what fdvv.button.plausible doubts; the doubt becomes a warning.
+    """
 
     method: FitMethod = FitMethod.ADAPTIVE
     control_points: int | None = 15
     degree: int | None = None
     smoothing_mm: float = 0.0
+    accept_implausible: bool = False
 
     def describe(self) -> str:
         """Describe the settings in one sentence, for provenance."""
@@ -98,13 +111,16 @@ def fit_report(fit: CurveFit) -> dict[str, Any]:
 
 
 def fit_file(path: Path, settings: FitSettings | None = None) -> ModelFit:
-    """Read, repair, average and fit one file of force curves. Raises InputError."""
+    """Read, repair, average and fit one file of force curves.
+
+    Raises InputError if it cannot be read, or if it cannot be a button's (fdvv.button.plausible).
+    """
     kind = own_kind(Path(path))
     if kind:
         raise InputError(path, "whole file", f"holds {kind}, not a measurement", "name a measured file")
     file = read_force_file(path)
     try:
-        return fit_force_file(file, settings or FitSettings(), str(Path(path).name))
+        return fit_force_file(file, settings or FitSettings(), path)
     except InputError:
         raise
     except FdvvError as error:
@@ -112,23 +128,38 @@ def fit_file(path: Path, settings: FitSettings | None = None) -> ModelFit:
         raise InputError(path, "curve", str(error), remedy) from error
 
 
-def fit_force_file(file: ForceFile, settings: FitSettings, source: str) -> ModelFit:
-    """Fit what a read file holds: repeats averaged per velocity, each stroke and velocity one curve."""
+def fit_force_file(file: ForceFile, settings: FitSettings, path: Path) -> ModelFit:
+    """Fit what a read file holds: repeats averaged per velocity, each stroke and velocity one curve.
+
+    Raises InputError, naming path, if that cannot be a button's.
+    """
     parts = measured_parts(file)
+    accepted = refuse_implausible(path, parts.implausible, settings.accept_implausible)
     fits = tuple(
         fit_curve(p, settings.method, settings.control_points, settings.degree, settings.smoothing_mm)
         for p in parts.strokes
     )
+    doubts = [doubt for pair in zip(fits, parts.strokes, strict=True) for doubt in implausible_fit(*pair)]
+    accepted += refuse_implausible(path, doubts, settings.accept_implausible)
+    origin = one_line(f"{Path(path).name} ({file.format})")
     model = FDVVModel(
         name=one_line(file.name) or "unnamed",
         travel_mm=parts.travel_mm,
         curves=tuple(fit.curve for fit in fits),
         actuation_mm=parts.actuation_mm,
         reset_mm=parts.reset_mm,
-        provenance=Provenance(source=one_line(f"{source} ({file.format})"), method=settings.describe()),
+        provenance=Provenance(source=origin, method=settings.describe()),
     )
     found = landmarks(model) if model.of(Stroke.PRESS) else None
-    return ModelFit(model, parts.zero_mm, fits, parts.strokes, found, parts.warnings)
+    return ModelFit(model, parts.zero_mm, fits, parts.strokes, found, accepted + parts.warnings)
+
+
+def refuse_implausible(path: Path, doubts: Sequence[Implausible], accept: bool = False) -> tuple[str, ...]:
+    """Raise InputError with the first doubt, or return all as warnings if they are accepted."""
+    if doubts and not accept:
+        remedy = f"{doubts[0].remedy}; fdvv fit {OPTION} takes it as it is"
+        raise InputError(path, doubts[0].place, f"{doubts[0].reason}: this cannot be a button's", remedy)
+    return tuple(f"implausible, accepted as asked: {doubt}" for doubt in doubts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +174,7 @@ class MeasuredParts:
     travel_mm, actuation_mm, reset_mm : in the strokes' displacement; None where a point is not known.
     used, cycles : how many cycles the means hold, and how many the file has.
     warnings : what was repaired, left out or could not be found.
+    implausible : why this cannot be a button's; empty if it can.
     """
 
     strokes: tuple[MeasuredCurve, ...]
@@ -153,6 +185,7 @@ class MeasuredParts:
     used: int
     cycles: int
     warnings: tuple[str, ...]
+    implausible: tuple[Implausible, ...] = ()
 
 
 def measured_parts(file: ForceFile) -> MeasuredParts:
@@ -162,15 +195,16 @@ def measured_parts(file: ForceFile) -> MeasuredParts:
     for group in groups:
         warnings += group.warnings
         warnings += [f"{label} left out: {reason}" for label, reason in group.left_out]
-    zero, travel = _zero_and_travel(groups, warnings)
+    zero, travel, stop_found = _zero_and_travel(groups, warnings)
     strokes = [stroke for group in groups for stroke in (group.press, group.release) if stroke is not None]
     parts = []
     for part in map(active_part, strokes):
         x = np.round(part.displacement_mm - zero, DECIMALS_mm)
         parts.append(MeasuredCurve(x, part.force_cN, part.stroke, part.velocity_mm_s))
+    parts.sort(key=reading_order)
     warnings += [sentence for part in parts if (sentence := _cut_short(part))]
     return MeasuredParts(
-        strokes=tuple(sorted(parts, key=reading_order)),
+        strokes=tuple(parts),
         zero_mm=zero,
         travel_mm=travel,
         actuation_mm=_point([g.actuation_mm for g in groups], zero, travel, "actuation", warnings),
@@ -178,6 +212,7 @@ def measured_parts(file: ForceFile) -> MeasuredParts:
         used=sum(len(group.used) for group in groups),
         cycles=len(file.cycles),
         warnings=tuple(dict.fromkeys(warnings)),
+        implausible=(*implausible_strokes(parts, stop_found), *_implausible_whole(file, strokes)),
     )
 
 
@@ -192,19 +227,27 @@ def _cut_short(part: MeasuredCurve) -> str:
     )
 
 
+def _implausible_whole(file: ForceFile, strokes: Sequence[MeasuredCurve]) -> Iterator[Implausible]:
+    for stroke in strokes:
+        if stroke.stroke is Stroke.PRESS:
+            yield from implausible_end(stroke)
+    of_run = [c.press or c.release for c in file.cycles if c.label.startswith(CYCLE)]
+    yield from implausible_cycles([stroke for stroke in of_run if stroke is not None])
+
+
 def one_line(text: str) -> str:
     """Make a file's name fit for a model file: no line breaks, nothing that UTF-8 cannot hold."""
     return " ".join(text.encode(errors="replace").decode().split())
 
 
-def _zero_and_travel(groups: Sequence[Averaged], warnings: list[str]) -> tuple[float, float]:
+def _zero_and_travel(groups: Sequence[Averaged], warnings: list[str]) -> tuple[float, float, bool]:
     stroke = next(s for g in groups for s in (g.press, g.release) if s is not None)
     zero = find_contact_mm(stroke)
-    end = find_bottom_out_mm(stroke, zero)
-    if end is None:
-        end = float(stroke.displacement_mm[-1])
+    stop = find_bottom_out_mm(stroke, zero)
+    end = float(stroke.displacement_mm[-1]) if stop is None else stop
+    if stop is None:
         warnings.append(f"no stop found on the {stroke.stroke}: travel taken to its last sample")
-    return round(zero, DECIMALS_mm), round(end - zero, DECIMALS_mm)
+    return round(zero, DECIMALS_mm), round(end - zero, DECIMALS_mm), stop is not None
 
 
 def _point(

@@ -9,7 +9,9 @@ import click
 
 from fdvv import extras
 from fdvv.button.export_file import export_button, export_format, export_formats, is_recording
+from fdvv.button.fit import FitSettings
 from fdvv.button.import_file import ImportSettings, import_file
+from fdvv.button.plausible import OPTION
 from fdvv.cli import ui
 from fdvv.formats.exchange.exchange_format import ExportSettings
 from fdvv.formats.exchange.exported import Exported
@@ -96,9 +98,12 @@ def _print(made: Exported, output: Path) -> None:
     type=ui.POSITIVE,
     help="What 1 stands for, if the file does not say.",
 )
+@ui.option(OPTION, is_flag=True, help="Take also curves that cannot be a button's.")
 @ui.option("-o", "--output", type=ui.PATH, required=True, help="The *.fdvv.json to write.")
 @ui.json_option
-def import_(file: Path, stroke: str, output: Path, as_json: bool, **asked: Any) -> None:
+def import_(
+    file: Path, stroke: str, output: Path, accept_implausible: bool, as_json: bool, **asked: Any
+) -> None:
     """Read a file of another program into a model.
 
     FILE holds force curves in any known layout (docs/reference/force-files.md), or a vibration: AHAP,
@@ -108,7 +113,8 @@ def import_(file: Path, stroke: str, output: Path, as_json: bool, **asked: Any) 
     ui.check_output(output, MODEL_SUFFIX)
     if output.exists() and output.samefile(file):
         raise click.UsageError(f"{output} is the file itself; give the model another name")
-    found = import_file(file, ImportSettings(stroke=Stroke(stroke), **asked))
+    how = FitSettings(accept_implausible=accept_implausible)
+    found = import_file(file, ImportSettings(stroke=Stroke(stroke), fit=how, **asked))
     save_model(found.model, output)
     if as_json:
         ui.print_json({**found.to_dict(), "path": str(output)})

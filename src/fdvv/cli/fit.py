@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from fdvv.button.fit import FitSettings, FolderFit, ModelFit, fit_file, fit_files, measured_files, summarise
+from fdvv.button.plausible import OPTION
 from fdvv.cli import ui
 from fdvv.model.file import MODEL_SUFFIX, save_model
 from fdvv.model.fit import FitMethod
@@ -38,6 +39,7 @@ def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) ->
     default=0.0,
     help="Sigma of a Gaussian before the fit; errors are against the raw curve.",
 )
+@ui.option(OPTION, is_flag=True, help="Fit also what cannot be a button's force and travel.")
 @ui.option("-o", "--output", type=ui.PATH, help="Where to write the model (a folder's models: a folder).")
 @ui.option(
     "--max-rmse-cN", "max_rmse_cN", type=ui.Force(min=0), help="Exit status 1 above this error of a curve."

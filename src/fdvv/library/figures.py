@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fdvv.button.fit import MeasuredParts, measured_parts, one_line
+from fdvv.button.fit import MeasuredParts, measured_parts, one_line, refuse_implausible
 from fdvv.errors import FdvvError, InputError
 from fdvv.formats.force.read import read_force_file
 from fdvv.io.documents import MODEL, own_kind
@@ -119,6 +119,7 @@ def read_file(path: Path) -> ReadFile:
     file = read_force_file(path)
     try:
         parts = measured_parts(file)
+        refuse_implausible(path, parts.implausible)
         name = one_line(file.name)[:LONGEST_name].strip() or "unnamed"
         return ReadFile(polyline_model(parts, name), file.format, parts)
     except InputError:

@@ -47,10 +47,12 @@ def read_plain_csv(source: Path, lines: Sequence[str], stroke: Stroke | None, no
         raise refusal(source, "line 1", reason, remedy)
     at, separator, columns = found
     form = FORMATS.get(tuple(c.title.lower() for c in columns), "plain-csv")
+    width = len(columns)
     columns = [c for c in columns if c.title not in _IGNORED.get(form, ())]
     table = body(source, lines, at + 1, separator)
     comma = separator != "," and any(re.match(r"^\s*-?\d+,\d+\s*$", c) for row in table.rows[:5] for c in row)
     table = Table(source, table.rows, table.first_line, comma)
+    table.check_width(width)
     _tell_unread(columns, notes)
     forces = [c for c in columns if c.quantity is Quantity.FORCE]
     _check_distinct(source, at, forces)

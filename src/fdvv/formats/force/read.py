@@ -48,6 +48,9 @@ def base_name(path: Path) -> str:
     return _ENDING.sub("", path.stem) or path.stem
 
 
+MOST_BACK_mm, MOST_BACK_ratio = 1.0, 0.2
+"""A stroke that runs back by more than both is several strokes. Real stages waver by up to 0.73 mm."""
+
 LEAST_TRAVEL_mm = 0.02
 """Below four steps of the finest bench nothing was pressed."""
 
@@ -118,11 +121,23 @@ def _curve(
         track = drop_stuck_probe(track, notes, repeats)
     if not _long_enough(track, notes):
         return None
+    _check_one_stroke(track)
     repair.warn_of_jumps(track, notes)
     speed = repair.mean_velocity_mm_s(track) if velocity is None else velocity
     curve = MeasuredCurve(*repair.rising(track, notes), stroke, speed)
     repair.warn_of_touches(curve, track.where, notes)
     return curve
+
+
+def _check_one_stroke(track: Track) -> None:
+    """Raise ModelError where one column holds several strokes, one after another."""
+    loaded = track.x_mm[track.force_cN > repair.AIR_cN]
+    if loaded.size < 2:
+        return
+    x = loaded if loaded[-1] > loaded[0] else loaded[::-1]
+    back = float((np.maximum.accumulate(x) - x).max())
+    if back > max(MOST_BACK_mm, MOST_BACK_ratio * float(np.ptp(track.x_mm))):
+        raise ModelError(f"{track.where}: the displacement runs back by {back:.2f} mm within one stroke")
 
 
 LARGEST_FILE = 64 * 2**20

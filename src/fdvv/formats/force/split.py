@@ -10,6 +10,8 @@ import numpy as np
 from fdvv.formats.force.types import Notes, RawCycle, Track
 from fdvv.units import FloatArray
 
+CYCLE = "cycle"
+"""Label of the cycles of a run that goes down and up several times, before their numbers."""
 LEAST_RETURN = 0.1
 """A run that goes back by less than this part of its travel has no second stroke."""
 
@@ -71,7 +73,7 @@ def split_run(cycle: RawCycle, notes: Notes) -> list[RawCycle]:
     run = orient(cycle.run, notes)
     bounds = cycle_bounds(run.x_mm)
     return [
-        _split_one(cycle, run.take(part), f"cycle {i + 1}" if len(bounds) > 1 else cycle.label, notes)
+        _split_one(cycle, run.take(part), f"{CYCLE} {i + 1}" if len(bounds) > 1 else cycle.label, notes)
         for i, part in enumerate(bounds)
     ]
 

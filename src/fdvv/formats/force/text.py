@@ -66,6 +66,7 @@ class Table:
             numbers = [self._number(text) for text in texts]
             wrong = np.flatnonzero(np.isnan(numbers))
             if wrong.size:
+                self._check_not_header(row, self.first_line + offset)
                 bad.append((self.first_line + offset, picks[wrong[0]] + 1, texts[wrong[0]]))
             else:
                 kept.append(numbers)
@@ -76,6 +77,25 @@ class Table:
             rest = "the row was" if len(bad) == 1 else f"{len(bad)} such rows of {len(kept) + len(bad)} were"
             notes.say(f"{message}; {rest} left out")
         return self._enough(list(array.T), len(kept) + len(bad), what)
+
+    def _check_not_header(self, row: list[str], line: int) -> None:
+        """Raise InputError at a second header: what follows may be of another button, in other units."""
+        named = {describe(i, title).quantity for i, title in enumerate(row)}
+        if {Quantity.FORCE, Quantity.DISPLACEMENT} <= named or sum(map(_is_haata_title, row)) >= 2:
+            reason = "a second header; the file holds more than one measurement"
+            raise refusal(self.source, f"line {line}", reason, "split it there into files of their own")
+
+    def check_width(self, names: int) -> None:
+        """Raise InputError where most rows hold more filled cells than there are names.
+
+        So they do where decimal commas are also what separates the cells.
+        """
+        wide = sum(any(cell.strip() for cell in row[names:]) for row in self.rows)
+        if wide > 0.5 * len(self.rows):
+            cells = max(len(row) for row in self.rows)
+            reason = f"rows hold up to {cells} cells under {names} names"
+            remedy = "write decimal points, or separate cells with semicolons"
+            raise refusal(self.source, f"from line {self.first_line}", reason, remedy)
 
     def _number(self, text: str) -> float:
         text = text.replace(",", ".") if self.decimal_comma else text
@@ -88,6 +108,10 @@ class Table:
             place = f"from line {self.first_line}" + (f", {what}" if what else "")
             raise refusal(self.source, place, f"only {count} of {of} rows hold numbers")
         return columns
+
+
+def _is_haata_title(cell: str) -> bool:
+    return re.fullmatch(r"(press|release) \d+, [xy]", cell.strip().lower()) is not None
 
 
 def _used_length(rows: list[list[str]], picks: Sequence[int]) -> int:

@@ -63,7 +63,9 @@ def read_highres(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
     units = [unit.strip().lower() for unit in values["UNIT"].split(",")]
     if len(units) != 2 or units[0] not in FORCE_cN or units[1] not in LENGTH_mm:
         raise refusal(source, "UNIT", f"unknown units {values['UNIT'][:20]!r}", "expected gf,mm or the like")
-    force, x = body(source, lines, at + 1).columns([0, 1], notes)
+    table = body(source, lines, at + 1)
+    table.check_width(2)
+    force, x = table.columns([0, 1], notes)
     interval = re.match(r"\d*\.?\d+", values.get("RECORDING RATE", ""))
     # rows left out would bend the clock; then there is none
     clean = not notes.sentences
@@ -77,6 +79,7 @@ def read_tidy(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
     at = first_filled(lines)
     names = [name.strip().lower() for name in lines[at].split(",")]
     table = body(source, lines, at + 1)
+    table.check_width(len(names))
     force, x = table.columns([names.index("force"), names.index("displacement")], notes)
     column = names.index("name")
     titles = [row[column].strip() for row in table.rows if len(row) == 4]

@@ -1,0 +1,194 @@
+"""Can these strokes be a push-button's? Each bound with what it was taken from.
+
+"Real files" are 1,107 of six published collections (ThereminGoat, HaaTa, bluepylons, BuddyOG, Geekboards,
+joaoachando): switches, domes, buckling and bare springs, latching and magnetic keys. A bound lies well beyond
+the extremes of all of them; a button that is stranger still is accepted when asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fdvv.model.curve import MeasuredCurve, Stroke
+from fdvv.model.fit import CurveFit, FitMethod
+from fdvv.units import FloatArray
+
+OPTION = "--accept-implausible"
+
+TRAVEL_mm = (0.1, 15.0)
+"""Real files: 1.49 to 9.7 mm. Data sheets: metal domes 0.15 to 0.35 mm, arcade and piano keys up to 10 mm."""
+
+MEAN_cN = (10.0, 500.0)
+"""Of a press, or of a release alone, over its travel. Real files: 11.9 (a bare spring) to 332 cN (Cherry MX
+Mega Black). Ounces taken for grams of force are 28 times more, pounds 454 times, newtons 102 times,
+millinewtons 10 times less."""
+
+PEAK_cN = 2000.0
+"""Real files: 1012 cN up to the stop, where a bench missed its start. Fingers type with 60 to 250 cN."""
+
+RANGE_ratio = 0.05
+"""Range of the force over its greatest. Real files: 0.79 and more for a press, 0.1 for the release of a bare
+spring of which the file holds the last millimetre; a load cell that hangs has none."""
+
+NOISE_ratio = 0.03
+"""Noise over the range of the force. Real files: at most 0.0135."""
+
+MISFIT_ratio = 0.05
+"""RMSE of 15 or more free control points over the range of the force. Real files: at most 0.022."""
+MISFIT_POINTS = 15
+
+LOSS_ratio = (-0.05, 0.95)
+"""Part of the work of the press that the release does not give back. A button has no motor, so below zero the
+columns are out of step or the strokes exchanged. Real files: -0.023 (noise of a bare spring) to 0.75."""
+
+STOP_APART_mm = 0.25
+"""How much earlier a release may leave the stop than the press reaches it. Real files: at most 0.18 mm."""
+
+END_DROP_ratio = 0.4
+"""How far the press falls at its end below the greatest force of its last quarter, over the greatest force. A
+stop is left when the stage turns, not before. Real files: at most 0.084."""
+
+CYCLES_ratio = 1.3
+"""Greatest over least typical force, and travel, of the cycles of one run. Repeats agree to 2 %; no real file
+holds two buttons in one pair of columns."""
+
+FRAGMENT_mm = 1.0
+"""A press without a stop and without a release is a fragment below this. Real files: all have one of both."""
+
+FASTEST_mm_s = 2000.0
+"""Keystrokes reach 640 mm/s (10 to 90 % of the travel in 5 ms)."""
+
+
+@dataclass(frozen=True)
+class Implausible:
+    """Why strokes are not believed: where, what is wrong, and what may be the cause and its remedy."""
+
+    place: str
+    reason: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.reason}"
+
+
+UNITS = "check the units in the header"
+COLUMNS = "check which column is which, and its units"
+ROWS = "check that force and displacement of a row belong together"
+
+
+def implausible_strokes(strokes: Sequence[MeasuredCurve], stop_found: bool) -> Iterator[Implausible]:
+    """Find what cannot be in strokes cut from contact to bottom-out; the likeliest cause first.
+
+    strokes : in the displacement of the model. stop_found : whether the first of them reached its stop.
+    """
+    for stroke in strokes:
+        yield from _of_stroke(str(stroke.stroke), stroke)
+        if stroke.stroke is strokes[0].stroke:
+            yield from _of_mean(str(stroke.stroke), stroke)
+    if len(strokes) == 1 and not stop_found and np.ptp(strokes[0].displacement_mm) < FRAGMENT_mm:
+        travel = f"ends after {np.ptp(strokes[0].displacement_mm):.2f} mm without a stop or a release"
+        yield Implausible(str(strokes[0].stroke), travel, "check that the file is whole")
+    for press in strokes:
+        for release in strokes:
+            pair = (press.stroke, release.stroke) == (Stroke.PRESS, Stroke.RELEASE)
+            if pair and press.velocity_mm_s == release.velocity_mm_s:
+                yield from _of_pair(press, release)
+
+
+def _of_stroke(where: str, stroke: MeasuredCurve) -> Iterator[Implausible]:
+    x, force, _ = stroke.by_displacement()
+    travel, highest, span = float(x[-1] - x[0]), float(force.max()), float(np.ptp(force))
+    if not TRAVEL_mm[0] <= travel <= TRAVEL_mm[1]:
+        yield Implausible(where, f"travels {travel:.4g} mm, not {_range(TRAVEL_mm)} mm", COLUMNS)
+    if highest > PEAK_cN:
+        yield Implausible(where, f"the force reaches {highest:.4g} cN, more than {PEAK_cN:g}", UNITS)
+    if span < RANGE_ratio * highest:
+        reason = f"the force hardly changes, from {highest - span:.4g} to {highest:.4g} cN"
+        yield Implausible(where, reason, "check the load cell and the force column")
+    noise = noise_cN(force)
+    if noise > NOISE_ratio * span:
+        reason = (
+            f"the force jumps by {noise:.3g} cN (RMS) from sample to sample, over a range of {span:.4g} cN"
+        )
+        yield Implausible(where, reason, ROWS)
+    if stroke.velocity_mm_s is not None and stroke.velocity_mm_s > FASTEST_mm_s:
+        reason = f"its speed is {stroke.velocity_mm_s:.4g} mm/s, more than {FASTEST_mm_s:g}"
+        yield Implausible(where, reason, "check the unit of time")
+
+
+def _of_mean(where: str, stroke: MeasuredCurve) -> Iterator[Implausible]:
+    x, force, _ = stroke.by_displacement()
+    mean = float(np.trapezoid(force, x) / (x[-1] - x[0]))
+    if not MEAN_cN[0] <= mean <= MEAN_cN[1]:
+        yield Implausible(where, f"the mean force is {mean:.4g} cN, not {_range(MEAN_cN)} cN", UNITS)
+
+
+def _of_pair(press: MeasuredCurve, release: MeasuredCurve) -> Iterator[Implausible]:
+    (x, force, _), (back_x, back, _) = press.by_displacement(), release.by_displacement()
+    grid = np.linspace(max(x[0], back_x[0]), min(x[-1], back_x[-1]), 400)
+    if grid[0] >= grid[-1]:
+        yield Implausible("release", "shares no displacement with the press", ROWS)
+        return
+    if x[-1] - back_x[-1] > STOP_APART_mm:
+        reason = f"leaves the stop {x[-1] - back_x[-1]:.2f} mm before where the press reaches it"
+        yield Implausible("release", reason, ROWS)
+    put_in = float(np.trapezoid(np.interp(grid, x, force), grid))
+    loss = 1 - float(np.trapezoid(np.interp(grid, back_x, back), grid)) / put_in
+    if loss < LOSS_ratio[0]:
+        reason = f"gives back {100 * -loss:.0f} % more work than the press put in"
+        yield Implausible(
+            "release", reason, "check which stroke is which, and " + ROWS.removeprefix("check ")
+        )
+    elif loss > LOSS_ratio[1]:
+        yield Implausible("release", f"gives back only {100 * (1 - loss):.0f} % of the work", ROWS)
+
+
+def implausible_end(press: MeasuredCurve) -> Iterator[Implausible]:
+    """Find a whole press, air and stop included, whose force falls before the stage turns."""
+    x, force, _ = press.by_displacement()
+    late = force[x >= x[-1] - 0.25 * (x[-1] - x[0])]
+    drop = float(late.max() - force[-1])
+    if drop > END_DROP_ratio * float(force.max()):
+        reason = f"the force falls by {drop:.4g} cN before the deepest displacement"
+        yield Implausible("end of the press", reason, ROWS)
+
+
+def implausible_cycles(cycles: Sequence[MeasuredCurve]) -> Iterator[Implausible]:
+    """Find cycles of one run that cannot be of one button."""
+    figures = {
+        "force": [float(np.median(c.force_cN[c.force_cN >= 0.2 * c.force_cN.max()])) for c in cycles],
+        "range of displacement": [float(np.ptp(c.displacement_mm)) for c in cycles],
+    }
+    for what, values in figures.items():
+        if values and max(values) > CYCLES_ratio * max(min(values), 1e-9):
+            units = "mm" if what != "force" else "cN"
+            reason = f"the {what} of its cycles goes from {min(values):.3g} to {max(values):.3g} {units}"
+            yield Implausible("run", reason, "put each button in a file of its own")
+
+
+def implausible_fit(fit: CurveFit, measured: MeasuredCurve) -> Iterator[Implausible]:
+    """Find a stroke that as many free control points as this cannot follow."""
+    enough = fit.method is FitMethod.ADAPTIVE and fit.curve.control_points_cN.size >= MISFIT_POINTS
+    span = float(np.ptp(measured.by_displacement()[1]))
+    if enough and fit.smoothing_mm == 0 and fit.rmse_cN > MISFIT_ratio * span:
+        reason = f"no smooth curve follows it: RMSE {fit.rmse_cN:.3g} cN over a range of {span:.4g} cN"
+        yield Implausible(str(fit.curve.stroke), reason, ROWS)
+
+
+def noise_cN(force_cN: FloatArray) -> float:
+    """Estimate the noise of successive samples: from what each differs from the mean of its neighbours.
+
+    After Gasser, Sroka and Jennen-Steinmetz 1986, with the median in place of the mean, so that steps and
+    clicks do not count. 0 for fewer than three samples.
+    """
+    if force_cN.size < 3:
+        return 0.0
+    apart = force_cN[1:-1] - 0.5 * (force_cN[:-2] + force_cN[2:])
+    return float(1.4826 * np.sqrt(2 / 3) * np.median(np.abs(apart)))
+
+
+def _range(bounds: tuple[float, float]) -> str:
+    return f"{bounds[0]:g} to {bounds[1]:g}"
