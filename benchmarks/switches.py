@@ -16,8 +16,9 @@ import numpy as np
 from fdvv.errors import InputError
 from fdvv.formats.force.average import average_by_velocity
 from fdvv.formats.force.read import find_force_files, read_force_file
+from fdvv.model.bump_kept import BUMP_KEPT_ratio
 from fdvv.model.curve import MeasuredCurve, Stroke
-from fdvv.model.fit import BUMP_KEPT_ratio, CurveFit, FitMethod, active_part, fit_curve
+from fdvv.model.fit import CurveFit, FitMethod, active_part, fit_curve
 
 WAYS: dict[str, Callable[[MeasuredCurve], CurveFit]] = {
     "free knots, degree 2 (default)": fit_curve,

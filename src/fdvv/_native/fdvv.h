@@ -19,6 +19,17 @@ int fdvv_spline_evaluate(long n, int k, const double *t, const double *c, int nu
 double fdvv_spline_free_knots(int n, const double *x, const double *y, const double *w, int degree, int m,
                               double spacing, int exchanges, double *t, double *c);
 
+/* Search on from the knots in t, which are replaced; the rest is as above. */
+double fdvv_spline_refine(int n, const double *x, const double *y, const double *w, int degree, int m, double spacing,
+                          int exchanges, double *t, double *c);
+
+/* Knots and squared errors of every number of coefficients from most (at most 64) down to least, each found from the one
+ * before by removing a knot. Fewer than most are started with where the samples do not hold as many. Writes errors
+ * [m] and knots[68 m ...], m + degree + 1 of them; both have room for most + 1 sizes, what is below least or above the
+ * start stays as it is. Returns the size started with, or -1 as above. */
+int fdvv_spline_path(int n, const double *x, const double *y, int degree, int least, int most, double spacing,
+                     double *errors, double *knots);
+
 /* -- finger and gesture, shared by the simulations; SI units, x positive downward -- */
 
 /* The finger: a mass driven by a spring and a damper (the muscle), and a pulp with two Maxwell elements. */

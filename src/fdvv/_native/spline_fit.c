@@ -258,6 +258,30 @@ static double squared_error(Problem *p, int m, const double *t, double *c) {
     return error > 0.0 ? error : 0.0;
 }
 
+/* The number of coefficients to start with: as many as wanted, as the samples hold. */
+static int start_size(const Problem *p, int wanted, int m) {
+    int room = (int)((p->x[p->n - 1] - p->x[0]) / p->spacing) - 1, many = wanted;
+    if (many > MAX_COEFFICIENTS) many = MAX_COEFFICIENTS;
+    if (many > p->n / 3) many = p->n / 3;
+    if (many > room + p->degree + 1) many = room + p->degree + 1;
+    return many < m ? m : many;
+}
+
+/* Exchange and move the knots of m coefficients until the search ends. */
+static void refine(Problem *p, int m, int exchanges, double *t) {
+    double trial[MAX_KNOTS + ORDER], best = optimize_knots(p, m, t, 25);
+    for (int k = 0, rank = 0; k < exchanges && rank < m - p->degree - 1; k++) {
+        memcpy(trial, t, sizeof *t * (size_t)(m + p->degree + 1));
+        remove_knot(trial, m + p->degree + 1, least_important(p, m, trial, rank));
+        double error = insert_best(p, m, trial) ? optimize_knots(p, m, trial, 15) : DBL_MAX;
+        if (error < best * (1.0 - 1e-4)) {
+            best = error, rank = 0;
+            memcpy(t, trial, sizeof *t * (size_t)(m + p->degree + 1));
+        } else rank++;
+    }
+    optimize_knots(p, m, t, 40);
+}
+
 double fdvv_spline_free_knots(int n, const double *x, const double *y, const double *w, int degree, int m, double spacing,
                               int exchanges, double *t, double *c) {
     Problem *p = malloc(sizeof *p);
@@ -265,31 +289,51 @@ double fdvv_spline_free_knots(int n, const double *x, const double *y, const dou
         free(p);
         return -1.0;
     }
-    double best_t[MAX_KNOTS + ORDER], trial[MAX_KNOTS + ORDER];
-    int room = (int)((x[n - 1] - x[0]) / spacing) - 1, many = 2 * m + 10;
-    if (many > MAX_COEFFICIENTS) many = MAX_COEFFICIENTS;
-    if (many > n / 3) many = n / 3;
-    if (many > room + degree + 1) many = room + degree + 1;
-    if (many < m) many = m;
-    dense_knots(p, many, trial);
+    double knots[MAX_KNOTS + ORDER];
+    int many = start_size(p, 2 * m + 10, m);
+    dense_knots(p, many, knots);
     for (; many > m; many--) {
-        remove_knot(trial, many + degree + 1, least_important(p, many, trial, 0));
-        if (many - m < 10) optimize_knots(p, many - 1, trial, 1);
+        remove_knot(knots, many + degree + 1, least_important(p, many, knots, 0));
+        if (many - m < 10) optimize_knots(p, many - 1, knots, 1);
     }
-    double best = optimize_knots(p, m, trial, 25);
-    memcpy(best_t, trial, sizeof trial);
-    for (int k = 0, rank = 0; k < exchanges && rank < m - degree - 1; k++) {
-        memcpy(trial, best_t, sizeof trial);
-        remove_knot(trial, m + degree + 1, least_important(p, m, trial, rank));
-        double error = insert_best(p, m, trial) ? optimize_knots(p, m, trial, 15) : DBL_MAX;
-        if (error < best * (1.0 - 1e-4)) {
-            best = error, rank = 0;
-            memcpy(best_t, trial, sizeof trial);
-        } else rank++;
-    }
-    optimize_knots(p, m, best_t, 40);
-    memcpy(t, best_t, sizeof *t * (size_t)(m + degree + 1));
-    best = squared_error(p, m, t, c);
+    refine(p, m, exchanges, knots);
+    memcpy(t, knots, sizeof *t * (size_t)(m + degree + 1));
+    double error = squared_error(p, m, t, c);
     free(p);
-    return best;
+    return error;
+}
+
+int fdvv_spline_path(int n, const double *x, const double *y, int degree, int least, int most, double spacing, double *errors,
+                     double *knots) {
+    Problem *p = malloc(sizeof *p);
+    double *w = malloc(sizeof *w * (size_t)(n > 0 ? n : 1)), t[MAX_KNOTS + ORDER];
+    for (int i = 0; w && i < n; i++) w[i] = 1.0;
+    int many = -1, ready = p && w && most <= MAX_COEFFICIENTS && prepare(p, n, x, y, w, degree, least, spacing);
+    if (ready) {
+        int m = many = start_size(p, most, least);
+        dense_knots(p, m, t);
+        for (optimize_knots(p, m, t, 3);; m--) {
+            errors[m] = squared_error(p, m, t, NULL);
+            memcpy(knots + (size_t)m * MAX_KNOTS, t, sizeof *t * (size_t)(m + degree + 1));
+            if (m == least) break;
+            remove_knot(t, m + degree + 1, least_important(p, m, t, 0));
+            optimize_knots(p, m - 1, t, 1);
+        }
+    }
+    free(w);
+    free(p);
+    return many;
+}
+
+double fdvv_spline_refine(int n, const double *x, const double *y, const double *w, int degree, int m, double spacing,
+                          int exchanges, double *t, double *c) {
+    Problem *p = malloc(sizeof *p);
+    if (!p || !prepare(p, n, x, y, w, degree, m, spacing)) {
+        free(p);
+        return -1.0;
+    }
+    refine(p, m, exchanges, t);
+    double error = squared_error(p, m, t, c);
+    free(p);
+    return error;
 }

@@ -26,8 +26,9 @@ from fdvv.formats.force.split import CYCLE
 from fdvv.formats.force.types import ForceFile
 from fdvv.io.documents import own_kind
 from fdvv.model.bump import CONTACT_cN, find_bottom_out_mm, find_contact_mm
+from fdvv.model.bump_kept import BUMP_KEPT_ratio
 from fdvv.model.curve import MeasuredCurve, Stroke, reading_order
-from fdvv.model.fit import BUMP_KEPT_ratio, CurveFit, FitMethod, active_part, fit_curve
+from fdvv.model.fit import CurveFit, FitMethod, active_part, fit_curve
 from fdvv.model.landmarks import CUT_SHORT_mm, Landmarks, landmarks
 from fdvv.model.model import FDVVModel, Provenance
 
@@ -104,6 +105,7 @@ def fit_report(fit: CurveFit) -> dict[str, Any]:
         "method": str(fit.method),
         "smoothing_mm": fit.smoothing_mm,
         "bump_kept_ratio": fit.bump_kept_ratio,
+        "bump_kept_samples_ratio": fit.bump_kept_samples_ratio,
         "bic_star": fit.bic_star,
         "samples": fit.samples,
         "time_s": fit.time_s,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import math
 import time
 from collections.abc import Iterable
@@ -12,30 +11,27 @@ from typing import Any
 
 import numpy as np
 
-from fdvv._native import address, library
 from fdvv.errors import FitError
 from fdvv.model import bspline
-from fdvv.model.bump import find_bottom_out_mm, find_bump, find_contact_mm
+from fdvv.model.bump import find_bottom_out_mm, find_contact_mm
+from fdvv.model.bump_kept import felt_ratio, is_felt, is_kept, sampled_ratio
 from fdvv.model.curve import ForceCurve, MeasuredCurve
+from fdvv.model.fit_holds import hold_bump, hold_floor
+from fdvv.model.knot_search import LARGEST, Spline, free_knots, knot_path, refine
 from fdvv.units import FloatArray
 
-CONTROL_POINTS = 15
+PAPERS_CONTROL_POINTS = 15
 COMPLEXITY_PENALTY = 2.5
 """P of the paper's BIC*."""
 
 SCAN_SIZES = range(5, 41)
-EXCHANGES = 15
-"""Knot exchanges to try before the search ends; twice as many gained nothing on 96 real strokes."""
-
-LARGEST = 64
-
-BUMP_KEPT_ratio = 0.95
-"""A fit that keeps less of its bump is repeated with more weight within BUMP_REACH_mm of peak and valley."""
-BUMP_ROUNDS = 8
-BUMP_COST = 1.5
-"""The error may grow by this factor for the bump's sake, no more."""
-BUMP_WEIGHT = 2.0
-BUMP_REACH_mm = 0.1
+AUTO_LEAST = 5
+AUTO_SAMPLES = 16
+"""With fewer distinct displacements the number cannot be chosen."""
+AUTO_EXCHANGES = 3
+"""Knot exchanges once a size is chosen; fifteen gained nothing on 118 real strokes."""
+AUTO_STEP = 4
+"""Control points added while the bump is not kept and BIC* is not above that of 15."""
 
 
 class FitMethod(StrEnum):
@@ -58,7 +54,9 @@ class CurveFit:
     rmse_cN, max_cN : error against the raw curve, each distinct displacement counting once.
     rows_rmse_cN : error against every raw row; rows that repeat a displacement scatter around their mean,
         which no curve can follow.
-    bump_kept_ratio : drop of the fitted bump over that of the raw curve; None if the raw has no bump.
+    bump_kept_ratio : drop of the fitted bump over that of the raw curve, as means over 50 um, no coarser than
+        a finger; None if the raw has no bump.
+    bump_kept_samples_ratio : the same with medians of 5 samples, which no finger resolves.
     bic_star : the paper's criterion, lower is better.
     samples : number of distinct displacements.
     smoothing_mm : sigma of the Gaussian that was applied before the fit; 0 if none.
@@ -71,6 +69,7 @@ class CurveFit:
     max_cN: float
     rows_rmse_cN: float
     bump_kept_ratio: float | None
+    bump_kept_samples_ratio: float | None
     bic_star: float
     samples: int
     smoothing_mm: float
@@ -101,60 +100,67 @@ def smooth(x_mm: FloatArray, force_cN: FloatArray, sigma_mm: float) -> FloatArra
     return np.interp(x_mm, grid, smoothed)
 
 
-def _adaptive(
-    x: FloatArray, y: FloatArray, degree: int, size: int, weight: FloatArray | None = None
-) -> tuple[FloatArray, FloatArray]:
-    """Place the knots freely; no two closer than the samples, so that samples hold every basis function."""
-    t, c = np.zeros(size + degree + 1), np.zeros(size)
-    weight = np.ones_like(x) if weight is None else weight
-    x, y, weight = (np.ascontiguousarray(column) for column in (x, y, weight))
-    spacing = min(float(np.median(np.diff(x))), (x[-1] - x[0]) / (2 * size))
-    search = library().fdvv_spline_free_knots
-    search.restype = ctypes.c_double
-    samples = (x.size, address(x), address(y), address(weight))
-    error = search(*samples, degree, size, ctypes.c_double(spacing), EXCHANGES, address(t), address(c))
-    if error < 0:
-        raise FitError(f"{size} control points of degree {degree} cannot be fitted to {x.size} samples")
-    return t, c
-
-
-def _knots_and_points(
-    x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size: int
-) -> tuple[FloatArray, FloatArray]:
+def _splined(x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size: int) -> Spline:
     most = min(LARGEST, x.size)
     if not degree < size <= most:
         takes = f"takes {degree + 1} to {most} control points, got {size}"
         raise FitError(f"degree {degree} with {x.size} distinct displacements {takes}")
     if method is FitMethod.ADAPTIVE:
-        return _adaptive(x, y, degree, size)
+        return free_knots(x, y, degree, size)
     t = bspline.uniform_knots(x[0], x[-1], size, degree)
     return t, bspline.least_squares(t, degree, x, y)
 
 
-def _hold_bump(
-    x: FloatArray, y: FloatArray, degree: int, t: FloatArray, c: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Repeat a fit that lost more than 5 % of its bump, each time with more weight on peak and valley.
+def _held(x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size: int) -> Spline:
+    """Fit a number of control points; free knots keep the bump, and no force lies below the measured ones."""
 
-    Least squares cares for the sum of errors, a finger for the snap. Returns the first fit that keeps the
-    bump; the plain one if none does before the error has grown by half.
+    def search(x: FloatArray, y: FloatArray, weight: FloatArray) -> Spline:
+        return free_knots(x, y, degree, size, weight)
+
+    found = _splined(x, y, method, degree, size)
+    if method is FitMethod.ADAPTIVE:
+        found = hold_bump(x, y, degree, found, search, is_felt)
+        return hold_floor(x, y, degree, found, search)
+    return hold_floor(x, y, degree, found, lambda *_: found)
+
+
+def _auto(x: FloatArray, y: FloatArray, degree: int, penalty: float) -> Spline:
+    """Choose the number of free control points: the least BIC*, more while the bump is not kept.
+
+    Never above the BIC* of 15.
     """
-    bump = find_bump(x, y)
-    if bump is None:
-        return t, c
-    near = np.minimum(np.abs(x - bump.peak_mm), np.abs(x - bump.valley_mm)) < BUMP_REACH_mm
-    weight, trial, bound = np.ones_like(x), (t, c), math.inf
-    for _ in range(BUMP_ROUNDS):
-        fitted = bspline.evaluate(*trial, degree, x)
-        error, fitted_bump = float(np.sum((fitted - y) ** 2)), find_bump(x, fitted, least_drop_cN=0.0)
-        bound = min(bound, BUMP_COST**2 * error)
-        if error > bound:
-            break
-        if fitted_bump and fitted_bump.drop_cN >= BUMP_KEPT_ratio * bump.drop_cN:
-            return trial
-        weight[near] *= BUMP_WEIGHT
-        trial = _adaptive(x, y, degree, c.size, weight)
-    return t, c
+    if x.size < AUTO_SAMPLES:
+        raise FitError(f"auto takes {AUTO_SAMPLES} distinct displacements or more, got {x.size}")
+    papers = _held(x, y, FitMethod.ADAPTIVE, degree, PAPERS_CONTROL_POINTS)
+    bound = _score(x, y, degree, papers, penalty)
+    path = knot_path(x, y, degree, (AUTO_LEAST, min(LARGEST, x.size)))
+    best = min(path, key=lambda size: bic_star(x.size, size, path[size][0], penalty))
+    tried = [papers]
+    # control points first, weight on the bump only where they do not help
+    for hold in (False, True):
+        for size in range(best, max(path) + 1, AUTO_STEP):
+            found = _from_knots(x, y, degree, path[size][1], hold)
+            if _score(x, y, degree, found, penalty) > bound:
+                break
+            if is_kept(x, y, bspline.evaluate(*found, degree, x)):
+                return found
+            tried.append(found)
+    return min(tried, key=lambda spline: _score(x, y, degree, spline, penalty))
+
+
+def _from_knots(x: FloatArray, y: FloatArray, degree: int, knots: FloatArray, hold: bool) -> Spline:
+    def search(x: FloatArray, y: FloatArray, weight: FloatArray) -> Spline:
+        return refine(x, y, degree, knots, AUTO_EXCHANGES, weight)
+
+    found = search(x, y, np.ones_like(x))
+    if hold:
+        found = hold_bump(x, y, degree, found, search, is_kept)
+    return hold_floor(x, y, degree, found, search)
+
+
+def _score(x: FloatArray, y: FloatArray, degree: int, spline: Spline, penalty: float) -> float:
+    squared = float(np.sum((bspline.evaluate(*spline, degree, x) - y) ** 2))
+    return bic_star(x.size, spline[1].size, squared, penalty)
 
 
 def _degree(method: FitMethod, degree: int | None) -> int:
@@ -182,9 +188,7 @@ def scan_sizes(
     for size in sizes:
         if not chosen < size <= min(LARGEST, x.size):
             continue
-        t, c = _knots_and_points(x, y, method, chosen, size)
-        error = float(np.sum((bspline.evaluate(t, c, chosen, x) - y) ** 2))
-        scores[size] = bic_star(x.size, size, error, penalty)
+        scores[size] = _score(x, y, chosen, _splined(x, y, method, chosen, size), penalty)
     return scores
 
 
@@ -198,7 +202,7 @@ def active_part(measured: MeasuredCurve) -> MeasuredCurve:
 def fit_curve(
     measured: MeasuredCurve,
     method: FitMethod | str = FitMethod.ADAPTIVE,
-    control_points: int | None = CONTROL_POINTS,
+    control_points: int | None = PAPERS_CONTROL_POINTS,
     degree: int | None = None,
     smoothing_mm: float = 0.0,
     penalty: float = COMPLEXITY_PENALTY,
@@ -208,7 +212,7 @@ def fit_curve(
     Parameters
     ----------
     method : adaptive (default) or uniform knots.
-    control_points : how many; None lets BIC* choose among 5 to 40.
+    control_points : how many; None lets BIC* choose (uniform knots: among 5 to 40).
     degree : 1 to 3; by default 2 for adaptive knots and 3 for uniform ones.
     smoothing_mm : sigma of a Gaussian applied before the fit. 0, the default, fits the curve as measured.
         Errors and the bump kept are always against the raw curve.
@@ -224,13 +228,14 @@ def fit_curve(
     if not (math.isfinite(smoothing_mm) and smoothing_mm >= 0):
         raise FitError(f"smoothing_mm must be 0 or more, got {smoothing_mm}")
     y = smooth(x, raw, smoothing_mm) if smoothing_mm else raw
-    if control_points is None:
-        smoothed = MeasuredCurve(x, y, measured.stroke, measured.velocity_mm_s)
-        by_size = scan_sizes(smoothed, method, degree=chosen, penalty=penalty)
-        control_points = min(by_size, key=by_size.__getitem__, default=0)
-    t, c = _knots_and_points(x, y, method, chosen, control_points)
-    if method is FitMethod.ADAPTIVE:
-        t, c = _hold_bump(x, y, chosen, t, c)
+    if control_points is None and method is FitMethod.ADAPTIVE:
+        t, c = _auto(x, y, chosen, penalty)
+    else:
+        if control_points is None:
+            smoothed = MeasuredCurve(x, y, measured.stroke, measured.velocity_mm_s)
+            by_size = scan_sizes(smoothed, method, degree=chosen, penalty=penalty)
+            control_points = min(by_size, key=by_size.__getitem__, default=0)
+        t, c = _held(x, y, method, chosen, control_points)
     curve = ForceCurve(measured.stroke, measured.velocity_mm_s, chosen, t, c)
     scores = _scores(curve, measured, penalty)
     time_s = time.perf_counter() - started
@@ -243,12 +248,12 @@ def _scores(curve: ForceCurve, measured: MeasuredCurve, penalty: float) -> dict[
     fitted = curve.force_cN(x)
     error = fitted - raw
     rows = curve.force_cN(measured.displacement_mm) - measured.force_cN
-    bump, fitted_bump = find_bump(x, raw), find_bump(x, fitted, least_drop_cN=0.0)
     squared = float(np.sum(error**2))
     return {
         "rmse_cN": math.sqrt(squared / x.size),
         "max_cN": float(np.abs(error).max()),
         "rows_rmse_cN": float(np.sqrt(np.mean(rows**2))),
-        "bump_kept_ratio": fitted_bump.drop_cN / bump.drop_cN if bump and fitted_bump else None,
+        "bump_kept_ratio": felt_ratio(x, raw, fitted),
+        "bump_kept_samples_ratio": sampled_ratio(raw, fitted),
         "bic_star": bic_star(x.size, curve.control_points_cN.size, squared, penalty),
     }
