@@ -107,10 +107,14 @@ def main() -> None:
     first = strokes[0]
     x, y = first.displacement_mm, first.force_cN
     print(f"fit of {SIZE} control points to {x.size} samples; median of repeats, least to greatest")
-    fits = [fit_curve(s) for s in strokes]
+    fits = [fit_curve(s, control_points=SIZE) for s in strokes]
     plain = [plain_free_knots(s.displacement_mm, s.force_cN) for s in strokes[:2]]
     print(
-        row("free knots, fdvv", time_ms(lambda: fit_curve(first)), statistics.median(f.rmse_cN for f in fits))
+        row(
+            "free knots, fdvv",
+            time_ms(lambda: fit_curve(first, control_points=SIZE)),
+            statistics.median(f.rmse_cN for f in fits),
+        )
     )
     print(
         row(
@@ -119,8 +123,10 @@ def main() -> None:
             statistics.median(plain),
         )
     )
-    uniform = statistics.median(fit_curve(s, FitMethod.UNIFORM).rmse_cN for s in strokes)
-    print(row("uniform knots, fdvv (SciPy inside)", time_ms(lambda: fit_curve(first, "uniform")), uniform))
+    uniform = statistics.median(fit_curve(s, FitMethod.UNIFORM, SIZE).rmse_cN for s in strokes)
+    print(
+        row("uniform knots, fdvv (SciPy inside)", time_ms(lambda: fit_curve(first, "uniform", SIZE)), uniform)
+    )
     print(row("BIC* scan of 36 sizes, uniform, fdvv", time_ms(lambda: scan_sizes(first)), None))
     print(row("BIC* scan of 36 sizes, plain SciPy loop", time_ms(lambda: plain_scan(first)), None))
     print(

@@ -21,10 +21,11 @@ from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.model.fit import CurveFit, FitMethod, active_part, fit_curve
 
 WAYS: dict[str, Callable[[MeasuredCurve], CurveFit]] = {
-    "free knots, degree 2 (default)": fit_curve,
-    "free knots, degree 1": lambda m: fit_curve(m, degree=1),
-    "free knots, degree 3": lambda m: fit_curve(m, degree=3),
-    "uniform knots, degree 3 (the paper)": lambda m: fit_curve(m, FitMethod.UNIFORM),
+    "free knots, degree 2, auto (default)": fit_curve,
+    "free knots, degree 2": lambda m: fit_curve(m, control_points=15),
+    "free knots, degree 1": lambda m: fit_curve(m, control_points=15, degree=1),
+    "free knots, degree 3": lambda m: fit_curve(m, control_points=15, degree=3),
+    "uniform knots, degree 3 (the paper)": lambda m: fit_curve(m, FitMethod.UNIFORM, 15),
     "uniform, 8 points": lambda m: fit_curve(m, FitMethod.UNIFORM, 8),
     "uniform, 30 points": lambda m: fit_curve(m, FitMethod.UNIFORM, 30),
     "free knots, degree 2, 8 points": lambda m: fit_curve(m, control_points=8),

@@ -60,7 +60,7 @@ def draw_overview(measured: MeasuredCurve, name: str) -> Figure:
         left, top = fig.add_subplot(grid[:, 0]), fig.add_subplot(grid[0, 1])
         axes = (top, fig.add_subplot(grid[1, 1], sharex=top))
     plot_model(load_builtin("mx-clear"), left)
-    plot_fit(measured, [fit_curve(measured)], axes, title=name)
+    plot_fit(measured, [fit_curve(measured, control_points=15)], axes, title=name)
     top.tick_params(labelbottom=False)
     credit(fig)
     return fig

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from fdvv.button.fit import fit_file
+from fdvv.button.fit import FitSettings, fit_file
 from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.model.file import save_model
 from fdvv.model.fit import fit_curve
@@ -53,7 +53,7 @@ DOME = Provenance(
 
 def switch(name: str, path: Path, kind: str) -> FDVVModel:
     """Fit one bluepylons file and credit it."""
-    found = fit_file(path).model
+    found = fit_file(path, FitSettings(control_points=15)).model
     provenance = Provenance(
         source=f"{found.name} ({kind}), press and release, {path.name}",
         licence="CC BY 4.0",
@@ -75,7 +75,8 @@ def dome() -> FDVVModel:
     for stroke, still_cN in ((Stroke.PRESS, press_cN), (Stroke.RELEASE, np.maximum(press_cN - loop_cN, 0.5))):
         for velocity_mm_s in DOME_VELOCITIES_mm_s:
             gain = 1 + DOME_GAIN_PER_E_FOLD * np.log(velocity_mm_s / DOME_VELOCITIES_mm_s[0])
-            curves.append(fit_curve(MeasuredCurve(x, gain * still_cN, stroke, velocity_mm_s)).curve)
+            measured = MeasuredCurve(x, gain * still_cN, stroke, velocity_mm_s)
+            curves.append(fit_curve(measured, control_points=15).curve)
     return FDVVModel("rubber-dome", travel_mm, tuple(curves), 1.8, 1.8, provenance=DOME)
 
 

@@ -102,7 +102,12 @@ def test_provenance_names_steps_presses_reasons_and_assumptions() -> None:
     provenance = recorded().model.provenance
     assert "11 of 12 presses averaged" in provenance.method
     assert f"left out: did not reach the bottom (take {SHORT_STROKE})" in provenance.method
-    for step in ("clocks joined on", "filter of 0.33 ms undone", "2 slow probes", "15 control points"):
+    for step in (
+        "clocks joined on",
+        "filter of 0.33 ms undone",
+        "2 slow probes",
+        "BIC*-chosen control points",
+    ):
         assert step in provenance.method
     assert any("moves 3 g" in assumption for assumption in provenance.assumptions)
     assert any("tip weighs 2 g" in assumption for assumption in provenance.assumptions)

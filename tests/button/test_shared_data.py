@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.button.fit import FolderFit, fit_files, measured_files, summarise
+from fdvv.button.fit import FitSettings, FolderFit, fit_files, measured_files, summarise
+from fdvv.model.bump_kept import BUMP_KEPT_ratio
 from fdvv.model.fit import FitMethod, fit_curve
 
 pytestmark = pytest.mark.shared
@@ -20,7 +21,7 @@ the rest is texture of the raw curves). Both ends are bounds, so that a change o
 
 @pytest.fixture(scope="module")
 def results(shared_data: Path) -> list[FolderFit]:
-    return list(fit_files(measured_files(shared_data / "tg-tidy")))
+    return list(fit_files(measured_files(shared_data / "tg-tidy"), FitSettings(control_points=15)))
 
 
 def test_every_switch_can_be_fitted(results: list[FolderFit]) -> None:
@@ -42,6 +43,30 @@ def test_every_bump_is_kept(results: list[FolderFit]) -> None:
     summary = summarise(results)
     assert summary["bumps"] >= 20
     assert summary["bumps_kept"] == summary["bumps"]
+
+
+def sampled_ratios(results: list[FolderFit]) -> list[float]:
+    fits = [fit for result in results if result.fit for fit in result.fit.fits]
+    return [f.bump_kept_samples_ratio for f in fits if f.bump_kept_samples_ratio is not None]
+
+
+def test_auto_comes_closer_keeps_every_bump_and_pulls_nowhere(
+    shared_data: Path, results: list[FolderFit]
+) -> None:
+    by_fifteen = sampled_ratios(results)
+    results = list(fit_files(measured_files(shared_data / "tg-tidy")))
+    summary = summarise(results)
+    for of_stroke in summary["strokes"].values():
+        assert of_stroke["rmse_cN"]["median"] <= 0.12
+        assert of_stroke["rmse_cN"]["p90"] <= 0.20
+    assert summary["strokes"]["press"]["rmse_cN"]["median"] <= 0.10
+    fits = [(f, m) for r in results if r.fit for f, m in zip(r.fit.fits, r.fit.measured, strict=True)]
+    assert len(by_fifteen) > 20
+    assert min(by_fifteen) < BUMP_KEPT_ratio
+    assert min(sampled_ratios(results)) >= BUMP_KEPT_ratio
+    for fit, measured in fits:
+        x = np.linspace(fit.curve.start_mm, fit.curve.end_mm, 4000)
+        assert fit.curve.force_cN(x).min() >= min(-0.5, measured.force_cN.min() - 0.5)
 
 
 def test_uniform_knots_on_the_same_samples_are_ten_times_farther_off(results: list[FolderFit]) -> None:

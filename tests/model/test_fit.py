@@ -12,7 +12,7 @@ from scipy.interpolate import BSpline
 from fdvv.errors import FitError
 from fdvv.model.bspline import design_matrix
 from fdvv.model.curve import MeasuredCurve, Stroke
-from fdvv.model.fit import FitMethod, bic_star, fit_curve, scan_sizes, smooth
+from fdvv.model.fit import CurveFit, FitMethod, bic_star, fit_curve, scan_sizes, smooth
 from fdvv.units import FloatArray
 
 
@@ -50,7 +50,7 @@ def test_a_curve_that_is_a_spline_of_that_size_is_found_again(degree: int) -> No
 
 
 def test_free_knots_beat_uniform_ones_tenfold_on_a_contact_step() -> None:
-    adaptive, uniform = fit_curve(switch()), fit_curve(switch(), FitMethod.UNIFORM)
+    adaptive, uniform = (fit_curve(switch(), method, 15) for method in FitMethod)
     assert adaptive.curve.control_points_cN.size == uniform.curve.control_points_cN.size == 15
     assert adaptive.rmse_cN < 0.1 * uniform.rmse_cN
     assert adaptive.rmse_cN < 0.13
@@ -79,7 +79,7 @@ def test_rows_that_repeat_a_displacement_count_as_their_mean() -> None:
     stroke = switch(noise_cN=0.0)
     x = np.repeat(stroke.displacement_mm, 2)
     y = np.repeat(stroke.force_cN, 2) + np.tile([-1.0, 1.0], stroke.force_cN.size)
-    doubled, plain = fit_curve(measured(x, y)), fit_curve(stroke)
+    doubled, plain = (fit_curve(m, control_points=15) for m in (measured(x, y), stroke))
     assert doubled.rmse_cN == pytest.approx(plain.rmse_cN, rel=1e-6)
     assert doubled.rows_rmse_cN == pytest.approx(math.hypot(1.0, plain.rmse_cN), rel=1e-6)
     assert doubled.samples == plain.samples
@@ -154,6 +154,8 @@ def test_settings_out_of_range_are_refused(control_points: int, degree: int, smo
 def test_too_few_samples_are_refused_with_the_numbers() -> None:
     few = measured(np.linspace(0, 1, 10), np.linspace(0, 1, 10))
     with pytest.raises(FitError, match="10 distinct displacements takes 3 to 10 control points, got 15"):
+        fit_curve(few, control_points=15)
+    with pytest.raises(FitError, match="auto takes 16 distinct displacements or more, got 10"):
         fit_curve(few)
 
 
@@ -174,13 +176,68 @@ def test_any_rising_samples_give_a_finite_fit_that_holds_to_them(
     assert fit.rmse_cN <= 1.5 * force.std() * (1 + 1e-6)
 
 
+FLOOR_cN = 0.5
+"""What nobody feels: a twelfth of the just noticeable difference at no force."""
+
+
+def lowest_cN(fit: CurveFit) -> float:
+    return float(fit.curve.force_cN(np.linspace(fit.curve.start_mm, fit.curve.end_mm, 5000)).min())
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    rise=st.floats(100, 5000),
+    preload_cN=st.floats(5, 80),
+    pull_cN=st.sampled_from([0.0, 0.0, 3.0, 20.0]),
+    seed=st.integers(0, 1000),
+    size=st.sampled_from([None, 6, 15]),
+    method=st.sampled_from(list(FitMethod)),
+)
+def test_no_fit_falls_below_the_measured_forces(
+    rise: float, preload_cN: float, pull_cN: float, seed: int, size: int | None, method: FitMethod
+) -> None:
+    x = np.arange(0, 3.0, 0.01)
+    force = np.minimum(rise * x, preload_cN + 5 * x) - pull_cN * np.exp(-(((x - 2) / 0.1) ** 2))
+    force += np.random.default_rng(seed).normal(0, 0.1, x.size)
+    fit = fit_curve(measured(x, force), method, size)
+    assert lowest_cN(fit) >= force.min() - FLOOR_cN
+    if force.min() >= -FLOOR_cN:
+        assert lowest_cN(fit) >= -FLOOR_cN
+
+
+def test_a_key_that_pulls_keeps_its_pull() -> None:
+    x = np.arange(0, 3.0, 0.005)
+    force = 30 + 8 * x - 60 * np.exp(-(((x - 2) / 0.2) ** 2))
+    fit = fit_curve(measured(x, force))
+    assert lowest_cN(fit) == pytest.approx(force.min(), abs=0.3)
+    assert force.min() < -10
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    drop_cN=st.floats(0, 40),
+    width_mm=st.floats(0.02, 0.6),
+    noise_cN=st.floats(0.01, 1.0),
+    count=st.integers(16, 600),
+    seed=st.integers(0, 1000),
+)
+def test_auto_never_has_a_higher_bic_star_than_fifteen(
+    drop_cN: float, width_mm: float, noise_cN: float, count: int, seed: int
+) -> None:
+    x = np.linspace(0, 4, count)
+    force = np.minimum(600 * x, 35 + 8 * x) + drop_cN * np.exp(-(((x - 1.4) / width_mm) ** 2))
+    stroke = measured(x, force + np.random.default_rng(seed).normal(0, noise_cN, count))
+    auto, papers = fit_curve(stroke), fit_curve(stroke, control_points=15)
+    assert auto.bic_star <= papers.bic_star + 1e-9 * abs(papers.bic_star)
+
+
 @pytest.mark.shared
 def test_a_real_mx_clear_is_fitted_to_a_quarter_centinewton_with_its_bump(shared_data: Path) -> None:
     table = np.loadtxt(
         shared_data / "tg-strokes" / "csv_output" / "Cherry MX Clear.downstroke.csv", delimiter=","
     )
     keep = table[:, 0] < 4.0
-    fit = fit_curve(measured(table[keep, 0], table[keep, 1] * 0.980665))
+    fit = fit_curve(measured(table[keep, 0], table[keep, 1] * 0.980665), control_points=15)
     # both sides: a much better figure would mean that the measure changed
     assert 0.15 < fit.rmse_cN < 0.35
     assert fit.bump_kept_ratio is not None

@@ -38,13 +38,13 @@ DECIMALS_mm = 6
 
 @dataclass(frozen=True)
 class FitSettings:
-    """How to fit; the fields are fdvv.model.fit.fit_curve's.
+    """How to fit; the fields are fdvv.model.fit.fit_curve's. control_points : the paper has 15; None is auto.
 
     accept_implausible : fit also what fdvv.button.plausible doubts; the doubt becomes a warning.
     """
 
     method: FitMethod = FitMethod.ADAPTIVE
-    control_points: int | None = 15
+    control_points: int | None = None
     degree: int | None = None
     smoothing_mm: float = 0.0
     accept_implausible: bool = False

@@ -9,12 +9,12 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from fdvv.button.fit import ModelFit, fit_file, fit_report
+from fdvv.button.fit import FitSettings, ModelFit, fit_file, fit_report
 from fdvv.compensation.method import Tuning
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.contract import Device
 from fdvv.model.file import load_builtin
-from fdvv.model.fit import CurveFit, FitMethod, fit_curve, scan_sizes
+from fdvv.model.fit import PAPERS_CONTROL_POINTS, CurveFit, FitMethod, fit_curve, scan_sizes
 from fdvv.model.model import FDVVModel
 from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
 from fdvv.rendering.evaluation.vibration_presses import Playback
@@ -121,9 +121,9 @@ def demo(
 
 def _fit_switch(path: Path, stage: Stage) -> SwitchFit:
     stage("fitting the switch", 0, 3)
-    adaptive = fit_file(path)
+    adaptive = fit_file(path, FitSettings(control_points=PAPERS_CONTROL_POINTS))
     stage("fitting the switch", 1, 3)
-    uniform = tuple(fit_curve(m, FitMethod.UNIFORM) for m in adaptive.measured)
+    uniform = tuple(fit_curve(m, FitMethod.UNIFORM, PAPERS_CONTROL_POINTS) for m in adaptive.measured)
     stage("fitting the switch", 2, 3)
     scan = {str(m): scan_sizes(adaptive.measured[0], m) for m in FitMethod}
     stage("fitting the switch", 3, 3)

@@ -30,7 +30,10 @@ def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) ->
 @click.argument("path", type=ui.EXISTING)
 @ui.choice_option("--method", ("adaptive", "uniform"), help="Knots where needed, or the paper's equal spans.")
 @ui.option(
-    "--control-points", callback=_control_points, default="15", help="Per curve; 'auto' lets BIC* choose."
+    "--control-points",
+    callback=_control_points,
+    default="auto",
+    help="Per curve, 4 to 64; 'auto' lets BIC* choose and keeps the bump, 15 is the paper's.",
 )
 @ui.option("--degree", type=click.IntRange(1, 3), help="Of the spline; 2 for adaptive, 3 for uniform knots.")
 @ui.option(

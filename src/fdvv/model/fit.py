@@ -202,7 +202,7 @@ def active_part(measured: MeasuredCurve) -> MeasuredCurve:
 def fit_curve(
     measured: MeasuredCurve,
     method: FitMethod | str = FitMethod.ADAPTIVE,
-    control_points: int | None = PAPERS_CONTROL_POINTS,
+    control_points: int | None = None,
     degree: int | None = None,
     smoothing_mm: float = 0.0,
     penalty: float = COMPLEXITY_PENALTY,
@@ -212,7 +212,8 @@ def fit_curve(
     Parameters
     ----------
     method : adaptive (default) or uniform knots.
-    control_points : how many; None lets BIC* choose (uniform knots: among 5 to 40).
+    control_points : how many; None, the default, lets BIC* choose (uniform knots: among 5 to 40); the paper
+        has 15.
     degree : 1 to 3; by default 2 for adaptive knots and 3 for uniform ones.
     smoothing_mm : sigma of a Gaussian applied before the fit. 0, the default, fits the curve as measured.
         Errors and the bump kept are always against the raw curve.
