@@ -15,9 +15,10 @@ from fdvv.button.plausible import (
     OPTION,
     Implausible,
     implausible_cycles,
-    implausible_end,
     implausible_fit,
+    implausible_start,
     implausible_strokes,
+    implausible_whole,
 )
 from fdvv.errors import FdvvError, InputError
 from fdvv.formats.force.average import Averaged, average_by_velocity
@@ -31,6 +32,8 @@ from fdvv.model.curve import MeasuredCurve, Stroke, reading_order
 from fdvv.model.fit import CurveFit, FitMethod, active_part, fit_curve
 from fdvv.model.landmarks import CUT_SHORT_mm, Landmarks, landmarks
 from fdvv.model.model import FDVVModel, Provenance
+
+STOP_REACH_mm = 0.1
 
 DECIMALS_mm = 6
 """A nanometre: subtracting the contact leaves noise in the last digits, which nobody should read."""
@@ -200,7 +203,8 @@ def measured_parts(file: ForceFile) -> MeasuredParts:
     zero, travel, stop_found = _zero_and_travel(groups, warnings)
     strokes = [stroke for group in groups for stroke in (group.press, group.release) if stroke is not None]
     parts = []
-    for part in map(active_part, strokes):
+    stop = zero + travel if stop_found else None
+    for part in (_within(active_part(stroke), stop) for stroke in strokes):
         x = np.round(part.displacement_mm - zero, DECIMALS_mm)
         parts.append(MeasuredCurve(x, part.force_cN, part.stroke, part.velocity_mm_s))
     parts.sort(key=reading_order)
@@ -214,7 +218,7 @@ def measured_parts(file: ForceFile) -> MeasuredParts:
         used=sum(len(group.used) for group in groups),
         cycles=len(file.cycles),
         warnings=tuple(dict.fromkeys(warnings)),
-        implausible=(*implausible_strokes(parts, stop_found), *_implausible_whole(file, strokes)),
+        implausible=(*implausible_strokes(parts, stop_found), *_implausible_whole(file, groups, strokes)),
     )
 
 
@@ -229,10 +233,24 @@ def _cut_short(part: MeasuredCurve) -> str:
     )
 
 
-def _implausible_whole(file: ForceFile, strokes: Sequence[MeasuredCurve]) -> Iterator[Implausible]:
+def _within(part: MeasuredCurve, stop_mm: float | None) -> MeasuredCurve:
+    """Cut a stroke at the stop of the first press where it goes on into it: its own stop was missed.
+
+    Strokes of one cycle leave their stop within 0.1 mm of each other.
+    """
+    if stop_mm is None or part.displacement_mm[-1] <= stop_mm + STOP_REACH_mm:
+        return part
+    return part.between(float(part.displacement_mm[0]), stop_mm)
+
+
+def _implausible_whole(
+    file: ForceFile, groups: Sequence[Averaged], strokes: Sequence[MeasuredCurve]
+) -> Iterator[Implausible]:
     for stroke in strokes:
-        if stroke.stroke is Stroke.PRESS:
-            yield from implausible_end(stroke)
+        yield from implausible_whole(stroke)
+    for group in groups:
+        if group.press is not None and group.release is not None:
+            yield from implausible_start(group.press, group.release)
     of_run = [c.press or c.release for c in file.cycles if c.label.startswith(CYCLE)]
     yield from implausible_cycles([stroke for stroke in of_run if stroke is not None])
 

@@ -26,8 +26,9 @@ MEAN_cN = (10.0, 500.0)
 Mega Black). Ounces taken for grams of force are 28 times more, pounds 454 times, newtons 102 times,
 millinewtons 10 times less."""
 
-PEAK_cN = 2000.0
-"""Real files: 1012 cN up to the stop, where a bench missed its start. Fingers type with 60 to 250 cN."""
+PEAK_cN, WHOLE_cN = 2000.0, 4000.0
+"""Up to the stop, and with it. Real files: 1012 cN where the stop's start was missed; benches go on to 200,
+255 or 1200 gf. Fingers type with 60 to 250 cN."""
 
 RANGE_ratio = 0.05
 """Range of the force over its greatest. Real files: 0.79 and more for a press, 0.1 for the release of a bare
@@ -47,16 +48,23 @@ columns are out of step or the strokes exchanged. Real files: -0.023 (noise of a
 STOP_APART_mm = 0.25
 """How much earlier a release may leave the stop than the press reaches it. Real files: at most 0.18 mm."""
 
-END_DROP_ratio = 0.4
-"""How far the press falls at its end below the greatest force of its last quarter, over the greatest force. A
-stop is left when the stage turns, not before. Real files: at most 0.084."""
+END_DROP_ratio = {Stroke.PRESS: 0.4, Stroke.RELEASE: 0.6}
+"""How far a stroke falls at its deepest place below its greatest force, over that force. A stop is left when
+the stage turns, not before. Real files: at most 0.084 on the press, 0.34 on the release."""
 
-CYCLES_ratio = 1.3
+BEGINS_cN, FURTHER_mm = 10.0, 0.5
+"""A press that begins with more force than this while its release goes on further than this was cut at its
+start. Real files: never both; 0.2 mm with more force."""
+
+CYCLES_ratio = 1.15
 """Greatest over least typical force, and travel, of the cycles of one run. Repeats agree to 2 %; no real file
 holds two buttons in one pair of columns."""
 
 FRAGMENT_mm = 1.0
 """A press without a stop and without a release is a fragment below this. Real files: all have one of both."""
+
+MISSING_mm, MISSING_steps = 0.5, 20.0
+"""A stretch of the travel without a sample, longer than this and than so many steps. Real files: 0.33 mm."""
 
 FASTEST_mm_s = 2000.0
 """Keystrokes reach 640 mm/s (10 to 90 % of the travel in 5 ms)."""
@@ -103,6 +111,10 @@ def _of_stroke(where: str, stroke: MeasuredCurve) -> Iterator[Implausible]:
     travel, highest, span = float(x[-1] - x[0]), float(force.max()), float(np.ptp(force))
     if not TRAVEL_mm[0] <= travel <= TRAVEL_mm[1]:
         yield Implausible(where, f"travels {travel:.4g} mm, not {_range(TRAVEL_mm)} mm", COLUMNS)
+    step = np.diff(x)
+    if step.max() > max(MISSING_mm, MISSING_steps * float(np.median(step))):
+        reason = f"{step.max():.2f} mm of its travel are missing from {x[int(np.argmax(step))]:.2f} mm on"
+        yield Implausible(where, reason, "check that the file is whole")
     if highest > PEAK_cN:
         yield Implausible(where, f"the force reaches {highest:.4g} cN, more than {PEAK_cN:g}", UNITS)
     if span < RANGE_ratio * highest:
@@ -146,14 +158,26 @@ def _of_pair(press: MeasuredCurve, release: MeasuredCurve) -> Iterator[Implausib
         yield Implausible("release", f"gives back only {100 * (1 - loss):.0f} % of the work", ROWS)
 
 
-def implausible_end(press: MeasuredCurve) -> Iterator[Implausible]:
-    """Find a whole press, air and stop included, whose force falls before the stage turns."""
-    x, force, _ = press.by_displacement()
-    late = force[x >= x[-1] - 0.25 * (x[-1] - x[0])]
-    drop = float(late.max() - force[-1])
-    if drop > END_DROP_ratio * float(force.max()):
+def implausible_whole(stroke: MeasuredCurve) -> Iterator[Implausible]:
+    """Find what cannot be in a whole stroke, air and stop included."""
+    _, force, _ = stroke.by_displacement()
+    highest = float(force.max())
+    if highest > WHOLE_cN:
+        reason = f"the force reaches {highest:.4g} cN in the stop, more than {WHOLE_cN:g}"
+        yield Implausible(str(stroke.stroke), reason, UNITS)
+    drop = highest - float(force[-1])
+    if drop > END_DROP_ratio[stroke.stroke] * highest:
         reason = f"the force falls by {drop:.4g} cN before the deepest displacement"
-        yield Implausible("end of the press", reason, ROWS)
+        yield Implausible(f"deep end of the {stroke.stroke}", reason, ROWS)
+
+
+def implausible_start(press: MeasuredCurve, release: MeasuredCurve) -> Iterator[Implausible]:
+    """Find a whole press whose beginning is missing, by its release."""
+    further = float(press.displacement_mm[0] - release.displacement_mm[0])
+    force_cN = float(press.by_displacement()[1][0])
+    if further > FURTHER_mm and force_cN > BEGINS_cN:
+        reason = f"begins at {force_cN:.4g} cN, and the release goes on for {further:.2f} mm"
+        yield Implausible("press", reason, "check that the file is whole")
 
 
 def implausible_cycles(cycles: Sequence[MeasuredCurve]) -> Iterator[Implausible]:

@@ -30,6 +30,8 @@ AUTO_SAMPLES = 16
 """With fewer distinct displacements the number cannot be chosen."""
 AUTO_EXCHANGES = 3
 """Knot exchanges once a size is chosen; fifteen gained nothing on 118 real strokes."""
+MOST_SAMPLES = 8192
+"""More are averaged in groups for the search; scores are against all of them."""
 AUTO_STEP = 4
 """Control points added while the bump is not kept and BIC* is not above that of 15."""
 
@@ -229,6 +231,7 @@ def fit_curve(
     if not (math.isfinite(smoothing_mm) and smoothing_mm >= 0):
         raise FitError(f"smoothing_mm must be 0 or more, got {smoothing_mm}")
     y = smooth(x, raw, smoothing_mm) if smoothing_mm else raw
+    x, y = _grouped(x, y)
     if control_points is None and method is FitMethod.ADAPTIVE:
         t, c = _auto(x, y, chosen, penalty)
     else:
@@ -241,6 +244,19 @@ def fit_curve(
     scores = _scores(curve, measured, penalty)
     time_s = time.perf_counter() - started
     return CurveFit(curve, method, **scores, samples=x.size, smoothing_mm=smoothing_mm, time_s=time_s)
+
+
+def _grouped(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Average groups of successive samples, both ends kept, so that at most MOST_SAMPLES remain."""
+    if x.size <= MOST_SAMPLES:
+        return x, y
+    starts = np.arange(1, x.size - 1, math.ceil((x.size - 2) / (MOST_SAMPLES - 2)))
+    counts = np.diff(np.append(starts, x.size - 1))
+
+    def means(values: FloatArray) -> FloatArray:
+        return np.concatenate([values[:1], np.add.reduceat(values[:-1], starts) / counts, values[-1:]])
+
+    return means(x), means(y)
 
 
 def _scores(curve: ForceCurve, measured: MeasuredCurve, penalty: float) -> dict[str, Any]:

@@ -140,7 +140,10 @@ def _check_one_stroke(track: Track) -> None:
         raise ModelError(f"{track.where}: the displacement runs back by {back:.2f} mm within one stroke")
 
 
-LARGEST_FILE = 64 * 2**20
+LARGEST_FILE = 16 * 2**20
+"""Ten times the largest file of the published collections."""
+MOST_LINES, MOST_CELLS = 300_000, 3_000_000
+"""Of a text file: a hundred times the longest published; more would take ten seconds and a gigabyte."""
 Lines = Sequence[str]
 
 READERS: tuple[tuple[Callable[[Lines], bool], Callable[[Path, Lines, Notes], Reading]], ...] = (
@@ -175,7 +178,7 @@ def _read(path: Path, notes: Notes) -> Reading:
     content = _content(path)
     if is_ods(content):
         return read_ods(path, content, notes)
-    lines = decode(path, content, notes)
+    lines = _lines(path, content, notes)
     head = [line for line in lines if line.strip()][:60] or [""]
     for recognise, read in READERS:
         if recognise(head):
@@ -183,11 +186,21 @@ def _read(path: Path, notes: Notes) -> Reading:
     return _strokes_or_table(path, lines, notes)
 
 
+def _lines(path: Path, content: bytes, notes: Notes) -> list[str]:
+    lines = decode(path, content, notes)
+    if len(lines) > MOST_LINES:
+        raise refusal(path, "whole file", f"it has {len(lines)} lines; at most {MOST_LINES} are read")
+    cells = sum(map(content.count, (b",", b";", b"\t")))
+    if cells > MOST_CELLS:
+        raise refusal(path, "whole file", f"it has {cells} cells; at most {MOST_CELLS} are read")
+    return lines
+
+
 def _content(path: Path) -> bytes:
     try:
         size = path.stat().st_size
         if size > LARGEST_FILE:
-            raise refusal(path, "whole file", f"it has {size / 2**20:.0f} MiB; at most 64 are read")
+            raise refusal(path, "whole file", f"it has {size / 2**20:.0f} MiB; at most 16 are read")
         with open_plain(path) as stream:
             return stream.read()
     except OSError as error:
@@ -207,7 +220,7 @@ def _strokes_or_table(path: Path, lines: Lines, notes: Notes) -> Reading:
         notes.say(f"{sibling.name} is not there; the file holds the {stroke.value} only")
         return replace(mine, name=name)
     other_stroke = Stroke.RELEASE if stroke is Stroke.PRESS else Stroke.PRESS
-    theirs = _half(sibling, decode(sibling, _content(sibling), notes), other_stroke, notes)
+    theirs = _half(sibling, _lines(sibling, _content(sibling), notes), other_stroke, notes)
     return Reading(mine.format, name, pair_up(mine.cycles, theirs.cycles))
 
 

@@ -25,7 +25,8 @@ def orient(track: Track, notes: Notes) -> Track:
     """
     x, force = track.x_mm, track.force_cN
     span = float(np.ptp(x))
-    shallow, deep = force[x <= x.min() + 0.05 * span], force[x >= x.max() - 0.05 * span]
+    # a contact step is 2 % of the travel: a wider window would hold it
+    shallow, deep = force[x <= x.min() + 0.01 * span], force[x >= x.max() - 0.01 * span]
     low, high = float(np.median(shallow)), float(np.median(deep))
     if abs(low) > 2.0 * abs(high) and abs(low) > 20.0:
         notes.tally("{places}: displacement counts outwards; its sign was turned", track.where, span)

@@ -22,6 +22,8 @@ LARGEST = 1e12
 """No column of a bench holds more, in any unit; what is larger is a fault and would overflow."""
 LEAST_SAMPLES = 4
 """Fewer samples than coefficients of a cubic are not a curve."""
+OTHER_ratio = 0.1
+NO_VALUE = {"nan", "inf", "-inf", "na", "n/a", "#n/a", "null", "none"}
 REMEDY = "give a file of force and displacement"
 
 
@@ -64,12 +66,13 @@ class Table:
             if not any(texts):
                 continue
             numbers = [self._number(text) for text in texts]
-            wrong = np.flatnonzero(np.isnan(numbers))
-            if wrong.size:
+            wrong = [at for at, number in enumerate(numbers) if number != number]
+            if wrong:
                 self._check_not_header(row, self.first_line + offset)
                 bad.append((self.first_line + offset, picks[wrong[0]] + 1, texts[wrong[0]]))
             else:
                 kept.append(numbers)
+        self._check_not_narrower(rows, picks)
         array = np.array(kept, dtype=np.float64).reshape(len(kept), len(picks))
         if bad:
             line, column, text = bad[0]
@@ -80,10 +83,20 @@ class Table:
 
     def _check_not_header(self, row: list[str], line: int) -> None:
         """Raise InputError at a second header: what follows may be of another button, in other units."""
+        if sum(map(_is_word, row)) < 2:
+            return
         named = {describe(i, title).quantity for i, title in enumerate(row)}
         if {Quantity.FORCE, Quantity.DISPLACEMENT} <= named or sum(map(_is_haata_title, row)) >= 2:
             reason = "a second header; the file holds more than one measurement"
             raise refusal(self.source, f"line {line}", reason, "split it there into files of their own")
+
+    def _check_not_narrower(self, rows: list[list[str]], picks: Sequence[int]) -> None:
+        """Raise InputError where a table of fewer columns goes on in this one."""
+        short = [at for at, row in enumerate(rows) if any(row) and min(picks) < len(row) <= max(picks)]
+        if len(short) > OTHER_ratio * len(rows):
+            reason = f"{len(short)} rows from here on lack cells; another table may go on in this one"
+            remedy = "split it there into files of their own"
+            raise refusal(self.source, f"line {self.first_line + short[0]}", reason, remedy)
 
     def check_width(self, names: int) -> None:
         """Raise InputError where most rows hold more filled cells than there are names.
@@ -108,6 +121,10 @@ class Table:
             place = f"from line {self.first_line}" + (f", {what}" if what else "")
             raise refusal(self.source, place, f"only {count} of {of} rows hold numbers")
         return columns
+
+
+def _is_word(cell: str) -> bool:
+    return any(c.isalpha() for c in cell) and cell.strip().lower() not in NO_VALUE
 
 
 def _is_haata_title(cell: str) -> bool:

@@ -16,6 +16,10 @@ _RAW = re.compile(r"^No\.,Force,Unit,Displacement,Unit\b", re.IGNORECASE)
 _KEY = re.compile(r"^([A-Z0-9][A-Z0-9 ]+) = (.*)$")
 
 
+OTHER_NAMES_ratio = 0.05
+"""More rows than this of another name are of another switch; fewer are a damage."""
+
+
 def is_raw(lines: Sequence[str]) -> bool:
     """Recognise the raw export by its column names under a few lines of statistics."""
     return any(_RAW.match(line) for line in lines[:12])
@@ -84,6 +88,9 @@ def read_tidy(source: Path, lines: Sequence[str], notes: Notes) -> Reading:
     column = names.index("name")
     titles = [row[column].strip() for row in table.rows if len(row) == 4]
     title = max(sorted(set(titles)), key=titles.count, default="") or clean_name(source.stem)
+    if len(titles) - titles.count(title) > OTHER_NAMES_ratio * len(titles) and title:
+        reason = f"{len(set(titles))} names in one file"
+        raise refusal(source, f"column {column + 1}", reason, "put each switch in a file of its own")
     if len(set(titles)) > 1:
         notes.say(f"column {column + 1}: {len(set(titles))} names in one file; {title[:60]!r} was taken")
     return _run("thereminGoat-tidy", title, x, cN_from_gf(force))

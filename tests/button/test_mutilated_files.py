@@ -1,0 +1,34 @@
+"""Spoilt files: never a traceback, never taken for a button that was not measured, never slow or large."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from benchmarks.mutilated import Found, run
+
+SPOILT = 150
+
+
+def check(found: Found) -> None:
+    assert found.tracebacks == []
+    assert found.garbage == []
+    assert found.unclear == []
+    assert found.slow == []
+    assert sum(found.accepted.values()) > 0.1 * sum(found.kinds.values())
+
+
+def test_spoilt_copies_of_the_shipped_example_are_refused_or_right() -> None:
+    examples = Path(__file__).parents[2] / "src" / "fdvv" / "button" / "examples"
+    check(run(SPOILT, examples, cheap=True))
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="memory is in other units elsewhere")
+@pytest.mark.timeout(900)
+def test_a_thousand_spoilt_files_of_every_kind(shared_data: Path) -> None:
+    found = run(1000, shared_data)
+    check(found)
+    assert found.most_MB < MOST_MB + 500  # of the whole test process
