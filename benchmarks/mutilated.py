@@ -24,7 +24,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.mutilations import OF_BYTES, OF_TABLES, OUT_OF_NOTHING, table_of
+from benchmarks.mutilations import OF_BYTES, OF_TABLES, OUT_OF_NOTHING, Table, table_of
 from fdvv.button.fit import MeasuredParts, ModelFit, fit_file, measured_files, measured_parts
 from fdvv.errors import FdvvError
 from fdvv.formats.force.read import read_force_file
@@ -106,12 +106,25 @@ def _one(
         if kind != TWO:
             made = OF_TABLES[kind](table, rng)
             return path, parts, made if isinstance(made, bytes) else made.encode()
-        other, others = files[int(rng.integers(len(files)))]
-        second = table_of(other)
-        if second and second.pairs == table.pairs and not _alike(parts, others):
-            head = "\n".join(second.head) if rng.random() < 0.5 else ""
-            rows = second.text().removeprefix("\n".join(second.head)).lstrip("\n")
-            return path, parts, f"{table.text()}{head}\n{rows}".encode()
+        return path, parts, _joined(table, _other(table, parts, files, rng), rng)
+
+
+def _other(
+    table: Table, parts: MeasuredParts, files: Sequence[tuple[Path, MeasuredParts]], rng: np.random.Generator
+) -> Table:
+    """Choose another button of the same layout; without one, the same made stiffer."""
+    for at in rng.permutation(len(files)):
+        path, others = files[at]
+        second = None if _alike(parts, others) else table_of(path)
+        if second and second.pairs == table.pairs:
+            return second
+    return table.change(1, lambda force: 1.6 * force)
+
+
+def _joined(table: Table, second: Table, rng: np.random.Generator) -> bytes:
+    head = "\n".join(second.head) + "\n" if rng.random() < 0.5 else ""
+    rows = second.text().removeprefix("\n".join(second.head)).lstrip("\n")
+    return f"{table.text()}{head}{rows}".encode()
 
 
 def _alike(a: MeasuredParts, b: MeasuredParts) -> bool:

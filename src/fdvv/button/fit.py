@@ -133,7 +133,7 @@ def fit_file(path: Path, settings: FitSettings | None = None) -> ModelFit:
         raise InputError(path, "curve", str(error), remedy) from error
 
 
-def fit_force_file(file: ForceFile, settings: FitSettings, path: Path) -> ModelFit:
+def fit_force_file(file: ForceFile, settings: FitSettings, path: Path | str) -> ModelFit:
     """Fit what a read file holds: repeats averaged per velocity, each stroke and velocity one curve.
 
     Raises InputError, naming path, if that cannot be a button's.
@@ -159,7 +159,9 @@ def fit_force_file(file: ForceFile, settings: FitSettings, path: Path) -> ModelF
     return ModelFit(model, parts.zero_mm, fits, parts.strokes, found, accepted + parts.warnings)
 
 
-def refuse_implausible(path: Path, doubts: Sequence[Implausible], accept: bool = False) -> tuple[str, ...]:
+def refuse_implausible(
+    path: Path | str, doubts: Sequence[Implausible], accept: bool = False
+) -> tuple[str, ...]:
     """Raise InputError with the first doubt, or return all as warnings if they are accepted."""
     if doubts and not accept:
         remedy = f"{doubts[0].remedy}; fdvv fit {OPTION} takes it as it is"

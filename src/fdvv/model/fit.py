@@ -132,7 +132,7 @@ def _auto(x: FloatArray, y: FloatArray, degree: int, penalty: float) -> Spline:
     Never above the BIC* of 15.
     """
     if x.size < AUTO_SAMPLES:
-        raise FitError(f"auto takes {AUTO_SAMPLES} distinct displacements or more, got {x.size}")
+        raise FitError(f"auto takes {AUTO_SAMPLES} distinct displacements, got {x.size}: ask for a number")
     papers = _held(x, y, FitMethod.ADAPTIVE, degree, PAPERS_CONTROL_POINTS)
     bound = _score(x, y, degree, papers, penalty)
     path = knot_path(x, y, degree, (AUTO_LEAST, min(LARGEST, x.size)))
