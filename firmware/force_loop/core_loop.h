@@ -28,7 +28,7 @@ static float travel_m(const fdvv_core *core)
     return core->image ? metres(fdvv_image_head(core->image)->travel_um16) : 1.0f;
 }
 
-static uint8_t is_closed(const fdvv_core *core) { return core->loop.enabled && !core->loop.fault; }
+static uint8_t is_closed(const fdvv_core *core) { return fdvv_force_loop_is_closed(&core->loop); }
 
 void fdvv_core_close_loop(fdvv_core *core, const fdvv_force_loop_gains *gains)
 {
@@ -57,7 +57,6 @@ static void estimate(fdvv_core *core, uint16_t force_counts, int16_t force_cN64)
         return;
     fdvv_force_loop_watch(&core->loop, force_counts, core->settings.force_offset_counts);
     fdvv_force_loop_estimate(&core->loop, metres(core->position.um16), newtons(force_cN64), travel_m(core));
-    fdvv_force_loop_turn(&core->loop, metres(core->settings.reversal_um16));
 }
 
 /* Conditions look at the estimated displacement, which has no lag, and a fade starts from the last target. */
@@ -67,27 +66,38 @@ static void see_estimates(fdvv_core *core, fdvv_machine_inputs *in)
     in->command_cN64 = short_cN64(core->loop.target_N);
 }
 
-/* The program's force at this displacement: of one stroke, or between both after a turn. */
-static float force_N(fdvv_core *core, fdvv_machine_inputs *in, int32_t at_um16)
+/* The program's force of one stroke at a displacement. */
+static float stroke_N(fdvv_core *core, fdvv_machine_inputs *in, float at_m, uint8_t release)
 {
-    uint8_t release = core->position.release;
-    float weight = core->loop.release, press_N, release_N;
-    in->ahead_um16 = at_um16;
-    core->position.release = 0;
-    press_N = weight < 1.0f ? newtons(fdvv_machine_force_cN64(&core->machine, core->image, in)) : 0.0f;
-    core->position.release = 1;
-    release_N = weight > 0.0f ? newtons(fdvv_machine_force_cN64(&core->machine, core->image, in)) : 0.0f;
+    uint8_t before = core->position.release;
+    float force_N;
+    in->ahead_um16 = um16(at_m);
     core->position.release = release;
+    force_N = newtons(fdvv_machine_force_cN64(&core->machine, core->image, in));
+    core->position.release = before;
+    return force_N;
+}
+
+/* The program's force at a displacement: of one stroke, or between both after a turn. */
+static float force_N(fdvv_core *core, fdvv_machine_inputs *in, float at_m)
+{
+    float weight = fdvv_force_loop_release_at(&core->loop, at_m);
+    float press_N = weight < 1.0f ? stroke_N(core, in, at_m, 0) : 0.0f;
+    float release_N = weight > 0.0f ? stroke_N(core, in, at_m, 1) : 0.0f;
     return press_N + weight * (release_N - press_N);
 }
 
 /* The program's force where the drive acts, and at the present displacement, turned into a command. */
 static int32_t close_cN64(fdvv_core *core, fdvv_machine_inputs *in)
 {
-    float ahead_N = force_N(core, in, um16(fdvv_force_loop_ahead_m(&core->loop)));
-    float now_N = force_N(core, in, um16(core->loop.x_m));
-    fdvv_force_loop_enter(&core->loop, core->machine.state, now_N);
-    return short_cN64(fdvv_force_loop_command_N(&core->loop, ahead_N, now_N, travel_m(core)));
+    fdvv_force_loop *loop = &core->loop;
+    float press_N = stroke_N(core, in, loop->x_m, 0), release_N = stroke_N(core, in, loop->x_m, 1);
+    float now_N, ahead_N;
+    fdvv_force_loop_turn(loop, press_N - release_N, metres(core->settings.reversal_um16), travel_m(core));
+    now_N = press_N + loop->release * (release_N - press_N);
+    ahead_N = force_N(core, in, fdvv_force_loop_ahead_m(loop));
+    fdvv_force_loop_enter(loop, core->machine.state, now_N);
+    return short_cN64(fdvv_force_loop_command_N(loop, ahead_N, now_N, travel_m(core)));
 }
 
 static int32_t open_cN64(const fdvv_core *core, int16_t force_cN64)

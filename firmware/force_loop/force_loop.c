@@ -4,6 +4,7 @@
 
 /* Within this of a stop the cap may be held by it: no acceleration is expected, and the estimator is stiff. */
 #define NEAR_STOP_m 2e-5f
+enum { BETWEEN_STOPS, AT_TOP, AT_BOTTOM };
 #define UNKNOWN_N 0.15f
 #define FASTEST_m_s2 1000.0f
 /* The controller fades in below the top stop and out above the bottom stop: against a stop it would wind up. */
@@ -26,11 +27,15 @@
 #define FREE_m_s 0.3f
 #define FREE_N_s_m 4.0f
 
-/* A turn counts from here on: the noise of the estimated displacement is below it. */
-#define TREMBLE_m 1e-5f
+/* Between the curves of both strokes the target rises by no more than this: what the loop holds under any finger. */
+#define TURNING_N_m 800.0f
+/* At a stop, which bears the difference, the other stroke's curve comes in within this time. */
+#define TURNING_s 3e-3f
 /* A cell of 12 bits whose noise is half a count repeats itself for this long in no press. */
 #define DEAD_ticks 200
 #define UNEXPLAINED_s 0.03f
+/* A blow of a fast finger overloads a sound cell for some milliseconds, and a strong one at the stop for longer. */
+#define OVERLOAD_s 0.02f
 /* Ringing: the feedback changes its sign beyond LARGE_N more than RINGING_turns times in RINGING_s. */
 #define LARGE_N 1.0f
 #define RINGING_s 0.01f
@@ -108,15 +113,24 @@ void fdvv_force_loop_watch(fdvv_force_loop *loop, uint16_t counts, uint16_t midd
     loop->same_ticks = (uint16_t)(counts == loop->counts ? loop->same_ticks + 1 : 0);
     loop->unexplained_ticks = (uint16_t)(is_unexplained(loop) ? loop->unexplained_ticks + 1 : 0);
     loop->counts = counts;
-    if (counts < 2 || (uint32_t)counts + 2 > 2u * middle)
+    if (counts >= 2 && (uint32_t)counts + 2 <= 2u * middle)
+        loop->saturated_ticks = 0;
+    else if (!loop->saturated_ticks || counts < middle || loop->at_stop != AT_BOTTOM)
+        loop->saturated_ticks++;
+    if ((float)loop->saturated_ticks * loop->gains.tick_s > OVERLOAD_s)
         loop->fault = FDVV_LOOP_FAULT_CELL_SATURATED;
-    else if (loop->same_ticks > DEAD_ticks)
+    else if (loop->same_ticks > DEAD_ticks && !loop->saturated_ticks)
         loop->fault = FDVV_LOOP_FAULT_CELL_DEAD;
     else if ((float)loop->unexplained_ticks * loop->gains.tick_s > UNEXPLAINED_s)
         loop->fault = FDVV_LOOP_FAULT_CELL_WRONG;
 }
 
 uint8_t fdvv_force_loop_fault(const fdvv_force_loop *loop) { return loop->fault; }
+
+uint8_t fdvv_force_loop_is_closed(const fdvv_force_loop *loop)
+{
+    return loop->enabled && !loop->fault && !loop->saturated_ticks;
+}
 
 void fdvv_force_loop_rest(fdvv_force_loop *loop)
 {
@@ -164,7 +178,7 @@ void fdvv_force_loop_estimate(fdvv_force_loop *loop, float position_m, float cel
         loop->x_m = loop->lagging_m = loop->last_m = loop->slid_m = position_m;
         loop->started = 1;
     }
-    loop->at_stop = (uint8_t)(loop->x_m > travel_m - NEAR_STOP_m || loop->x_m < NEAR_STOP_m);
+    loop->at_stop = loop->x_m > travel_m - NEAR_STOP_m ? AT_BOTTOM : loop->x_m < NEAR_STOP_m ? AT_TOP : BETWEEN_STOPS;
     correct(loop, position_m);
     loop->slid = clamp(loop->slid + (loop->x_m - loop->slid_m) / g->friction_m, -1.0f, 1.0f);
     loop->slid_m = loop->x_m;
@@ -175,13 +189,23 @@ void fdvv_force_loop_estimate(fdvv_force_loop *loop, float position_m, float cel
     loop->force_N = cell_N + g->plate_kg * loop->a_m_s2;
 }
 
-/* A step between the curves would throw a held cap to and fro; a ramp over distance stores no more than it returns. */
-void fdvv_force_loop_turn(fdvv_force_loop *loop, float reversal_m)
+/* Part of the way between the curves per metre: a step would throw a held cap to and fro. It follows the displacement
+ * without play, since a force that trails the displacement feeds a swing. */
+void fdvv_force_loop_turn(fdvv_force_loop *loop, float apart_N, float reversal_m, float travel_m)
 {
-    float moved_m = loop->x_m - loop->last_m;
-    moved_m -= clamp(moved_m, -TREMBLE_m, TREMBLE_m);
-    loop->release = clamp(loop->release - moved_m / reversal_m, 0.0f, 1.0f);
-    loop->last_m += moved_m;
+    float steepest_1_m = TURNING_N_m / (apart_N < 0.0f ? -apart_N : apart_N);
+    float at_stop = loop->gains.tick_s / TURNING_s;
+    loop->turning_1_m = steepest_1_m * reversal_m < 1.0f ? steepest_1_m : 1.0f / reversal_m;
+    loop->release -= loop->turning_1_m * (loop->x_m - loop->last_m);
+    loop->release += at_stop * (1.0f - ramp(travel_m - loop->x_m, BOTTOM_FROM_m, BOTTOM_WHOLE_m));
+    loop->release -= at_stop * (1.0f - ramp(loop->x_m, TOP_FROM_m, TOP_WHOLE_m));
+    loop->release = clamp(loop->release, 0.0f, 1.0f);
+    loop->last_m = loop->x_m;
+}
+
+float fdvv_force_loop_release_at(const fdvv_force_loop *loop, float x_m)
+{
+    return clamp(loop->release - loop->turning_1_m * (x_m - loop->x_m), 0.0f, 1.0f);
 }
 
 float fdvv_force_loop_ahead_m(const fdvv_force_loop *loop)

@@ -15,12 +15,13 @@ typedef struct {
     float error_N, low_N[2], integral_N, slow_m_s, contact;
     float target_N;           /* of the last tick: what a fade begins with */
     float step_N;             /* left of the last step of the target, which the feedback follows with a lag */
-    float last_m;             /* displacement at the last turn's check */
+    float last_m;             /* displacement in the last tick */
+    float turning_1_m;        /* part of the way between the strokes' curves per displacement */
     float release;            /* weight of the release's curve: 0 in a press, 1 once the cap has turned */
     float slid, slid_m;       /* part of the dry friction, -1 to 1, and the displacement it was taken at */
     float scale;              /* of what is fed back: halved at each ringing */
     uint16_t counts;          /* last reading of the cell */
-    uint16_t same_ticks, unexplained_ticks, ringing_ticks;
+    uint16_t same_ticks, saturated_ticks, unexplained_ticks, ringing_ticks;
     int8_t side;              /* of the last large feedback */
     uint8_t turns;            /* of its sign, in ringing_ticks */
     uint8_t enabled, started, at_stop, fault;
@@ -40,6 +41,9 @@ void fdvv_force_loop_watch(fdvv_force_loop *loop, uint16_t counts, uint16_t midd
 /* Why the loop was opened, FDVV_LOOP_FAULT_SOUND if it was not. */
 uint8_t fdvv_force_loop_fault(const fdvv_force_loop *loop);
 
+/* Is the cell believed in this tick? An overload opens the loop while it lasts. */
+uint8_t fdvv_force_loop_is_closed(const fdvv_force_loop *loop);
+
 /* Nothing is rendered: forget the estimates, keep gains and fault. */
 void fdvv_force_loop_rest(fdvv_force_loop *loop);
 
@@ -53,8 +57,12 @@ uint8_t fdvv_load_cell_check(const fdvv_load_cell *cell);
 /* Command for a target without the cell, after a fault: what the rig adds at rest is compensated. */
 float fdvv_force_loop_open_N(const fdvv_force_loop *loop, float target_N, float x_m);
 
-/* Follow the cap's turns: after each, the other stroke's curve comes in over this distance. */
-void fdvv_force_loop_turn(fdvv_force_loop *loop, float reversal_m);
+/* Follow the cap's turns: after each, the other stroke's curve comes in over reversal_m, or over more where the curves
+ * lie far apart. apart_N: press less release, at the present displacement. */
+void fdvv_force_loop_turn(fdvv_force_loop *loop, float apart_N, float reversal_m, float travel_m);
+
+/* Weight of the release's curve at a displacement near the present one. */
+float fdvv_force_loop_release_at(const fdvv_force_loop *loop, float x_m);
 
 /* Displacement when the drive of this tick acts. */
 float fdvv_force_loop_ahead_m(const fdvv_force_loop *loop);

@@ -16,7 +16,8 @@ from fdvv.protocol.tables import ForceLoopGains
 
 HEADER = Path(__file__).parents[2] / "firmware" / "force_loop" / "loop_protocol.h"
 TRAVEL_m, MIDDLE = 4e-3, 2048
-TICK_s = 1e-4
+TICK_s, REVERSAL_m = 1e-4, 1e-4
+STEEPEST_N_m = 800.0
 SOUND, SATURATED, DEAD, WRONG = range(4)
 
 GAINS = ForceLoopGains(
@@ -56,16 +57,27 @@ class Loop:
 
     def __init__(self, gains: ForceLoopGains = GAINS) -> None:
         self._lib, self._memory = library(), ctypes.create_string_buffer(1024)
-        for name in ("ahead_m", "command_N", "open_N"):
+        for name in ("ahead_m", "command_N", "open_N", "release_at"):
             getattr(self._lib, f"fdvv_force_loop_{name}").restype = ctypes.c_float
         self._lib.fdvv_force_loop_init(self._memory, gains.pack())
 
-    def tick(self, position_m: float, cell_N: float, target_N: float, state: int = 0) -> tuple[float, float]:
-        """Return displacement ahead and command of a tick with the same target ahead and now, in a state."""
+    @property
+    def _x_m(self) -> float:
+        """The estimated displacement, which lies behind the gains."""
+        return ctypes.c_float.from_buffer(self._memory, len(GAINS.pack())).value
+
+    def tick(
+        self, position_m: float, cell_N: float, target_N: float, state: int = 0, apart_N: float = 0.3
+    ) -> tuple[float, float]:
+        """Return displacement ahead and command of a tick with the same target ahead and now, in a state.
+
+        apart_N : between the curves of both strokes.
+        """
         number = ctypes.c_float
         lib, memory = self._lib, self._memory
         lib.fdvv_force_loop_estimate(memory, number(position_m), number(cell_N), number(TRAVEL_m))
-        lib.fdvv_force_loop_turn(memory, number(1e-4))
+        self._turn(apart_N)
+        self.turned = self._x_m, self.release_at(self._x_m)
         ahead = float(lib.fdvv_force_loop_ahead_m(memory))
         target = number(target_N)
         lib.fdvv_force_loop_enter(memory, ctypes.c_uint8(state), target)
@@ -73,10 +85,23 @@ class Loop:
         lib.fdvv_force_loop_predict(memory, number(command))
         return ahead, command
 
+    def _turn(self, apart_N: float) -> None:
+        """Follow the cap's turns between curves that lie so far apart."""
+        apart, reversal, travel = (ctypes.c_float(value) for value in (apart_N, REVERSAL_m, TRAVEL_m))
+        self._lib.fdvv_force_loop_turn(self._memory, apart, reversal, travel)
+
+    def release_at(self, x_m: float) -> float:
+        """Return the weight of the release's curve at a displacement."""
+        return float(self._lib.fdvv_force_loop_release_at(self._memory, ctypes.c_float(x_m)))
+
     def watch(self, counts: int) -> int:
         """Watch one reading of the cell and return why the loop was opened, SOUND if it was not."""
         self._lib.fdvv_force_loop_watch(self._memory, ctypes.c_uint16(counts), ctypes.c_uint16(MIDDLE))
         return int(self._lib.fdvv_force_loop_fault(self._memory))
+
+    def is_closed(self) -> bool:
+        """Return whether the cell was believed in the last tick."""
+        return bool(self._lib.fdvv_force_loop_is_closed(self._memory))
 
 
 @dataclass
@@ -212,11 +237,72 @@ def test_a_still_cap_under_its_target_is_commanded_target_and_weight() -> None:
 
 @pytest.mark.parametrize(
     ("counts", "fault"),
-    [([0], SATURATED), ([4095], SATURATED), ([2000] * 300, DEAD), ([2000, 2001] * 300, SOUND)],
+    [
+        ([0] * 210, SATURATED),
+        ([4095] * 210, SATURATED),
+        ([4095] * 150 + [2000], SOUND),
+        ([2000] * 300, DEAD),
+        ([2000, 2001] * 300, SOUND),
+    ],
 )
 def test_a_cell_that_is_saturated_or_dead_opens_the_loop(counts: list[int], fault: int) -> None:
     loop = Loop()
     assert [loop.watch(one) for one in counts][-1] == fault
+
+
+def test_an_overload_opens_the_loop_while_it_lasts() -> None:
+    loop, is_closed = Loop(), []
+    for counts in [2000, 4095, 4095, 2001]:
+        loop.watch(counts)
+        is_closed.append(loop.is_closed())
+    assert is_closed == [True, False, False, True]
+
+
+def test_a_strong_finger_at_the_bottom_stop_is_no_fault_of_the_cell() -> None:
+    loop, faults = Loop(), []
+    for _ in range(600):
+        loop.tick(TRAVEL_m, 4.4, 0.9)
+        faults.append(loop.watch(4095))
+    assert set(faults) == {SOUND}
+    assert not loop.is_closed()
+
+
+@pytest.mark.parametrize("apart_N", [0.05, 0.3, 0.6])
+@pytest.mark.parametrize("swing_m", [4e-6, 2e-5, 3e-4])
+def test_a_cap_that_swings_between_the_strokes_gains_no_energy_from_the_target(
+    apart_N: float, swing_m: float
+) -> None:
+    """The force against the cap, over whole swings, takes energy from it, however small they are."""
+    loop, path = Loop(), []
+    turns = np.linspace(0, 2 * np.pi * 5, 2001)
+    for x_m in 2e-3 + swing_m * np.sin(turns) - np.minimum(turns, 1.0) * 1e-4:
+        loop.tick(x_m, 0.5, 0.5, apart_N=apart_N)
+        path.append(loop.turned)
+    x, weight = np.array(path).T
+    work_J = -apart_N * np.sum(0.5 * (weight[1:] + weight[:-1]) * np.diff(x))
+    assert work_J > -1e-12
+
+
+@pytest.mark.parametrize("apart_N", [0.05, 0.3, 0.6])
+def test_between_the_strokes_the_target_is_no_steeper_than_the_loop_bears(apart_N: float) -> None:
+    loop = Loop()
+    weights = []
+    for x_m in 2e-3 - np.arange(0, 1e-3, 1e-6):
+        loop.tick(x_m, 0.5, 0.5, apart_N=apart_N)
+        weights.append(loop.turned)
+    x, weight = np.array(weights).T
+    rising = (weight > 0) & (weight < 1)
+    slope = -np.polyfit(x[rising], apart_N * weight[rising], 1)[0]
+    assert slope == pytest.approx(min(STEEPEST_N_m, apart_N / REVERSAL_m), rel=0.05)
+    assert weight[-1] == 1.0
+
+
+@pytest.mark.parametrize(("place_m", "weight"), [(TRAVEL_m, 1.0), (0.0, 0.0)], ids=["bottom", "top"])
+def test_a_stop_turns_the_stroke(place_m: float, weight: float) -> None:
+    loop = Loop()
+    for x_m in 2e-3 + (place_m - 2e-3) * np.minimum(np.arange(600) / 400, 1.0):
+        loop.tick(x_m, 0.5, 0.5)
+    assert loop.turned[1] == weight
 
 
 @pytest.mark.parametrize("sign", [-1.0, 0.0], ids=["reversed", "unplugged"])
