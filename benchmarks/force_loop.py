@@ -35,10 +35,11 @@ from fdvv.compensation.paper import tuned_paper_law
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.twin import TwinDevice
 from fdvv.model.file import load_builtin
-from fdvv.rendering.compensate import compensate, uncompensated
+from fdvv.model.model import FDVVModel
+from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
 from fdvv.rendering.probe import probe
 from fdvv.twin.draw import draw_section
-from fdvv.twin.finger import Finger
+from fdvv.twin.finger import Finger, stage_finger
 from fdvv.twin.rig import LoadCell, Rig
 from fdvv.units import FloatArray
 
@@ -57,6 +58,7 @@ DESIGNS: dict[str, tuple[Options, ...]] = {
 }
 BEST: tuple[Options, ...] = (*FAST, LIGHT_12_g, BARE, SENSOR)
 TO_300_mm_s = (*SPEEDS_mm_s, 300.0)
+STATIC_mm_s = (0.5,)
 IDENTIFIED_ON = "mx-clear"
 SHARES = ("force", "force_at_achieved_speed", "force_to_entry", "force_beyond_entry")
 """Of what a probe finds noticeable; fdvv.model.noticeable has the JND and its sources."""
@@ -88,8 +90,19 @@ def judged(
         before = compensate(device, load_builtin(IDENTIFIED_ON), speeds_mm_s, RigAware(rounds=0))
         method = RigAware(0, before.learned_rig)
     learned = compensate(device, model, speeds_mm_s, method)
-    probed = probe(fresh, model, learned.surface, speeds_mm_s, 4, tuning=learned.outcome.tuning)
-    without = probe(plain, model, uncompensated(plain, model, speeds_mm_s), speeds_mm_s, 4)
+    return _rows(fresh, plain, model, learned, speeds_mm_s, 4)
+
+
+def _rows(
+    fresh: TwinDevice,
+    plain: TwinDevice,
+    model: FDVVModel,
+    learned: CompensationResult,
+    speeds_mm_s: tuple[float, ...],
+    presses: int,
+) -> FloatArray:
+    probed = probe(fresh, model, learned.surface, speeds_mm_s, presses, tuning=learned.outcome.tuning)
+    without = probe(plain, model, uncompensated(plain, model, speeds_mm_s), speeds_mm_s, presses)
     rows = []
     for curve, bare in zip(probed.curves, without.curves, strict=True):
         found = curve.to_dict()
@@ -111,6 +124,15 @@ def to_300_mm_s(case: Case) -> FloatArray:
     return judged(case, *parts(case, True), "loop", TO_300_mm_s)
 
 
+def static(case: Case) -> FloatArray:
+    """The slow curve, which no press taught, under a stage: of the rig that a person's presses identified."""
+    (rig, finger), model = parts(case, True), case.model
+    known = compensate(TwinDevice(rig, finger, case.seed), model, SPEEDS_mm_s, RigAware(rounds=0)).learned_rig
+    stages = [TwinDevice(rig, stage_finger(), case.seed + JUDGE) for _ in range(3)]
+    learned = compensate(stages[0], model, STATIC_mm_s, RigAware(0, known))
+    return _rows(stages[1], stages[2], model, learned, STATIC_mm_s, 1)
+
+
 def rig_aware(case: Case) -> FloatArray:
     return judged(case, *parts(case, False), "rig-aware")
 
@@ -123,6 +145,7 @@ ROWS: dict[str, tuple[Work, tuple[Options, ...]]] = {
     **{name: (loop, options) for name, options in DESIGNS.items()},
     "10 kHz, current drive, cell, 12 g, encoder, to 300 mm/s": (to_300_mm_s, BEST),
     "a known rig, no press: 10 kHz, current drive, cell, 12 g": (known, DESIGNS[RECOMMENDED]),
+    "static, a stage: 10 kHz, current drive, cell, 12 g": (static, DESIGNS[RECOMMENDED]),
     "without the cell, rig-aware: 10 kHz, current drive, 12 g": (rig_aware, DESIGNS[RECOMMENDED]),
     "without the cell, the paper's law tuned: 10 kHz, current drive, 12 g": (paper_law, DESIGNS[RECOMMENDED]),
     "the paper's parts, rig-aware": (rig_aware, (LOOP_4_kHz, TURN)),
@@ -138,10 +161,13 @@ def main() -> None:
     for name, (work, options) in ROWS.items():
         if words in name:
             cases = [Case(FIRST_SEED + i, button, options) for button in BUTTONS for i in range(rigs)]
-            _print(name, [result for _, result in run_all(work, cases)])
+            found = list(run_all(work, cases))
+            _print(name, [result for _, result in found], STATIC_mm_s if work is static else TO_300_mm_s)
+            if work is static:
+                _print_buttons(found)
 
 
-def _print(name: str, found: list[FloatArray | str]) -> None:
+def _print(name: str, found: list[FloatArray | str], speeds_mm_s: tuple[float, ...]) -> None:
     table = np.array([result for result in found if not isinstance(result, str)])
     worse = int((table[..., 0] > table[..., 7]).sum())
     print(
@@ -149,7 +175,7 @@ def _print(name: str, found: list[FloatArray | str]) -> None:
         end="",
     )
     print(f" uncompensated\n{HEAD} at achieved speed | to 0.6 mm | beyond | uncompensated |")
-    speeds = TO_300_mm_s[: table.shape[1] // 2]
+    speeds = speeds_mm_s[: table.shape[1] // 2]
     for at in range(table.shape[1]):
         stroke = "press" if at < len(speeds) else "release"
         mean, largest, achieved, *shares, without = np.median(table[:, at], 0)
@@ -159,6 +185,14 @@ def _print(name: str, found: list[FloatArray | str]) -> None:
         print(f"| {stroke} | {speeds[at % len(speeds)]:g} | {cells} | {without:.1f} |", flush=True)
     for reason in sorted({result[:90] for result in found if isinstance(result, str)})[:6]:
         print(f"  not finished: {reason}")
+
+
+def _print_buttons(found: list[tuple[Case, FloatArray | str]]) -> None:
+    for button in BUTTONS:
+        rows = np.array([row for case, row in found if case.button == button and not isinstance(row, str)])
+        means, most = np.median(rows[..., 0], 0), rows[..., 0].max(0)
+        print(f"  {button}: press {means[0]:.2f}, at most {most[0]:.2f}; ", end="")
+        print(f"release {means[1]:.2f}, at most {most[1]:.2f} cN")
 
 
 if __name__ == "__main__":
