@@ -3,20 +3,26 @@
 Simulated. Run as ``python -m benchmarks.force_loop_silence [presses]``. Rigs, buttons and cells are those of
 `benchmarks.force_loop`; every rig is identified, and its loop closed with gains chosen for it. Fingers are
 drawn from 100 to 5000 N/m, most people's and beyond; each presses at up to 200 mm/s to a place on the way,
-holds the cap there, and leaves it. Ten thousand presses take half an hour on two cores.
+holds the cap there, and leaves it. A press that swings is repeated on an ideal button, which tells the
+target's doing from the rig's. Ten thousand presses take half an hour on two cores.
 """
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from benchmarks.drawn_rigs import BUTTONS, FIRST_SEED, Case, run_all
 from benchmarks.force_loop import DESIGNS, RECOMMENDED, parts
+from benchmarks.ideal_button import IdealPress, Reversal, press_ideal
+from fdvv.compensation.force_loop.method import lifted_target_cN
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.twin import TwinDevice
+from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import Mode
 from fdvv.rendering.compensate import compensate
@@ -24,7 +30,7 @@ from fdvv.twin.draw import draw_finger
 from fdvv.twin.finger import Finger, bare
 from fdvv.twin.gesture import Gesture, depth_m, plan
 from fdvv.twin.image import image_of
-from fdvv.twin.noise import draw_noise
+from fdvv.twin.noise import Noise, draw_noise
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_kernel import LoopConstants
 from fdvv.twin.simulate import simulate_program
@@ -51,6 +57,16 @@ class ClosedRig:
     constants: LoopConstants
 
 
+@dataclass(frozen=True, eq=False)
+class HeldPress:
+    """A finger that presses to a place on the way, holds the cap there, and leaves."""
+
+    finger: Finger
+    gesture: Gesture
+    speed_mm_s: float
+    noise: Noise
+
+
 def closed(case: Case) -> ClosedRig:
     (rig, finger), model = parts(case, True), case.model
     learned = compensate(TwinDevice(rig, finger, case.seed), model, SPEEDS_mm_s, RigAware(rounds=1))
@@ -72,8 +88,8 @@ def any_finger(random: np.random.Generator) -> Finger:
     )
 
 
-def hold(on: ClosedRig, random: np.random.Generator) -> tuple[float, float, bool]:
-    """Return the ripple of a held cap, cN rms, the speed of the one left, mm/s rms, and if it faulted."""
+def drawn(on: ClosedRig, random: np.random.Generator) -> HeldPress:
+    """Draw a finger, a speed, and a place on the way at which it holds the cap."""
     finger, speed = any_finger(random), float(random.choice(SPEEDS_mm_s))
     place_mm = on.travel_mm * random.uniform(*PLACE_ratios)
     row = on.surface.press_cN[int(np.argmin(np.abs(on.surface.velocity_mm_s - speed)))]
@@ -85,14 +101,45 @@ def hold(on: ClosedRig, random: np.random.Generator) -> tuple[float, float, bool
     gesture = Gesture(
         start_m, end_m, 0.01, press_s, HOLD_s, LEAVE_s, joint.stiffness_N_m, joint.damping_N_s_m, FREE_s
     )
-    noise = draw_noise(on.rig, finger, gesture, random)
+    return HeldPress(finger, gesture, speed, draw_noise(on.rig, finger, gesture, random))
+
+
+def hold(on: ClosedRig, press: HeldPress) -> tuple[float, float, bool]:
+    """Return the ripple of a held cap, cN rms, the speed of the one left, mm/s rms, and if it faulted."""
     image = image_of(on.surface, on.travel_mm, paced=True).image
-    trace = simulate_program(on.rig, finger, gesture, image, noise, speed, loop=on.constants)
-    t, until = trace.t_s, 0.01 + press_s + HOLD_s
+    trace = simulate_program(
+        on.rig, press.finger, press.gesture, image, press.noise, press.speed_mm_s, loop=on.constants
+    )
+    felt = _felt(press.gesture, trace.t_s, trace.force_cN, trace.cap_velocity_mm_s)
+    return *felt, bool((trace.mode == Mode.FAULT).any())
+
+
+def _felt(
+    gesture: Gesture, t: FloatArray, force_cN: FloatArray, velocity_mm_s: FloatArray
+) -> tuple[float, float]:
+    until = gesture.onset_s + gesture.press_s + HOLD_s
     held = (t > until - HOLD_s + SETTLE_s) & (t < until - HIGHPASS_s)
-    free = t > t[-1] - SETTLE_s
-    ripple = float(np.std(_high_passed(t, trace.force_cN)[held]))
-    return ripple, float(np.std(trace.cap_velocity_mm_s[free])), bool((trace.mode == Mode.FAULT).any())
+    free = (t > gesture.duration_s - SETTLE_s) & (t < gesture.duration_s)
+    ripple = float(np.std(_high_passed(t, force_cN)[held]))
+    return ripple, float(np.std(velocity_mm_s[free]))
+
+
+def swings(ripple_cN: FloatArray, speed_mm_s: FloatArray) -> npt.NDArray[np.bool_]:
+    return np.asarray((ripple_cN > CYCLE_cN) | (speed_mm_s > CYCLE_mm_s))
+
+
+def hold_ideal(model: FDVVModel, presses: Sequence[HeldPress], reversal: Reversal) -> npt.NDArray[np.bool_]:
+    """Return which of these presses swing where the target is rendered exactly, without any delay."""
+    target = ForceSurface.of_model(model, SPEEDS_mm_s)
+    rows = (lifted_target_cN(target.displacement_mm, row) for row in (target.press_cN, target.release_cN))
+    exact = ForceSurface(target.displacement_mm, target.velocity_mm_s, *rows)
+    asked = [
+        IdealPress(p.finger, p.gesture, SPEEDS_mm_s.index(p.speed_mm_s), p.noise.effort_ratio)
+        for p in presses
+    ]
+    t, force, speed = press_ideal(exact, model.travel_mm, asked, reversal)
+    felt = [_felt(p.gesture, t, force[:, i], speed[:, i]) for i, p in enumerate(presses)]
+    return swings(*np.array(felt).T)
 
 
 def _high_passed(t_s: FloatArray, force_cN: FloatArray) -> FloatArray:
@@ -106,7 +153,12 @@ class _Held:
 
     def __call__(self, case: Case) -> FloatArray:
         on, random = closed(case), np.random.default_rng(20_000 + case.seed)
-        return np.array([hold(on, random) for _ in range(self.presses)])
+        presses = [drawn(on, random) for _ in range(self.presses)]
+        found = np.array([(*hold(on, press), False) for press in presses], dtype=float)
+        swinging = np.flatnonzero(swings(found[:, 0], found[:, 1]))
+        if swinging.size:
+            found[swinging, 3] = hold_ideal(case.model, [presses[i] for i in swinging], Reversal())
+        return found
 
 
 def main() -> None:
@@ -114,14 +166,15 @@ def main() -> None:
     cases = [Case(FIRST_SEED + i, button, DESIGNS[RECOMMENDED]) for i in range(RIGS) for button in BUTTONS]
     found = list(run_all(_Held(-(-presses // len(cases))), cases))
     rows = np.vstack([rows for _, rows in found if not isinstance(rows, str)])
-    ripple, speed, faults = rows.T
+    ripple, speed, faults, ideal = rows.T
     print(f"{len(rows)} presses on {len(cases)} rigs; simulated")
     for name, values, unit in (("held: ripple", ripple, "cN"), ("left: cap's speed", speed, "mm/s")):
         middle, high, most = np.quantile(values, [0.5, 0.99, 1.0])
         print(f"{name}, rms: median {middle:.2f}, 99 % {high:.2f}, largest {most:.2f} {unit}")
     print(f"held caps above 1 cN: {100 * float((ripple > 1.0).mean()):.1f} %")
-    swinging = (ripple > CYCLE_cN) | (speed > CYCLE_mm_s)
-    print(f"swinging by themselves: {int(swinging.sum())}; faults: {int(faults.sum())}")
+    swinging = int(swings(ripple, speed).sum())
+    print(f"swinging by themselves: {swinging}, of them on an ideal button too: {int(ideal.sum())}")
+    print(f"faults: {int(faults.sum())}")
     for reason in sorted({rows for _, rows in found if isinstance(rows, str)}):
         print(f"not finished: {reason[:100]}")
 

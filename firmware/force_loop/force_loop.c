@@ -31,8 +31,10 @@ enum { BETWEEN_STOPS, AT_TOP, AT_BOTTOM };
 #define TURNING_N_m 800.0f
 /* At a stop, which bears the difference, the other stroke's curve comes in within this time. */
 #define TURNING_s 3e-3f
-/* A cell of 12 bits whose noise is half a count repeats itself for this long in no press. */
+/* A cell of 12 bits repeats itself for this long under no cap that moves as fast as this. One of a fifth of a count of
+ * noise does under a still cap. */
 #define DEAD_ticks 200
+#define MOVES_m_s 5e-3f
 #define UNEXPLAINED_s 0.03f
 /* A blow of a fast finger overloads a sound cell for some milliseconds, and a strong one at the stop for longer. */
 #define OVERLOAD_s 0.02f
@@ -110,7 +112,10 @@ void fdvv_force_loop_watch(fdvv_force_loop *loop, uint16_t counts, uint16_t midd
 {
     if (loop->fault)
         return;
-    loop->same_ticks = (uint16_t)(counts == loop->counts ? loop->same_ticks + 1 : 0);
+    if (counts != loop->counts)
+        loop->same_ticks = 0;
+    else if (loop->v_m_s > MOVES_m_s || loop->v_m_s < -MOVES_m_s)
+        loop->same_ticks++;
     loop->unexplained_ticks = (uint16_t)(is_unexplained(loop) ? loop->unexplained_ticks + 1 : 0);
     loop->counts = counts;
     if (counts >= 2 && (uint32_t)counts + 2 <= 2u * middle)

@@ -241,13 +241,21 @@ def test_a_still_cap_under_its_target_is_commanded_target_and_weight() -> None:
         ([0] * 210, SATURATED),
         ([4095] * 210, SATURATED),
         ([4095] * 150 + [2000], SOUND),
-        ([2000] * 300, DEAD),
         ([2000, 2001] * 300, SOUND),
     ],
 )
-def test_a_cell_that_is_saturated_or_dead_opens_the_loop(counts: list[int], fault: int) -> None:
+def test_a_cell_that_is_saturated_for_long_opens_the_loop(counts: list[int], fault: int) -> None:
     loop = Loop()
     assert [loop.watch(one) for one in counts][-1] == fault
+
+
+@pytest.mark.parametrize(("speed_m_s", "fault"), [(0.05, DEAD), (0.0, SOUND)])
+def test_a_cell_whose_reading_does_not_change_is_dead_if_the_cap_moves(speed_m_s: float, fault: int) -> None:
+    loop = Loop()
+    for k in range(500):
+        loop.tick(1e-3 + speed_m_s * TICK_s * k, 0.6, 0.6)
+        found = loop.watch(2000)
+    assert found == fault
 
 
 def test_an_overload_opens_the_loop_while_it_lasts() -> None:
