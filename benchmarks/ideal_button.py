@@ -119,9 +119,10 @@ def press_ideal(
         effort[: known.size, i] = known
     xf, vf, x, v, fast, slow = np.zeros((6, len(presses)))
     every = round(ROW_s / STEP_s)
+    fine_s = np.arange(every, dtype=np.float64) * STEP_s
     forces, speeds = np.empty((2, ticks, len(presses)))
     for i in range(ticks):
-        goal, goal_v = _referent(presses, i * ROW_s - SETTLE_s + STEP_s * np.arange(every))
+        goal, goal_v = _referent(presses, i * ROW_s - SETTLE_s + fine_s)
         for j in range(every):
             depth = np.minimum(xf - x, DEEPEST_m)
             grown = scale * np.exp(exponent * depth)
@@ -136,5 +137,5 @@ def press_ideal(
             xf += STEP_s * vf
             x += STEP_s * v
         forces[i], speeds[i] = 100 * pulp, 1e3 * v
-    t_s = ROW_s * np.arange(ticks) - SETTLE_s
+    t_s: FloatArray = np.arange(ticks, dtype=np.float64) * ROW_s - SETTLE_s
     return t_s[t_s >= 0], forces[t_s >= 0], speeds[t_s >= 0]

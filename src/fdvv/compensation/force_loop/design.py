@@ -23,9 +23,9 @@ from fdvv.units import FloatArray
 FINGER_kg = 0.008
 """Mass of a finger: a light cap is not lighter than what holds it."""
 BACK_OFF_ratio = 0.85
-FARTHEST = np.array([3.4, 3.4, 3.4, 3.4, 0.7, 3.4])
-"""From the start, as a logarithm: a gain of a million behind a low pass of a millihertz is an integral. More damping
-than twice the start's pays in the margins of a perfect velocity; that of the estimate has noise."""
+FARTHEST, FARTHEST_UP = 3.4, np.array([3.4, 3.4, 3.4, 3.4, 0.7, 3.4])
+"""From the start, as a logarithm: a gain of a million behind a low pass of a millihertz is an integral. More
+damping than twice the start's pays in the margins of a perfect velocity; that of the estimate has noise."""
 ROUNDS = 40
 CALLS = 160
 
@@ -48,7 +48,7 @@ def design_controller(plant: LoopPlant) -> LoopController:
     bank, start = FingerBank(plant), np.log(astuple(scaled_start(plant)))
 
     def controller_of(logs: FloatArray) -> LoopController:
-        return LoopController(*np.exp(np.clip(logs, start - FARTHEST, start + FARTHEST)).tolist())
+        return LoopController(*np.exp(np.clip(logs, start - FARTHEST, start + FARTHEST_UP)).tolist())
 
     def cost(logs: FloatArray) -> float:
         controller = controller_of(logs)
