@@ -78,28 +78,32 @@ def test_a_program_on_a_rig_with_a_cell_is_pressed_with_its_loop_sound(name: str
     press.replay(drawn_trace("drumming"))
     ticks, events = press.advance(1.5)
     assert ticks.displacement_mm.max() > 2.0
-    # this one throws its cap at the finger, harder than the cell can read
-    found = {"the force loop opened, cell saturated"} if name == "fast-tapping" else set()
-    assert {event.message.partition(":")[0] for event in events if event.message} == found
+    assert not [event.message for event in events if event.message]
 
 
-def test_a_loop_that_opened_is_reported_once_and_closed_again_after_the_press() -> None:
+def test_a_loop_that_opens_is_reported_once_in_each_press_and_closed_again_after_it() -> None:
+    subject = model_subject(load_builtin("mx-red"), PressMode.COMPENSATED)
+    drifted = replace(subject.rig, load_cell=replace(subject.rig.load_cell, offset_N=-0.5))
+    press = LivePress(replace(subject, rig=drifted))
+    press.push(80.0)
+    for _ in range(2):
+        opened = [event for event in press.advance(0.6)[1] if event.kind is LiveEventKind.LOOP]
+        assert [event.message for event in opened] == [
+            "the force loop opened, cell wrong: tables render this press"
+        ]
+        press.lift()
+        assert kinds(press.advance(0.5)[1])[-1] is LiveEventKind.PRESSED
+        assert press.rig.loop_fault is LoopFault.SOUND
+        press.push(80.0)
+
+
+def test_the_loop_is_closed_again_when_a_fault_is_cleared() -> None:
     press = LivePress(model_subject(load_builtin("mx-red"), PressMode.COMPENSATED))
-    press.push(600.0)  # beyond the cell's 4.45 N
-    opened = [event for event in press.advance(0.6)[1] if event.kind is LiveEventKind.LOOP]
-    assert [event.message for event in opened] == [
-        "the force loop opened, cell saturated: tables render this press"
-    ]
-    press.lift()
-    assert LiveEventKind.PRESSED in kinds(press.advance(0.5)[1])
-    press.lead(5.0, near_1_s=20.0)
-    assert LiveEventKind.LOOP not in kinds(press.advance(0.4)[1])
-    assert press.rig.loop_fault is LoopFault.SOUND
     press.fail(Fault.POSITION_STUCK)
     press.advance(0.1)
     press.clear_fault()
-    press.push(80.0)
-    press.advance(0.6)
+    press.push(600.0)  # beyond the cell's 4.45 N, on the bottom stop: an overload is no fault
+    assert LiveEventKind.LOOP not in kinds(press.advance(0.6)[1])
     assert press.rig.loop_fault is LoopFault.SOUND
 
 
