@@ -26,6 +26,7 @@ from tests.support.random_programs import (
 )
 
 from fdvv.firmware.core import Core, RecordArray
+from fdvv.firmware.limits import limits_like
 from fdvv.protocol.tables import NONE, Condition, Settings, Slot, State, Transition, Vibration
 from fdvv_m0.bus import Bus
 from fdvv_m0.processor import Processor
@@ -49,7 +50,7 @@ ENTRIES = ("fdvv_core_init", "fdvv_core_activate", "arm", "hear")
 FLASH, RAM, RETURN = 0x2000, 0x20000000, 0x1000
 CACHED, NO_WAIT = 1, 2
 CORE_AT, IMAGE_AT, INPUTS_AT = RAM, RAM + 0x2000, RAM + 0x4000
-OUTPUTS_AT, SETTINGS_AT = RAM + 0x4100, RAM + 0x4200
+OUTPUTS_AT, SETTINGS_AT, LIMITS_AT = RAM + 0x4100, RAM + 0x4200, RAM + 0x4300
 
 
 def board_flags() -> str:
@@ -92,7 +93,8 @@ class Machine(Processor):
         self.places = places
         self._uc.mem_write(IMAGE_AT, image)
         self._uc.mem_write(SETTINGS_AT, settings.pack())
-        self.call("fdvv_core_init", CORE_AT, SETTINGS_AT)
+        self._uc.mem_write(LIMITS_AT, limits_like(settings).pack())
+        self.call("fdvv_core_init", CORE_AT, SETTINGS_AT, LIMITS_AT)
         self.call("fdvv_core_activate", CORE_AT, IMAGE_AT)
         self.call("arm", CORE_AT)
 

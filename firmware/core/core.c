@@ -25,9 +25,9 @@ static uint16_t stop_pulse_us(const fdvv_settings *settings, const uint8_t *imag
     return (uint16_t)fdvv_clamp(settings->stop_zero_us + offset_us16000 / 16000, 400, 2600);
 }
 
-void fdvv_core_init(fdvv_core *core, const fdvv_settings *settings)
+void fdvv_core_init(fdvv_core *core, const fdvv_settings *settings, const fdvv_board_limits *limits)
 {
-    fdvv_supervisor_init(&core->supervisor);
+    fdvv_supervisor_init(&core->supervisor, limits);
     core->image = 0;
     core->events = 0;
     fdvv_core_set(core, settings);
@@ -205,7 +205,7 @@ void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *ou
         stop_rendering(core, outputs);
     core->events = 0;
     advance(core);
-    fdvv_supervisor_heat(supervisor, settings, outputs->duty_q15, elapsed_ticks);
+    fdvv_supervisor_heat(supervisor, outputs->duty_q15, inputs->supply_mV, elapsed_ticks);
     if (core->position.release)
         flags |= FDVV_TICK_FLAG_RELEASE;
     if (elapsed_ticks > 1)

@@ -14,6 +14,7 @@
 #endif
 
 typedef struct {
+    fdvv_supervisor supervisor;
     int16_t command_cN64;    /* of the last tick */
     int16_t resistance_cN64; /* drag and friction subtracted from it */
     uint16_t announced_mm_s16;
@@ -23,7 +24,6 @@ typedef struct {
     uint32_t events;         /* host events since the last tick, one bit each */
     fdvv_settings settings;
     fdvv_machine machine;
-    fdvv_supervisor supervisor;
     fdvv_position position;
     fdvv_velocity velocity;
     fdvv_predictor predictor;
@@ -32,8 +32,8 @@ typedef struct {
 #endif
 } fdvv_core;
 
-/* Start in mode boot with checked settings (fdvv_settings_check) and no program. */
-void fdvv_core_init(fdvv_core *core, const fdvv_settings *settings);
+/* Start in mode boot with checked settings (fdvv_settings_check) and no program. limits: as for fdvv_supervisor_init. */
+void fdvv_core_init(fdvv_core *core, const fdvv_settings *settings, const fdvv_board_limits *limits);
 
 /* Replace the settings by other checked ones; resets position and velocity. Only while idle. */
 void fdvv_core_set(fdvv_core *core, const fdvv_settings *settings);

@@ -51,6 +51,13 @@ static uint8_t read_settings(fdvv_link *link, const void *request)
     return FDVV_REFUSAL_NONE;
 }
 
+static uint8_t read_limits(fdvv_link *link, const void *request)
+{
+    (void)request;
+    *(fdvv_board_limits *)link->reply = *link->core->supervisor.limits;
+    return FDVV_REFUSAL_NONE;
+}
+
 static uint8_t write_settings(fdvv_link *link, const void *request)
 {
     const fdvv_settings *settings = (const fdvv_settings *)request;
@@ -58,7 +65,7 @@ static uint8_t write_settings(fdvv_link *link, const void *request)
     /* also allowed in mode fault, because wrong settings may be the cause of the fault */
     if (mode != FDVV_MODE_IDLE && mode != FDVV_MODE_FAULT)
         return FDVV_REFUSAL_WRONG_MODE;
-    invalid = fdvv_settings_check(settings);
+    invalid = fdvv_settings_check(settings, link->core->supervisor.limits);
     if (invalid) {
         link->detail = (uint16_t)(invalid - 1);
         return FDVV_REFUSAL_BAD_VALUE;
@@ -206,6 +213,7 @@ static const fdvv_command commands[] = {
     {FDVV_MSG_READ_COUNTERS, 0, sizeof(fdvv_read_counters_reply), read_counters},
     {FDVV_MSG_ANNOUNCE, sizeof(fdvv_announce_request), 0, announce},
     {FDVV_MSG_VIBRATE, sizeof(fdvv_vibrate_request), 0, vibrate},
+    {FDVV_MSG_READ_LIMITS, 0, sizeof(fdvv_board_limits), read_limits},
     LOOP_COMMANDS
 };
 

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #define FDVV_PROTOCOL_VERSION 1
-#define FDVV_PROTOCOL_HASH 0xef2d1201u
+#define FDVV_PROTOCOL_HASH 0xd27b87fdu
 
 #define FDVV_FRAME_BYTES 232 /* largest frame before stuffing: id, sequence, payload, checksum; COBS adds one byte below 254 */
 #define FDVV_DATA_BYTES 192 /* image bytes in one data message, a multiple of 4 */
@@ -196,7 +196,7 @@ typedef struct {
     uint16_t drag_q13; /* cN64 per mm_s16; 0 to 49152; taken off the command per speed; the largest is 15 N s/m */
     uint16_t friction_cN64; /* cN64; 0 to 6400; taken off the command in the direction of motion */
     uint16_t friction_mm_s16; /* mm_s16; 64 to 16000; speed from which on friction counts in full, below it in proportion */
-    uint32_t spare; /* the settings are sixteen bytes times a whole number: their checksum takes four words at a time */
+    uint32_t spare; /* the settings are 48 bytes times a whole number: their checksum takes twelve words at a time */
     uint8_t reads; /* 1 to 64; converter readings summed per tick; the paper's 25 */
     uint8_t sliding_ticks; /* 1 to 32; ticks of an additional sliding mean; 25 is the paper's literal reading */
     uint8_t fewest_samples; /* 3 to 16; samples that a velocity needs; the paper's 3 */
@@ -291,6 +291,37 @@ enum {
     FDVV_SETTINGS_FIELD_continuous_samples,
     FDVV_SETTINGS_FIELDS,
 };
+
+
+/* what a board was built for: settings may be tighter, and only another build is looser */
+typedef struct {
+    uint32_t heat_time_ms; /* ms; 100 to 600000; thermal time constant of the coil */
+    int32_t duty_gain_q16; /* Q15 duty per cN64; 64 to 65535; largest at the nominal supply, with room for calibration: what a cN of the force limit may be */
+    uint16_t nominal_supply_mV; /* mV; 3000 to 36000; supply at which duty_gain_q16 and full_duty_rise_K hold */
+    uint16_t supply_high_mV; /* mV; 3000 to 40000; largest */
+    int16_t force_limit_cN64; /* cN64; 64 to 32000; largest */
+    uint16_t duty_limit_q15; /* Q15; 1024 to 32767; largest */
+    uint16_t full_duty_rise_K; /* K; 1 to 16383; least: rise of the coil at full duty and nominal supply held for ever, copper at the heat limit */
+    uint16_t heat_limit_K; /* K; 2 to 600; largest */
+    uint16_t host_timeout_ms; /* ms; 20 to 5000; longest */
+    uint16_t tick_low_us; /* us; 100 to 1000; shortest tick */
+    uint16_t tick_high_us; /* us; 100 to 1000; longest tick */
+    uint16_t spare; /*  */
+} fdvv_board_limits;
+typedef char fdvv_board_limits_has_28_bytes[sizeof(fdvv_board_limits) == 28 ? 1 : -1];
+#define FDVV_BOARD_LIMITS_RANGES(X) \
+    X(heat_time_ms, 100, 600000) \
+    X(duty_gain_q16, 64, 65535) \
+    X(nominal_supply_mV, 3000, 36000) \
+    X(supply_high_mV, 3000, 40000) \
+    X(force_limit_cN64, 64, 32000) \
+    X(duty_limit_q15, 1024, 32767) \
+    X(full_duty_rise_K, 1, 16383) \
+    X(heat_limit_K, 2, 600) \
+    X(host_timeout_ms, 20, 5000) \
+    X(tick_low_us, 100, 1000) \
+    X(tick_high_us, 100, 1000) \
+    X(spare, 0, 0) \
 
 
 /* first bytes of a program; the checksum covers everything after itself */
@@ -711,6 +742,7 @@ typedef char fdvv_key_request_has_12_bytes[sizeof(fdvv_key_request) == 12 ? 1 : 
     X(READ_COUNTERS, 0x10, 0, 32) \
     X(ANNOUNCE, 0x11, 4, 0) \
     X(VIBRATE, 0x12, 2, 0) \
+    X(READ_LIMITS, 0x17, 0, 28) \
     X(REFUSED, 0x7f, 0, 4) \
     X(RECORDS, 0xc0, 20, 0) \
     X(FAULTED, 0xc1, 8, 0) \
@@ -735,6 +767,7 @@ enum {
     FDVV_MSG_READ_COUNTERS = 0x10, /* what went wrong so far */
     FDVV_MSG_ANNOUNCE = 0x11, /* the next press is meant to be this fast */
     FDVV_MSG_VIBRATE = 0x12, /* play a waveform of the active program now */
+    FDVV_MSG_READ_LIMITS = 0x17, /* report what the board was built for */
     FDVV_MSG_REFUSED = 0x7f, /* reply to a request that was not carried out (sent as id + 0x80) */
     FDVV_MSG_RECORDS = 0xc0, /* telemetry; only count of the records are sent */
     FDVV_MSG_FAULTED = 0xc1, /* a fault was latched; read_fault has the evidence */

@@ -1,4 +1,7 @@
-/* Settings are valid if every field is in its range and the fields are consistent. */
+/* Settings are valid if every field is in its range, the fields are consistent, and none is looser than the board. */
+#include <stddef.h>
+
+#include "arithmetic.h"
 #include "ranges.h"
 #include "supervisor.h"
 
@@ -25,12 +28,78 @@ static uint8_t find_inconsistent(const fdvv_settings *settings)
     return 0;
 }
 
-uint8_t fdvv_settings_check(const fdvv_settings *settings)
+/* A setting of 16 bits that can only be tightened; where it and the board's limit are. */
+typedef struct {
+    uint8_t field, at, limit_at, is_least;
+} tightened;
+
+#define ROW(field, limit, is_least)                                                                              \
+    {FDVV_SETTINGS_FIELD_##field, offsetof(fdvv_settings, field), offsetof(fdvv_board_limits, limit), is_least}
+
+static const tightened rows[] = {
+    ROW(tick_us, tick_high_us, 0),
+    ROW(tick_us, tick_low_us, 1),
+    ROW(force_limit_cN64, force_limit_cN64, 0),
+    ROW(duty_limit_q15, duty_limit_q15, 0),
+    ROW(supply_high_mV, supply_high_mV, 0),
+    ROW(full_duty_rise_K, full_duty_rise_K, 1),
+    ROW(heat_limit_K, heat_limit_K, 0),
+    ROW(host_timeout_ms, host_timeout_ms, 0),
+};
+
+/* settings and limits are read by their places; none of them is negative */
+typedef uint16_t __attribute__((may_alias)) number;
+
+static uint16_t number_at(const void *record, uint8_t at)
 {
+    return *(const number *)(const void *)((const uint8_t *)record + at);
+}
+
+/* The first row that is looser than the board, or 0. */
+static FDVV_COLD const tightened *find_loosened(const fdvv_settings *settings, const fdvv_board_limits *limits)
+{
+    uint8_t i;
+    for (i = 0; i < sizeof rows / sizeof *rows; i++) {
+        uint16_t value = number_at(settings, rows[i].at), limit = number_at(limits, rows[i].limit_at);
+        if (rows[i].is_least ? value < limit : value > limit)
+            return &rows[i];
+    }
+    return 0;
+}
+
+/* The largest duty per force, so that a force gets no more voltage than the board allows for it. */
+static FDVV_COLD int32_t largest_gain_q16(const fdvv_settings *settings, const fdvv_board_limits *limits)
+{
+    return (int32_t)((uint32_t)limits->duty_gain_q16 * limits->nominal_supply_mV / settings->nominal_supply_mV);
+}
+
+FDVV_COLD void fdvv_settings_tighten(fdvv_settings *settings, const fdvv_board_limits *limits)
+{
+    const tightened *row;
+    while ((row = find_loosened(settings, limits)) != 0)
+        *(number *)(void *)((uint8_t *)settings + row->at) = number_at(limits, row->limit_at);
+    if (settings->duty_gain_q16 > largest_gain_q16(settings, limits))
+        settings->duty_gain_q16 = largest_gain_q16(settings, limits);
+    if (settings->derate_start_K >= settings->heat_limit_K)
+        settings->derate_start_K = (uint16_t)(settings->heat_limit_K - 1);
+    if (settings->supply_low_mV >= settings->supply_high_mV)
+        settings->supply_low_mV = (uint16_t)(settings->supply_high_mV - 1);
+}
+
+uint8_t fdvv_settings_check(const fdvv_settings *settings, const fdvv_board_limits *limits)
+{
+    const tightened *loosened;
+    uint8_t invalid;
 #define CHECK(field, low, high)                                                                             \
     if (fdvv_outside((int32_t)settings->field, low, high))                                                  \
         return 1 + FDVV_SETTINGS_FIELD_##field;
     FDVV_SETTINGS_RANGES(CHECK)
 #undef CHECK
-    return find_inconsistent(settings);
+    invalid = find_inconsistent(settings);
+    if (invalid)
+        return invalid;
+    if (settings->duty_gain_q16 > largest_gain_q16(settings, limits))
+        return 1 + FDVV_SETTINGS_FIELD_duty_gain_q16;
+    loosened = find_loosened(settings, limits);
+    return loosened ? (uint8_t)(1 + loosened->field) : 0;
 }

@@ -216,13 +216,17 @@ static uint32_t rotate_add(uint32_t sum, settings_word word)
     return (sum << 31 | sum >> 1) + word;
 }
 
-/* Depends on every word and on their order. Unrolled by four, because it is computed in every tick. */
+/* Depends on every word and on their order. Unrolled by twelve, because it is computed in every tick. */
+
 static uint32_t checksum(const fdvv_settings *settings)
 {
     const settings_word *word = (const settings_word *)settings, *end = (const settings_word *)(settings + 1);
     uint32_t sum = 0;
-    for (; word != end; word += 4)
+    for (; word != end; word += 12) {
         sum = rotate_add(rotate_add(rotate_add(rotate_add(sum, word[0]), word[1]), word[2]), word[3]);
+        sum = rotate_add(rotate_add(rotate_add(rotate_add(sum, word[4]), word[5]), word[6]), word[7]);
+        sum = rotate_add(rotate_add(rotate_add(rotate_add(sum, word[8]), word[9]), word[10]), word[11]);
+    }
     return sum;
 }
 
@@ -303,33 +307,68 @@ void fdvv_supervisor_fault(fdvv_supervisor *supervisor, uint8_t fault, int32_t v
 
 /* -- modes -------------------------------------------------------------------------------------------------- */
 
-/* tick_us / heat_time_us, rounded down, by long division. */
-static uint32_t heat_rate_q32(const fdvv_settings *settings)
+#define HOTTEST_K 65534 /* more does not fit, as a whole number of 1/65536 K at full duty, into 32 bits */
+
+/* part / whole for part < whole < 2^31, rounded down, by long division. */
+static FDVV_COLD uint32_t fraction_q32(uint32_t part, uint32_t whole)
 {
-    uint32_t time_us = settings->heat_time_ms * 1000, rest = settings->tick_us, rate = 0;
+    uint32_t quotient = 0;
     uint8_t bit;
     for (bit = 0; bit < 32; bit++) {
-        rest <<= 1;
-        rate <<= 1;
-        if (rest >= time_us) {
-            rest -= time_us;
-            rate |= 1;
+        part <<= 1;
+        quotient <<= 1;
+        if (part >= whole) {
+            part -= whole;
+            quotient |= 1;
         }
     }
-    return rate;
+    return quotient;
 }
 
-void fdvv_supervisor_init(fdvv_supervisor *supervisor)
+void fdvv_supervisor_init(fdvv_supervisor *supervisor, const fdvv_board_limits *limits)
 {
     static const fdvv_supervisor at_boot = {0};
     *supervisor = at_boot;
+    supervisor->limits = limits;
+}
+
+static uint32_t lower(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint32_t higher(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
+/* rise_K at the highest supply, if it goes with the supply; rounded up, and kept to 16 bits. */
+static uint32_t raised_K(const fdvv_supervisor *me, uint32_t rise_K)
+{
+    return lower(rise_K * me->limits->supply_high_mV / me->limits->nominal_supply_mV + 1, HOTTEST_K);
+}
+
+/* The model is never cooler than the coil of the board, whatever the settings were and are: towards the higher of both
+ * ends it heats with the shorter of both time constants and cools with the longer, so at the temperature of the coil it
+ * never falls behind. tick / time is more than the part 1 - exp(-tick / time) of the way, tick / (time + tick) is less. */
+static FDVV_COLD void set_heat_model(fdvv_supervisor *me, const fdvv_settings *settings)
+{
+    uint32_t board_us = me->limits->heat_time_ms * 1000, time_us = settings->heat_time_ms * 1000;
+    me->heating_q32 = fraction_q32(settings->tick_us, lower(time_us, board_us)) + 1;
+    me->cooling_q32 = fraction_q32(settings->tick_us, higher(time_us, board_us) + settings->tick_us);
+    me->rise_K = (uint16_t)higher(settings->full_duty_rise_K, me->limits->full_duty_rise_K);
+    me->nominal_supply_mV = me->limits->nominal_supply_mV;
+    if (me->limits->supply_high_mV > me->nominal_supply_mV) {
+        uint32_t span_mV = me->limits->supply_high_mV - (uint32_t)me->nominal_supply_mV;
+        me->rise_K_mV_q16 = ((raised_K(me, raised_K(me, me->rise_K)) - me->rise_K) << 16) / span_mV + 1;
+    }
 }
 
 void fdvv_supervisor_settings(fdvv_supervisor *supervisor, const fdvv_settings *settings)
 {
     uint32_t span_K = (uint32_t)settings->heat_limit_K - settings->derate_start_K;
     supervisor->settings_sum = checksum(settings);
-    supervisor->heat_rate_q32 = heat_rate_q32(settings);
+    set_heat_model(supervisor, settings);
     supervisor->derate_cN64_K_q8 = ((uint32_t)settings->force_limit_cN64 << 8) / span_K;
     supervisor->position_known = 0;
 }
@@ -347,7 +386,7 @@ static uint8_t clear(fdvv_supervisor *me, uint8_t fault)
 static uint8_t arm(fdvv_supervisor *me, const fdvv_settings *settings)
 {
     me->equal_sums = 0;
-    return fdvv_settings_check(settings) ? FDVV_REFUSAL_BAD_VALUE : FDVV_REFUSAL_NONE;
+    return fdvv_settings_check(settings, me->limits) ? FDVV_REFUSAL_BAD_VALUE : FDVV_REFUSAL_NONE;
 }
 
 uint8_t fdvv_supervisor_ask(fdvv_supervisor *supervisor, const fdvv_settings *settings, uint8_t ask, uint8_t number)
@@ -387,23 +426,65 @@ int16_t fdvv_supervisor_limit_cN64(fdvv_supervisor *supervisor, const fdvv_setti
     return heat < end ? (int16_t)(supervisor->derate_cN64_K_q8 * ((end - heat) >> 8) >> 16) : 0;
 }
 
-/* First-order thermal model. The temperature rise has 48 fractional bits, so that no step is rounded. */
-void fdvv_supervisor_heat(fdvv_supervisor *supervisor, const fdvv_settings *settings, int16_t duty_q15,
-                          uint16_t elapsed_ticks)
+/* Rise at which the coil would end at this duty, rounded up. A current drive heats with the square of the duty, a
+ * voltage drive with that of duty times supply: the higher of the two. The chord from the nominal to the highest supply
+ * lies above the square. Beyond the highest supply the duty is 0. */
+static inline uint32_t end_K_q16(const fdvv_supervisor *me, int16_t duty_q15, uint16_t supply_mV)
 {
-    /* rounded up, so that the model is never too cool */
-    uint32_t duty_q16 = ((uint32_t)((int32_t)duty_q15 * duty_q15) + 0x3fff) >> 14;
-    uint32_t end_K_q16 = settings->full_duty_rise_K * duty_q16;
-    uint32_t heat_K_q16 = supervisor->heat_K_q16, rate_q32 = supervisor->heat_rate_q32;
-    uint64_t heat_K_q48 = (uint64_t)heat_K_q16 << 32 | supervisor->heat_rest_q48;
-    if (elapsed_ticks != 1) {
-        uint64_t long_q32 = fdvv_wide_product(rate_q32, elapsed_ticks);
-        rate_q32 = long_q32 >> 32 ? UINT32_MAX : (uint32_t)long_q32; /* beyond the time constant: final value */
-    }
-    if (end_K_q16 > heat_K_q16)
-        heat_K_q48 += fdvv_wide_product(end_K_q16 - heat_K_q16, rate_q32);
+    uint32_t rise_K = me->rise_K;
+    if (supply_mV > me->nominal_supply_mV)
+        rise_K += ((uint32_t)(supply_mV - me->nominal_supply_mV) * me->rise_K_mV_q16 >> 16) + 1;
+    return rise_K * (((uint32_t)((int32_t)duty_q15 * duty_q15) + 0x3fff) >> 14);
+}
+
+static uint64_t heat_K_q48(const fdvv_supervisor *me)
+{
+    return (uint64_t)me->heat_K_q16 << 32 | me->heat_rest_q48;
+}
+
+static void set_heat_K_q48(fdvv_supervisor *me, uint64_t heat_q48)
+{
+    me->heat_K_q16 = (uint32_t)(heat_q48 >> 32);
+    me->heat_rest_q48 = (uint32_t)heat_q48;
+}
+
+static FDVV_COLD uint64_t long_product(uint32_t x, uint32_t y)
+{
+    return fdvv_wide_product(x, y);
+}
+
+/* Of a coil that takes more than 65536 ticks to warm, with two multiplications less. */
+static inline uint64_t part_q48(uint32_t way_q16, uint32_t part_q32)
+{
+    uint32_t low = (way_q16 & 0xffff) * part_q32, high = (way_q16 >> 16) * part_q32 + (low >> 16);
+    if (part_q32 >> 16)
+        return long_product(way_q16, part_q32);
+    return (uint64_t)(high >> 16) << 32 | (high << 16 | (low & 0xffff));
+}
+
+/* Missed ticks had the duty of the last one: they may heat, and never cool. */
+static __attribute__((noinline)) void heat_missed(fdvv_supervisor *me, uint32_t ticks)
+{
+    uint64_t part_q32;
+    if (me->end_K_q16 <= me->heat_K_q16)
+        return;
+    part_q32 = part_q48(ticks, me->heating_q32);
+    if (part_q32 >> 32) /* the whole way */
+        set_heat_K_q48(me, (uint64_t)me->end_K_q16 << 32);
     else
-        heat_K_q48 -= fdvv_wide_product(heat_K_q16 - end_K_q16, rate_q32);
-    supervisor->heat_K_q16 = (uint32_t)(heat_K_q48 >> 32);
-    supervisor->heat_rest_q48 = (uint32_t)heat_K_q48;
+        set_heat_K_q48(me, heat_K_q48(me) + fdvv_wide_product(me->end_K_q16 - me->heat_K_q16, (uint32_t)part_q32));
+}
+
+/* First-order thermal model. The temperature rise has 48 fractional bits, so that no step is too small. */
+void fdvv_supervisor_heat(fdvv_supervisor *supervisor, int16_t duty_q15, uint16_t supply_mV, uint16_t elapsed_ticks)
+{
+    uint32_t end_q16 = end_K_q16(supervisor, duty_q15, supply_mV), heat_q16;
+    if (elapsed_ticks > 1)
+        heat_missed(supervisor, elapsed_ticks - 1u);
+    supervisor->end_K_q16 = end_q16;
+    heat_q16 = supervisor->heat_K_q16;
+    if (end_q16 > heat_q16)
+        set_heat_K_q48(supervisor, heat_K_q48(supervisor) + part_q48(end_q16 - heat_q16, supervisor->heating_q32));
+    else
+        set_heat_K_q48(supervisor, heat_K_q48(supervisor) - part_q48(heat_q16 - end_q16, supervisor->cooling_q32));
 }

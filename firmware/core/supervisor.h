@@ -4,6 +4,8 @@
 
 #include "inputs.h"
 
+typedef char fdvv_settings_are_whole_dozens_of_words[sizeof(fdvv_settings) % 48 == 0 ? 1 : -1];
+
 /* requests */
 enum {
     FDVV_ASK_BOOTED,      /* the board has started */
@@ -18,26 +20,33 @@ enum {
 typedef struct {
     uint8_t mode;             /* FDVV_MODE_… */
     uint8_t fault;            /* FDVV_FAULT_…: the first one, latched until it is cleared */
+    uint8_t position_known;   /* now.displacement_um16 is valid */
+    uint8_t host_heard;       /* a message came within the timeout */
     uint16_t faults;          /* count since boot, including those not latched; saturates at 65535 */
-    fdvv_evidence evidence;   /* of the latched fault */
-    fdvv_evidence now;        /* the same, of the last tick */
+    uint16_t equal_sums;      /* ticks since last_sum changed */
+    uint16_t rise_K;          /* at full duty and nominal supply, for ever */
+    uint16_t nominal_supply_mV; /* of the board */
+    fdvv_evidence now;        /* as `evidence`, of the last tick */
+    uint32_t heat_K_q16;      /* temperature rise of the coil, from the thermal model */
+    uint32_t heat_rest_q48;   /* the bits below those of heat_K_q16 */
+    uint32_t end_K_q16;       /* rise at which the duty of the last tick would end */
+    uint32_t heating_q32;     /* part of the way to end_K_q16 in a tick, rounded up */
+    uint32_t cooling_q32;     /* the same on the way down, rounded down */
+    uint32_t rise_K_mV_q16;   /* rise_K grows by it with every mV above the nominal supply */
+    uint32_t derate_cN64_K_q8; /* force limit per degree of heat */
     uint32_t active;          /* bit FDVV_FAULT_…: its condition is true now */
     uint32_t last_sum;        /* of the position readings, to detect a stuck sensor */
     uint32_t host_seen_us;
     uint32_t settings_sum;    /* checksum of the settings as they were set */
-    uint32_t heat_K_q16;      /* temperature rise of the coil, from the thermal model */
-    uint32_t heat_rest_q48;   /* the bits below those of heat_K_q16 */
-    uint32_t heat_rate_q32;   /* tick / thermal time constant */
-    uint32_t derate_cN64_K_q8; /* force limit per degree of heat */
-    uint16_t equal_sums;      /* ticks since last_sum changed */
-    uint8_t position_known;   /* now.displacement_um16 is valid */
-    uint8_t host_heard;       /* a message came within the timeout */
+    const fdvv_board_limits *limits;
+    fdvv_evidence evidence;   /* of the latched fault */
 } fdvv_supervisor;
 
-void fdvv_supervisor_init(fdvv_supervisor *supervisor);
+/* limits: of the board; constant, and kept by reference. */
+void fdvv_supervisor_init(fdvv_supervisor *supervisor, const fdvv_board_limits *limits);
 
-/* Use these checked settings: stores their checksum and forgets the position. Until this is called, every check
- * reports corrupt settings. */
+/* Use these checked settings: stores their checksum and forgets the position, not the heat. Until this is called, every
+ * check reports corrupt settings. */
 void fdvv_supervisor_settings(fdvv_supervisor *supervisor, const fdvv_settings *settings);
 
 /* Request a change of mode (FDVV_ASK_…); `number` is the fault to clear. Returns FDVV_REFUSAL_NONE if it was made,
@@ -61,12 +70,15 @@ void fdvv_supervisor_fault(fdvv_supervisor *supervisor, uint8_t fault, int32_t v
 /* Largest force allowed in this tick: 0 unless armed or derated. Switches between these two modes. */
 int16_t fdvv_supervisor_limit_cN64(fdvv_supervisor *supervisor, const fdvv_settings *settings);
 
-/* Advance the thermal model by elapsed_ticks at this duty. */
-void fdvv_supervisor_heat(fdvv_supervisor *supervisor, const fdvv_settings *settings, int16_t duty_q15,
-                          uint16_t elapsed_ticks);
+/* Advance the thermal model to the end of the tick that begins with this duty at this supply; ticks missed before it
+ * had the duty of the last call. */
+void fdvv_supervisor_heat(fdvv_supervisor *supervisor, int16_t duty_q15, uint16_t supply_mV, uint16_t elapsed_ticks);
 
-/* Return 0 if the settings are valid, else 1 + the number of the first field that is out of range or inconsistent
- * with another one. */
-uint8_t fdvv_settings_check(const fdvv_settings *settings);
+/* Return 0 if the settings are valid, else 1 + the number of the first field that is out of range, inconsistent with
+ * another one, or looser than the limits of the board. */
+uint8_t fdvv_settings_check(const fdvv_settings *settings, const fdvv_board_limits *limits);
+
+/* Tighten settings where they are looser than the limits. */
+void fdvv_settings_tighten(fdvv_settings *settings, const fdvv_board_limits *limits);
 
 #endif

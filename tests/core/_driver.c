@@ -1,4 +1,4 @@
-/* The core as a program of its own: settings, an image and inputs on stdin, outputs on stdout. Armed whenever
+/* The core as a program of its own: settings, limits, an image and inputs on stdin, outputs on stdout. Armed whenever
  * possible, so that faults do not end the run. */
 #include "core.h"
 
@@ -18,16 +18,18 @@ static void rearm(fdvv_core *core)
 int main(void)
 {
     fdvv_settings settings;
+    fdvv_board_limits limits;
     fdvv_inputs inputs;
     fdvv_outputs outputs;
     fdvv_core core;
     uint32_t size_bytes;
     while (fread(&settings, sizeof settings, 1, stdin) == 1) {
         uint32_t count;
-        if (fdvv_settings_check(&settings) || fread(&size_bytes, 4, 1, stdin) != 1 || size_bytes > sizeof words ||
+        if (fread(&limits, sizeof limits, 1, stdin) != 1 || fdvv_settings_check(&settings, &limits) ||
+            fread(&size_bytes, 4, 1, stdin) != 1 || size_bytes > sizeof words ||
             fread(words, 1, size_bytes, stdin) != size_bytes || fread(&count, 4, 1, stdin) != 1)
             return 1;
-        fdvv_core_init(&core, &settings);
+        fdvv_core_init(&core, &settings, &limits);
         fdvv_core_activate(&core, (const uint8_t *)words);
         for (; count; count--) {
             if (fread(&inputs, sizeof inputs, 1, stdin) != 1)

@@ -11,6 +11,7 @@ import pytest
 
 from fdvv.errors import ModelError
 from fdvv.firmware.core import INPUTS, OUTPUTS, Core, CoreRequest, RecordArray
+from fdvv.firmware.limits import limits_like
 from fdvv.protocol.tables import Mode, Settings
 from tests.support.random_programs import random_image
 
@@ -98,7 +99,7 @@ def run(driver: Path, seeds: range, ticks: int) -> int:
         rng = np.random.default_rng(seed)
         settings = wild_settings(rng)
         image, inputs = random_image(rng, settings), wild_inputs(rng, settings, ticks)
-        script += settings.pack() + struct.pack("<I", len(image)) + image
+        script += settings.pack() + limits_like(settings).pack() + struct.pack("<I", len(image)) + image
         script += struct.pack("<I", ticks) + inputs.tobytes()
         wanted += expected(settings, image, inputs)
     done = subprocess.run([str(driver)], input=script, capture_output=True, check=False)

@@ -20,6 +20,7 @@ from fdvv.device.linked import LinkedDevice
 from fdvv.device.plant import Inputs
 from fdvv.device.twin import SimulatedPerson
 from fdvv.errors import DeviceError
+from fdvv.firmware.limits import limits_like
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.frame import Frame, FrameDecoder, encode
 from fdvv.protocol.messages import request_frame
@@ -199,6 +200,7 @@ def test_the_host_program_also_speaks_on_standard_input_and_output() -> None:
         os.close(file)
     frames: list[Frame] = []
     decoder = FrameDecoder()
+    os.write(asked[1], limits_like(Settings()).pack())
     for tick in range(10):
         inputs = Inputs(250 * tick, 51200 + tick, 2048, 2049)
         os.write(asked[1], inputs.pack() + struct.pack("<II", len(hello), 1))

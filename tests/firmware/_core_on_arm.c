@@ -8,13 +8,14 @@
 
 static fdvv_core core;
 static fdvv_settings settings;
+static fdvv_board_limits limits;
 static uint32_t image[FDVV_IMAGE_BYTES / 4];
 static fdvv_inputs inputs[TICKS];
 static fdvv_outputs outputs[TICKS];
 
 static void begin(void)
 {
-    fdvv_core_init(&core, &settings);
+    fdvv_core_init(&core, &settings, &limits);
     fdvv_core_activate(&core, (const uint8_t *)image);
     fdvv_supervisor_ask(&core.supervisor, &core.settings, FDVV_ASK_BOOTED, 0);
     fdvv_supervisor_ask(&core.supervisor, &core.settings, FDVV_ASK_ARM, 0);
@@ -61,7 +62,7 @@ typedef void (*function)(void);
 
 __attribute__((section(".table"), used)) static const struct {
     uint32_t ticks;
-    void *data[4];
+    void *data[5];
     function functions[5];
 #ifdef FDVV_FORCE_LOOP
     void *gains;
@@ -69,7 +70,7 @@ __attribute__((section(".table"), used)) static const struct {
 #endif
 } table = {
     TICKS,
-    {&settings, image, inputs, outputs},
+    {&settings, image, inputs, outputs, &limits},
     {(function)begin, (function)check, (function)event, (function)announce, (function)run},
 #ifdef FDVV_FORCE_LOOP
     &gains,

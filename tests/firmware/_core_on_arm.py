@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.firmware.core import INPUTS, OUTPUTS, RecordArray
+from fdvv.firmware.limits import limits_like
 from fdvv.protocol.tables import Settings
 
 from ._m0 import BOARD, REPOSITORY, SHARED, require_tools
@@ -86,10 +87,11 @@ class CoreOnArm:
         self._uc.mem_map(0, SIZE)
         self._uc.mem_map(RAM, 0x8000)
         self._uc.mem_write(FLASH, code)
-        self.ticks, *places = struct.unpack("<12I", code[:48])
-        self._data, self._functions = places[:4], places[4:9]
-        self._loop = places[9:]  # where the table has it
+        self.ticks, *places = struct.unpack("<13I", code[:52])
+        self._data, self._functions = places[:5], places[5:10]
+        self._loop = places[10:]  # where the table has it
         self._uc.mem_write(self._data[0], settings.pack())
+        self._uc.mem_write(self._data[4], limits_like(settings).pack())
         self._uc.mem_write(self._data[1], image)
         self._call(self._functions[0])
         self.refusal = self._call(self._functions[1], len(image), int.from_bytes(image[4:8], "little"))

@@ -19,10 +19,15 @@ LIBRARY = "FDVV_SAFETY_LIBRARY"
 """Environment variable: a library, built otherwise, that the same tests shall run on."""
 
 
-def compile_c(target: Path, *flags: str, sources: tuple[Path, ...] = (*DRIVERS, *SOURCES)) -> Path:
-    """Compile and link; the compiler's words on failure."""
+def compile_c(
+    target: Path,
+    *flags: str,
+    sources: tuple[Path, ...] = (*DRIVERS, *SOURCES),
+    after: tuple[str, ...] = (),
+) -> Path:
+    """Compile and link, the libraries after the sources; the compiler's words on failure."""
     out = subprocess.run(
-        ["cc", *WARNINGS, f"-I{CORE}", *flags, "-o", str(target), *map(str, sources)],
+        ["cc", *WARNINGS, f"-I{CORE}", *flags, "-o", str(target), *map(str, sources), *after],
         capture_output=True,
         text=True,
         check=False,

@@ -14,11 +14,8 @@ EQUIVALENT = {
     ),
     "me->position_known = 1;: 1 -> 2 at 26": "only compared with zero",
     "supervisor->host_heard = 1;: 1 -> 2 at 30": "only compared with zero",
-    "uint32_t time_us = settings->heat_time_ms * 1000, rest = settings->tick_us, rate = 0;: 0 -> 1 at 88": (
-        "32 shifts remove the initial value"
-    ),
-    "uint32_t time_us = settings->heat_time_ms * 1000, rest = settings->tick_us, rate = 0;"
-    ": 0 -> (-1) at 88": ("32 shifts remove the initial value"),
+    "uint32_t quotient = 0;: 0 -> 1 at 25": "32 shifts remove the initial value",
+    "uint32_t quotient = 0;: 0 -> (-1) at 25": "32 shifts remove the initial value",
     "X(IMAGE_CORRUPT, EXTERNAL, ANYTIME, STOP, offset,: ANYTIME -> INACTIVE at 32": (
         "its condition is never true, so it is always inactive"
     ),
@@ -26,7 +23,14 @@ EQUIVALENT = {
     "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: 0 -> 1 at 13": "the slow path gives the same result",
     "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: 0 -> (-1) at 13": "the slow path gives the same result",
     "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: 0 -> 1 at 42": "the slow path gives the same result",
-    "if (end_K_q16 > heat_K_q16): > -> >= at 19": "at the bound the step is zero",
+    "return a < b ? a : b;: < -> <= at 14": "equal numbers are each the lower one",
+    "return a > b ? a : b;: > -> >= at 14": "equal numbers are each the higher one",
+    "if (part_q32 >> 16): >> -> << at 18": "the long way is the same",
+    "if (part_q32 >> 16): 16 -> (15) at 21": "the long way is the same",
+    "if (end_q16 > heat_q16): > -> >= at 17": "at the end the step is zero",
+    "if (elapsed_ticks > 1): > -> >= at 23": "no missed tick heats nothing",
+    "if (elapsed_ticks > 1): 1 -> (0) at 25": "no missed tick heats nothing",
+    "if (me->end_K_q16 <= me->heat_K_q16): <= -> < at 23": "at the end the step is zero",
     "set->force_gain_q14 ? set->over_force_cN64 - derived->force_cN64 : 0, "
     "derived->force_cN64, set->over_force_cN64): 0 -> 1 at 74": "neither margin is negative",
     "0, me->now.value, me->now.bound): 0 -> 1 at 7": "neither margin is negative",

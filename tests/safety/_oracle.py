@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 from fdvv.firmware.core import CoreRequest
-from fdvv.protocol.tables import Evidence, Fault, Mode, Refusal, Settings
+from fdvv.protocol.tables import BoardLimits, Evidence, Fault, Mode, Refusal, Settings
 
 WATCHDOG, BROWN_OUT, OUTPUT, VIBRATION = 1, 2, 4, 8
 BOUNDLESS = 2**31 - 1
@@ -217,6 +217,7 @@ class Supervisor:
     """The state, and the questions and ticks that change it. usable: whether settings may be armed with."""
 
     usable: Callable[[Settings], bool]
+    limits: BoardLimits
     mode: int = Mode.BOOT
     fault: Fault = Fault.NONE
     faults: int = 0
@@ -231,7 +232,10 @@ class Supervisor:
     last_sum: int = 0
     equal_sums: int = 0
     last_um16: int | None = None
-    rate_q32: int = 0
+    end_K_q16: int = 0
+    heating_q32: int = 0
+    cooling_q32: int = 0
+    rise_K: int = 0
     slope_q8: int = 0
 
     @property
@@ -243,7 +247,10 @@ class Supervisor:
         """Mean these settings."""
         self.meant = checksum(settings)
         self.last_um16 = None
-        self.rate_q32 = settings.tick_us * 2**32 // (1000 * settings.heat_time_ms)
+        quick, slow = sorted(1000 * source.heat_time_ms for source in (settings, self.limits))
+        self.heating_q32 = settings.tick_us * 2**32 // quick + 1
+        self.cooling_q32 = settings.tick_us * 2**32 // (slow + settings.tick_us)
+        self.rise_K = max(settings.full_duty_rise_K, self.limits.full_duty_rise_K)
         self.slope_q8 = 256 * settings.force_limit_cN64 // (settings.heat_limit_K - settings.derate_start_K)
 
     def ask(self, settings: Settings, ask: int, number: int) -> Refusal:
@@ -367,8 +374,33 @@ class Supervisor:
             return settings.force_limit_cN64
         return max(0, (end - heat) // 256 * self.slope_q8 // 65536)
 
-    def heat(self, settings: Settings, duty_q15: int, elapsed_ticks: int) -> None:
-        """Warm or cool for so many ticks at that duty."""
-        duty_q16 = -(-duty_q15 * duty_q15 // 2**14)
-        way_K_q16 = settings.full_duty_rise_K * duty_q16 - (self.heat_K_q48 >> 32)
-        self.heat_K_q48 += way_K_q16 * min(self.rate_q32 * elapsed_ticks, 2**32 - 1)
+    def heat(self, duty_q15: int, supply_mV: int, elapsed_ticks: int) -> None:
+        """Let missed ticks warm at the last duty, then one tick warm or cool at this one."""
+        missed = max(0, elapsed_ticks - 1)
+        if missed and self.end_K_q16 > self.heat_K_q48 >> 32:
+            self._warm(missed)
+        self.end_K_q16 = self._end_K_q16(abs(duty_q15), supply_mV)
+        way_K_q16 = self.end_K_q16 - (self.heat_K_q48 >> 32)
+        if way_K_q16 > 0:
+            self._warm(1)
+        else:
+            self.heat_K_q48 += way_K_q16 * self.cooling_q32
+
+    def _warm(self, ticks: int) -> None:
+        part_q32 = ticks * self.heating_q32
+        if part_q32 >= 2**32:
+            self.heat_K_q48 = self.end_K_q16 * 2**32
+        else:
+            self.heat_K_q48 += (self.end_K_q16 - (self.heat_K_q48 >> 32)) * part_q32
+
+    def _end_K_q16(self, duty_q15: int, supply_mV: int) -> int:
+        """Return the rise for ever: a lower supply counts as nominal, above it a chord of the square does."""
+        low_mV, high_mV = self.limits.nominal_supply_mV, self.limits.supply_high_mV
+        rise_K = self.rise_K
+        if supply_mV > low_mV:
+            highest_K = rise_K
+            for _ in range(2):
+                highest_K = min(65_534, highest_K * high_mV // low_mV + 1)
+            slope_q16 = (highest_K - rise_K) * 2**16 // (high_mV - low_mV) + 1 if high_mV > low_mV else 0
+            rise_K += (supply_mV - low_mV) * slope_q16 % 2**32 // 2**16 + 1
+        return rise_K * -(-(duty_q15**2) // 2**14) % 2**32

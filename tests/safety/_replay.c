@@ -4,7 +4,7 @@
 
 #include "supervisor.h"
 
-enum { INIT, SETTINGS, ASK, HOST, CHECK, FAULT, LIMIT, HEAT, SETTINGS_CHECK, POKE_MODE, POKE_FAULTS };
+enum { INIT, SETTINGS, ASK, HOST, CHECK, FAULT, LIMIT, HEAT, POKE_MODE, POKE_FAULTS };
 
 typedef struct {
     uint32_t call, settings;           /* which call; number of the settings */
@@ -13,18 +13,18 @@ typedef struct {
     int32_t displacement_um16;
     int16_t force_cN64, commanded_cN64;
     uint8_t state, mode, fault, spare; /* from mode on: what is expected */
-    uint32_t heat_K_q16;
+    uint32_t heat_K_q16, heat_rest_q48;
     int32_t gives;
     uint16_t faults, spare2;
     fdvv_evidence evidence;
 } step;
 
-int safety_replay(const step *steps, int count, const fdvv_settings *settings);
+int safety_replay(const step *steps, int count, const fdvv_settings *settings, const fdvv_board_limits *limits);
 
-static int32_t play(fdvv_supervisor *me, const step *it, const fdvv_settings *settings)
+static int32_t play(fdvv_supervisor *me, const step *it, const fdvv_settings *settings, const fdvv_board_limits *limits)
 {
     switch (it->call) {
-    case INIT: fdvv_supervisor_init(me); return 0;
+    case INIT: fdvv_supervisor_init(me, limits + it->a); return 0;
     case SETTINGS: fdvv_supervisor_settings(me, settings); return 0;
     case ASK: return fdvv_supervisor_ask(me, settings, (uint8_t)it->a, (uint8_t)it->b);
     case HOST: fdvv_supervisor_host_seen(me, (uint32_t)it->a); return 0;
@@ -34,8 +34,7 @@ static int32_t play(fdvv_supervisor *me, const step *it, const fdvv_settings *se
         return 0;
     case FAULT: fdvv_supervisor_fault(me, (uint8_t)it->a, it->b, it->c); return 0;
     case LIMIT: return fdvv_supervisor_limit_cN64(me, settings);
-    case HEAT: fdvv_supervisor_heat(me, settings, (int16_t)it->a, (uint16_t)it->b); return 0;
-    case SETTINGS_CHECK: return fdvv_settings_check(settings);
+    case HEAT: fdvv_supervisor_heat(me, (int16_t)it->a, (uint16_t)it->b, (uint16_t)it->c); return 0;
     case POKE_MODE: me->mode = (uint8_t)it->a; return 0;
     case POKE_FAULTS: me->faults = (uint16_t)it->a; return 0;
     default: return -1;
@@ -43,16 +42,16 @@ static int32_t play(fdvv_supervisor *me, const step *it, const fdvv_settings *se
 }
 
 /* Give the number of the first step that goes otherwise than expected, or count. */
-int safety_replay(const step *steps, int count, const fdvv_settings *settings)
+int safety_replay(const step *steps, int count, const fdvv_settings *settings, const fdvv_board_limits *limits)
 {
     fdvv_supervisor me;
     int i;
     memset(&me, 0xa5, sizeof me);
     for (i = 0; i < count; i++) {
         const step *it = &steps[i];
-        int32_t gave = play(&me, it, &settings[it->settings]);
+        int32_t gave = play(&me, it, &settings[it->settings], limits);
         if (gave != it->gives || me.mode != it->mode || me.fault != it->fault || me.faults != it->faults ||
-            me.heat_K_q16 != it->heat_K_q16 || memcmp(&me.evidence, &it->evidence, sizeof me.evidence))
+            me.heat_K_q16 != it->heat_K_q16 || me.heat_rest_q48 != it->heat_rest_q48 || memcmp(&me.evidence, &it->evidence, sizeof me.evidence))
             return i;
     }
     return count;
@@ -75,17 +74,19 @@ static void *contents(const char *name, long *bytes)
     return memory;
 }
 
-/* Files of settings and of steps; 0: all went as expected, 1: it did not. */
+/* Files of settings, of steps and of limits; 0: all went as expected, 1: it did not. */
 int main(int count, char **names)
 {
-    long settings_bytes, steps_bytes;
+    long settings_bytes, steps_bytes, limits_bytes;
     fdvv_settings *settings;
+    fdvv_board_limits *limits;
     step *steps;
-    if (count != 3)
+    if (count != 4)
         return 2;
     settings = contents(names[1], &settings_bytes);
     steps = contents(names[2], &steps_bytes);
+    limits = contents(names[3], &limits_bytes);
     count = (int)(steps_bytes / (long)sizeof(step));
-    return safety_replay(steps, count, settings) != count;
+    return safety_replay(steps, count, settings, limits) != count;
 }
 #endif

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from fdvv.firmware.core import CoreRequest
-from fdvv.protocol.tables import Fault, Mode, Settings
+from fdvv.firmware.limits import limits_like
+from fdvv.protocol.tables import BoardLimits, Fault, Mode, Settings
 from tests.safety._oracle import BROWN_OUT, OUTPUT, VIBRATION, WATCHDOG, Inputs
 from tests.safety._script import Script
 
@@ -67,7 +68,7 @@ def into(script: Script, mode: Mode, settings: Settings = SENSED) -> None:
 def warm(script: Script, settings: Settings, rise_K: int) -> None:
     """Heat until the rise is reached, and see to the limit."""
     while script.oracle.heat_K_q48 >> 48 < rise_K:
-        script.heat(settings, 32767, 400)
+        script.heat(32767, 400)
     script.limit(settings)
 
 
@@ -166,6 +167,7 @@ def stuck(script: Script) -> None:
         into(script, Mode.ARMED)
         for i in range(1 + ticks):
             script.tick(SENSED, Inputs(sum=7, time_us=250 * i))
+            script.ask(SENSED, CoreRequest.CLEAR, Fault.POSITION_STUCK)
     into(script, Mode.IDLE)
     for _ in range(30):
         script.check(SENSED, Inputs(sum=8))
@@ -253,47 +255,89 @@ def heat(script: Script) -> None:
         Settings(derate_start_K=89, force_limit_cN64=31999, heat_time_ms=100, tick_us=1000),
         replace(SLOWEST, derate_start_K=1, heat_limit_K=2, full_duty_rise_K=20_000),
         Settings(heat_time_ms=1024, tick_us=1000),
+        Settings(heat_limit_K=600, full_duty_rise_K=16_383, tick_us=1000),
         Settings(derate_start_K=500, heat_limit_K=600, full_duty_rise_K=1000, heat_time_ms=100),
     ):
         for duty in (32767, -32768, 20_000):
             script.armed(settings)
             for i in range(300):
                 warming = script.oracle.heat_K_q48 >> 48 < settings.heat_limit_K and i < 200
-                script.heat(settings, duty if warming else 0, 1 + 61 * (i % 7))
+                script.heat(duty if warming else 0, 1 + 61 * (i % 7))
                 script.limit(settings)
             script.tick(settings, Inputs(sum=1))
             for elapsed in (1, 2, 40_000, 65_535, 0):
-                script.heat(settings, -32768, elapsed)
+                script.heat(-32768, elapsed)
                 script.limit(settings)
             script.tick(settings, Inputs(sum=2))
             script.ask(settings, CoreRequest.CLEAR, Fault.OVER_HEAT)
-            for elapsed in (65_535, 65_535):
-                script.heat(settings, 0, elapsed)
+            for elapsed in (65_535, *(1,) * 300):
+                script.heat(0, elapsed)
             script.tick(settings, Inputs(sum=3))
             script.ask(settings, CoreRequest.CLEAR, Fault.OVER_HEAT)
         script.armed(settings)
         for duty in range(-260, 260, 9):
-            script.heat(settings, duty, 1)
+            script.heat(duty)
     crossings(script)
+    boards(script)
 
 
 def crossings(script: Script) -> None:
-    """Come to the start of derating and to its end exactly: a time constant of one step, whole kelvins."""
-    for rise_K in (15, 16, 17, 30):
+    """Come to the start of derating and to its end exactly: many missed ticks end at whole kelvins."""
+    for rise_K in (15, 16, 17, 29, 30):
         settings = Settings(
             full_duty_rise_K=rise_K, derate_start_K=16, heat_limit_K=30, heat_time_ms=100, tick_us=1000
         )
         script.armed(settings)
-        for _ in range(40):
-            script.heat(settings, -32768, 65_535)
+        for _ in range(4):
+            script.heat(-32768, 65_535)
             script.limit(settings)
         script.tick(settings, Inputs(sum=1))
-        cooler = replace(settings, full_duty_rise_K=15)
-        for _ in range(40):
-            script.heat(cooler, -32768, 65_535)
-            script.limit(settings)
-        script.heat(settings, 0, 1)
-        script.limit(settings)
+    sooner = Settings(full_duty_rise_K=15, derate_start_K=10, heat_limit_K=30, heat_time_ms=100, tick_us=1000)
+    for duty in (-32768, 32767):
+        # derated at 15 K, or just below: the way back begins there
+        script.armed(sooner)
+        for _ in range(4):
+            script.heat(duty, 65_535)
+            script.limit(sooner)
+        later = replace(sooner, derate_start_K=16)
+        script.mean(later)
+        for _ in range(3):
+            script.limit(later)
+            script.heat(0)
+
+
+def boards(script: Script) -> None:
+    """Warm and cool under settings that are quicker, slower and warmer than the board, at any supply."""
+    board = replace(limits_like(Settings(heat_time_ms=200)), supply_high_mV=40_000)
+    for time_ms, rise_K in ((100, 596), (200, 597), (400, 2000), (600_000, 20_000)):
+        settings = Settings(heat_time_ms=time_ms, full_duty_rise_K=rise_K, tick_us=1000)
+        script.start(settings, board)
+        for supply_mV in (0, 11_999, 12_000, 12_001, 18_000, 24_000, 24_001, 40_000):
+            for duty in (-32768, 32767, 1, 0):
+                for elapsed in (1, 3, 0, 2):
+                    script.heat(duty, elapsed, supply_mV)
+        for supply_mV in range(12_100, 40_000, 700):
+            script.heat(32_765, 1, supply_mV)
+        script.heat(0, 1, 65_535)
+        # the end of the last duty counts for the ticks that were missed
+        script.heat(20_000, 1, 12_000)
+        script.heat(0, 50)
+        script.heat(0, 50)
+    script.start(Settings(full_duty_rise_K=16_383), replace(board, full_duty_rise_K=16_383))
+    for supply_mV in (20_000, 23_999, 24_000):
+        script.heat(32767, 1, supply_mV)
+    for high_mV in (11_999, 12_000, 12_001):
+        script.start(SENSED, replace(limits_like(SENSED), supply_high_mV=high_mV))
+        for supply_mV in (11_999, 12_000, 12_001):
+            script.heat(20_000, 1, supply_mV)
+    warm = Settings(full_duty_rise_K=100, heat_time_ms=100)
+    script.start(warm, replace(board, full_duty_rise_K=16_383, heat_time_ms=600_000))
+    for duty in (32767, 0):
+        script.heat(duty, 9)
+    loose = replace(limits_like(SENSED), force_limit_cN64=SENSED.force_limit_cN64 - 1)
+    script.start(SENSED, loose)
+    script.ask(SENSED, CoreRequest.BOOTED)
+    script.ask(SENSED, CoreRequest.ARM)
 
 
 def chance(script: Script, seed: int, ticks: int) -> None:
@@ -304,7 +348,7 @@ def chance(script: Script, seed: int, ticks: int) -> None:
     for i in range(ticks):
         if i % 250 == 0:
             settings, talking, holding = random_settings(rng), rng.random() < 0.7, rng.random() < 0.3
-            script.start(settings)
+            script.start(settings, random_limits(rng, settings))
             script.ask(settings, CoreRequest.BOOTED)
         elapsed = 1 if rng.random() < 0.99 else rng.randint(0, settings.late_ticks + 1)
         time_us = (time_us + elapsed * settings.tick_us) % 2**32
@@ -351,6 +395,18 @@ def random_settings(rng: random.Random) -> Settings:
         heat_limit_K=start + rng.randint(1, 60),
         host_timeout_ms=rng.randint(20, 60),
     )
+
+
+def random_limits(rng: random.Random, settings: Settings) -> BoardLimits:
+    """Draw a board that takes these settings, mostly, with another coil than they say."""
+    like = limits_like(settings)
+    most = replace(
+        like,
+        heat_time_ms=rng.choice([100, 150, 1000, 60_000]),
+        full_duty_rise_K=rng.choice([1, like.full_duty_rise_K]),
+        nominal_supply_mV=settings.nominal_supply_mV + rng.choice([0, 0, -3000]),
+    )
+    return most if rng.random() < 0.9 else replace(most, host_timeout_ms=20)
 
 
 def _near(rng: random.Random, usual: int, bound: int, largest: int) -> int:

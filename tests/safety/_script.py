@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from fdvv.firmware.core import INPUTS, CoreRequest
-from fdvv.protocol.tables import Evidence, Settings
+from fdvv.firmware.limits import limits_like
+from fdvv.protocol.tables import BoardLimits, Evidence, Settings
 from tests.safety._build import safety_library
 from tests.safety._oracle import Inputs, Supervisor
 
@@ -24,7 +25,6 @@ CALLS = {
             "fault",
             "limit",
             "heat",
-            "settings_check",
             "poke_mode",
             "poke_faults",
         )
@@ -44,6 +44,7 @@ STEP = np.dtype(
         ("fault", "u1"),
         ("spare", "u1"),
         ("heat_K_q16", "<u4"),
+        ("heat_rest_q48", "<u4"),
         ("gives", "<i4"),
         ("faults", "<u2"),
         ("spare2", "<u2"),
@@ -53,28 +54,36 @@ STEP = np.dtype(
 """As `step` in _replay.c."""
 
 
-def c_settings_check(packed: bytes) -> int:
-    """Ask the C code: 0, or 1 + the number of the first wrong field."""
-    return int(safety_library().fdvv_settings_check(ctypes.create_string_buffer(packed, len(packed))))
+def c_settings_check(packed: bytes, limits: BoardLimits | None = None) -> int:
+    """Ask the C code: 0, or 1 + the number of the first wrong field. None: limits of the default rig."""
+    board = (limits or limits_like(Settings())).pack()
+    pair = (ctypes.create_string_buffer(data, len(data)) for data in (packed, board))
+    return int(safety_library().fdvv_settings_check(*pair))
 
 
 class Script:
     """Calls as they are made: each is played on the oracle at once, and kept with what that did."""
 
     def __init__(self) -> None:
-        self.oracle = self._fresh()
+        self.oracle = self._fresh(limits_like(Settings()))
         self.all_settings: list[Settings] = []
+        self.all_limits: list[BoardLimits] = []
         self.steps: list[tuple[Any, ...]] = []
         self._evidence = (self.oracle.evidence, self.oracle.evidence.pack())
 
     @staticmethod
-    def _fresh() -> Supervisor:
-        return Supervisor(usable=lambda settings: c_settings_check(settings.pack()) == 0)
+    def _fresh(limits: BoardLimits) -> Supervisor:
+        return Supervisor(
+            usable=lambda settings: c_settings_check(settings.pack(), limits) == 0, limits=limits
+        )
 
-    def start(self, settings: Settings) -> None:
-        """Boot with these settings."""
-        self.oracle = self._fresh()
-        self._keep("init", settings)
+    def start(self, settings: Settings, limits: BoardLimits | None = None) -> None:
+        """Boot with these settings on a board; None: on one that was built for them."""
+        limits = limits or limits_like(settings)
+        self.oracle = self._fresh(limits)
+        if not self.all_limits or self.all_limits[-1] != limits:
+            self.all_limits.append(limits)
+        self._keep("init", settings, (len(self.all_limits) - 1, 0, 0))
         self.mean(settings)
 
     def mean(self, settings: Settings) -> None:
@@ -104,16 +113,16 @@ class Script:
         self._keep("limit", settings, gives=gives)
         return gives
 
-    def heat(self, settings: Settings, duty_q15: int, elapsed_ticks: int) -> None:
-        """Warm the coil."""
-        self.oracle.heat(settings, duty_q15, elapsed_ticks)
-        self._keep("heat", settings, (duty_q15, elapsed_ticks, 0))
+    def heat(self, duty_q15: int, elapsed_ticks: int = 1, supply_mV: int = 12_000) -> None:
+        """Warm the coil, or let it cool."""
+        self.oracle.heat(duty_q15, supply_mV, elapsed_ticks)
+        self._keep("heat", None, (duty_q15, supply_mV, elapsed_ticks))
 
     def tick(self, settings: Settings, inputs: Inputs, duty_q15: int = 0) -> int:
         """Run what the core runs of the supervisor in a tick; return the limit."""
         self.check(settings, inputs)
         limit = self.limit(settings)
-        self.heat(settings, duty_q15 if limit else 0, max(1, inputs.elapsed_ticks))
+        self.heat(duty_q15 if limit else 0, max(1, inputs.elapsed_ticks), inputs.supply_mV)
         return limit
 
     def found(self, number: int, value: int, bound: int) -> None:
@@ -167,6 +176,7 @@ class Script:
                 int(oracle.fault),
                 0,
                 oracle.heat_K_q48 >> 32,
+                oracle.heat_K_q48 % 2**32,
                 gives,
                 oracle.faults,
                 0,
@@ -174,13 +184,15 @@ class Script:
             )
         )
 
-    def packed(self) -> tuple[bytes, bytes]:
-        """Return the settings and the steps as the C side reads them."""
-        settings = b"".join(settings.pack() for settings in self.all_settings)
-        return settings, np.array(self.steps, STEP).tobytes()
+    def packed(self) -> tuple[bytes, bytes, bytes]:
+        """Return the settings, the steps and the limits as the C side reads them."""
+        settings, limits = (
+            b"".join(record.pack() for record in records) for records in (self.all_settings, self.all_limits)
+        )
+        return settings, np.array(self.steps, STEP).tobytes(), limits
 
     def play(self) -> str:
         """Play it on the C code; empty if all went as expected, else what came at which step."""
-        settings, steps = self.packed()
-        first = safety_library().safety_replay(steps, ctypes.c_int(len(self.steps)), settings)
+        settings, steps, limits = self.packed()
+        first = safety_library().safety_replay(steps, ctypes.c_int(len(self.steps)), settings, limits)
         return "" if first == len(self.steps) else f"step {first}: {self.steps[first]}"

@@ -32,6 +32,7 @@ class Bench(NamedTuple):
     others: tuple[Path, ...]
     settings: Path
     steps: Path
+    limits: Path
 
 
 @pytest.fixture(scope="module")
@@ -41,11 +42,11 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Bench:
     for scene in _scenes.DIRECTED:
         scene(script)
     _scenes.chance(script, seed=1, ticks=2000)
-    for name, data in zip(("settings", "steps"), script.packed(), strict=True):
+    for name, data in zip(("settings", "steps", "limits"), script.packed(), strict=True):
         (folder / name).write_bytes(data)
     replay = compile_c(folder / "replay.o", "-O1", "-c", "-DREPLAY_MAIN", sources=(REPLAY,))
     checks = compile_c(folder / "settings.o", "-O1", "-c", sources=(CORE / "settings.c",))
-    return Bench(folder, (replay, checks), folder / "settings", folder / "steps")
+    return Bench(folder, (replay, checks), folder / "settings", folder / "steps", folder / "limits")
 
 
 def verdict(bench: Bench, mutant: Mutant, number: int) -> str:
@@ -63,7 +64,10 @@ def verdict(bench: Bench, mutant: Mutant, number: int) -> str:
         return "not C"
     try:
         same = subprocess.run(
-            [program, bench.settings, bench.steps], capture_output=True, check=False, timeout=SECONDS
+            [program, bench.settings, bench.steps, bench.limits],
+            capture_output=True,
+            check=False,
+            timeout=SECONDS,
         )
     except subprocess.TimeoutExpired:
         return "caught"

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import ctypes
 import dataclasses
 import random
 import struct
 
 import pytest
 
-from fdvv.protocol.tables import Settings
+from fdvv.firmware.limits import limits_like, refused_because
+from fdvv.protocol.tables import BoardLimits, Settings
+from tests.safety._build import safety_library
 from tests.safety._script import c_settings_check
 
 NAMES = [field.name for field in dataclasses.fields(Settings)]
@@ -20,9 +23,18 @@ def packed(**changes: int) -> bytes:
     return struct.pack(Settings.FORMAT, *(values[name] for name in NAMES))
 
 
-def refused(**changes: int) -> str:
+LOOSEST = BoardLimits(
+    **{
+        name: low if name in ("full_duty_rise_K", "tick_low_us") else high
+        for name, (low, high) in BoardLimits.LIMITS.items()
+    }
+)
+"""A board that leaves every setting its whole range."""
+
+
+def refused(limits: BoardLimits = LOOSEST, /, **changes: int) -> str:
     """Name the field that is refused; empty if none is."""
-    number = c_settings_check(packed(**changes))
+    number = c_settings_check(packed(**changes), limits)
     return NAMES[number - 1] if number else ""
 
 
@@ -76,3 +88,85 @@ def test_the_largest_displacement_must_fit_32_bits() -> None:
 
 def test_a_gain_of_zero_would_hide_every_displacement() -> None:
     assert refused(position_gain_q14=0) == "position_gain_q14"
+
+
+DEFAULT = limits_like(Settings())
+BOUNDS = {
+    "tick_us": (250, 1000),
+    "force_limit_cN64": (None, 28_160),
+    "duty_gain_q16": (None, 25_992),
+    "duty_limit_q15": (None, 32_000),
+    "supply_high_mV": (None, 14_000),
+    "full_duty_rise_K": (596, None),
+    "heat_limit_K": (None, 90),
+    "host_timeout_ms": (None, 250),
+}
+"""What a board built for the default rig, with a lower duty limit, leaves to each of these settings."""
+
+
+@pytest.mark.parametrize("name", BOUNDS)
+def test_settings_may_only_be_tighter_than_the_board(name: str) -> None:
+    board = dataclasses.replace(DEFAULT, duty_limit_q15=32_000)
+    for bound, way in zip(BOUNDS[name], (-1, 1), strict=True):
+        if bound is not None:
+            assert refused(board, **{"duty_limit_q15": 32_000, name: bound}) == ""
+            assert refused(board, **{"duty_limit_q15": 32_000, name: bound + way}) == name
+            assert refused(board, **{"duty_limit_q15": 32_000, name: bound - way}) == ""
+
+
+def test_any_other_setting_may_have_any_value_of_its_range() -> None:
+    for name in set(NAMES) - set(BOUNDS) - {"nominal_supply_mV"}:
+        for value in Settings.LIMITS[name]:
+            assert refused(DEFAULT, **{name: value}) == refused(LOOSEST, **{name: value}), name
+
+
+def test_a_higher_nominal_supply_leaves_less_duty_per_force() -> None:
+    at_most = DEFAULT.duty_gain_q16 * DEFAULT.nominal_supply_mV
+    for nominal_mV in (3000, 11_999, 12_001, 24_000, 36_000):
+        gain = min(65_535, at_most // nominal_mV)
+        assert refused(DEFAULT, nominal_supply_mV=nominal_mV, duty_gain_q16=gain) == ""
+        if gain < 65_535:
+            assert refused(DEFAULT, nominal_supply_mV=nominal_mV, duty_gain_q16=gain + 1) == "duty_gain_q16"
+
+
+def tightened(settings: Settings, limits: BoardLimits) -> Settings:
+    """Let the C code tighten settings."""
+    data = ctypes.create_string_buffer(settings.pack(), Settings.length_bytes())
+    safety_library().fdvv_settings_tighten(data, ctypes.create_string_buffer(limits.pack(), 64))
+    return Settings.unpack(data.raw)
+
+
+def test_a_board_starts_with_settings_no_looser_than_itself() -> None:
+    rng = random.Random(2)
+    for _ in range(500):
+        limits = BoardLimits(
+            **{
+                name: rng.choice([low, high, rng.randint(low, high)])
+                for name, (low, high) in BoardLimits.LIMITS.items()
+                if name not in ("tick_low_us", "supply_high_mV", "duty_gain_q16")
+            },
+            tick_low_us=100,
+            supply_high_mV=rng.randint(3000, 40_000),
+            duty_gain_q16=rng.randint(5000, 65_535),
+        )
+        started = tightened(Settings(), limits)
+        assert c_settings_check(started.pack(), limits) == 0
+        for name in NAMES:
+            was, now = getattr(Settings(), name), getattr(started, name)
+            assert now == was or name in (*BOUNDS, "derate_start_K", "supply_low_mV")
+            assert now >= was if name == "full_duty_rise_K" else now <= was
+    assert tightened(Settings(), DEFAULT) == Settings()
+
+
+@pytest.mark.parametrize("name", BOUNDS)
+def test_the_refusal_names_the_field_and_the_limit_of_the_board(name: str) -> None:
+    board = dataclasses.replace(DEFAULT, duty_limit_q15=32_000, tick_high_us=900)
+    for bound, way in zip(BOUNDS[name], (-1, 1), strict=True):
+        if bound is not None:
+            bound = min(bound, 900) if name == "tick_us" else bound
+            settings = dataclasses.replace(Settings(), **{name: bound + way})
+            said = refused_because(name, settings, board)
+            assert f"{name} is {bound + way}" in said
+            assert f"{'at least' if way < 0 else 'at most'} {bound};" in said
+            assert "needs firmware built for another rig" in said
+    assert "out of its range" in refused_because("window_end_um16", Settings(), DEFAULT)

@@ -10,6 +10,7 @@ import tty
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LockstepPort
 from fdvv.device.remote import surface_image
+from fdvv.firmware.limits import limits_like
 from fdvv.protocol.frame import FrameDecoder
 from fdvv.protocol.tables import Message, Settings
 from fdvv.testing.conformance import plain_surface
@@ -37,6 +38,7 @@ class Rig(threading.Thread):
         os.set_blocking(self.line, False)
         self.path = os.ttyname(self.slave)
         self.board = LibraryBoard()
+        self.board.build(limits_like(SETTINGS))
         self.port = LockstepPort(self.board, person.rest(SETTINGS), SETTINGS.tick_us)
         self.over = threading.Event()
 

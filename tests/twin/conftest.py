@@ -15,7 +15,7 @@ from fdvv.twin.noise import Noise, count_ticks
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_kernel import Grid, grid_of, plant_of, run
 from fdvv.twin.rig_moves import Exciter
-from fdvv.twin.settings import settings_of
+from fdvv.twin.settings import limits_of, settings_of
 from fdvv.twin.trace import Trace
 from fdvv.units import FloatArray
 
@@ -69,7 +69,9 @@ class Bench:
         n = count_ticks(BARE, self.gesture)
         quiet = Noise(np.zeros((n, self.grid.reads)), *(np.zeros(n) for _ in range(4)))
         image = image_of(self.surface, 4.0).image
-        rows = run(self.plant, self.grid, settings_of(BARE), image, self.gesture, quiet, 0, 100.0)
+        rows = run(
+            self.plant, self.grid, (settings_of(BARE), limits_of(BARE)), image, self.gesture, quiet, 0, 100.0
+        )
         return Trace.of_rows(rows, audit=True)
 
 

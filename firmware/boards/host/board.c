@@ -7,6 +7,7 @@
 #define TRAVEL_LIMIT_UM16 99200 /* 6.2 mm, the paper's coil */
 
 struct fdvv_host {
+    fdvv_board_limits limits;
     fdvv_core core;
     fdvv_link link;
     fdvv_board board;
@@ -67,16 +68,18 @@ static void describe(fdvv_board *board, fdvv_read_counters_reply *counters)
     board->counters = counters;
 }
 
-fdvv_host *fdvv_host_new(void)
+fdvv_host *fdvv_host_new(const fdvv_board_limits *limits)
 {
-    static const fdvv_settings defaults = FDVV_SETTINGS_DEFAULTS;
+    fdvv_settings settings = FDVV_SETTINGS_DEFAULTS;
     fdvv_host *host = (fdvv_host *)calloc(1, sizeof *host);
     if (!host)
         return 0;
     current = host;
     describe(&host->board, &host->counters);
     host->slot = FDVV_NONE;
-    fdvv_core_init(&host->core, &defaults);
+    host->limits = *limits;
+    fdvv_settings_tighten(&settings, &host->limits);
+    fdvv_core_init(&host->core, &settings, &host->limits);
     (void)fdvv_supervisor_ask(&host->core.supervisor, &host->core.settings, FDVV_ASK_BOOTED, 0);
     fdvv_link_init(&host->link, &host->core, &host->board);
     return host;

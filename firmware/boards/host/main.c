@@ -2,7 +2,8 @@
  *
  *   fdvv-host PLANT_IN PLANT_OUT [TTY]
  *
- * PLANT_IN and PLANT_OUT are file descriptors. For every tick the plant sends a `tick_request` and receives a
+ * PLANT_IN and PLANT_OUT are file descriptors. The plant first sends the limits of the board: a program on a computer
+ * is a build for the rig that it is connected to. For every tick it sends a `tick_request` and receives a
  * `tick_reply`; there is no other clock. The link to the host is TTY, or standard input and output. Both records count
  * the bytes sent over the link, so that a tick sees all that was written before it, regardless of buffering. The
  * program ends when the plant's pipe is closed. */
@@ -147,11 +148,12 @@ static int open_raw(const char *path)
 int main(int count, char **arguments)
 {
     static connection link;
+    fdvv_board_limits limits;
     tick_request request;
     tick_reply reply = {{0, 0, 0, 0, 0, 0, {0, 0, 0, 0, 0, 0}}, 0};
-    fdvv_host *host = fdvv_host_new();
+    fdvv_host *host;
     int in, out;
-    if (!host || count < 3 || count > 4) {
+    if (count < 3 || count > 4) {
         (void)fprintf(stderr, "usage: fdvv-host PLANT_IN PLANT_OUT [TTY]\n");
         return 2;
     }
@@ -163,6 +165,8 @@ int main(int count, char **arguments)
         perror(arguments[3]);
         return 1;
     }
+    if (!read_whole(in, &limits, sizeof limits) || !(host = fdvv_host_new(&limits)))
+        return 1;
     while (read_whole(in, &request, sizeof request)) {
         tick(host, &link, &request, &reply);
         if (!write_whole(out, &reply, sizeof reply))

@@ -1,6 +1,7 @@
 /* Controller of the rig: runs a tick as soon as its readings are available, and serves USB, link and vibration board
  * between ticks. */
 #include "board.h"
+#include "limits.h"
 #include "link_state.h"
 #include "pins.h"
 #include "vibration.h"
@@ -168,7 +169,8 @@ static void drive_vibration(void)
 
 static void start(void)
 {
-    static const fdvv_settings defaults = FDVV_SETTINGS_DEFAULTS;
+    static const fdvv_board_limits limits = BOARD_LIMITS;
+    fdvv_settings settings = FDVV_SETTINGS_DEFAULTS;
     uint8_t cause = board_reset_cause();
     reset_bits = cause == BOARD_RESET_WATCHDOG    ? FDVV_BOARD_WATCHDOG
                  : cause == BOARD_RESET_BROWN_OUT ? FDVV_BOARD_BROWN_OUT
@@ -179,7 +181,8 @@ static void start(void)
     board_wire_start();
     board_usb_start();
     describe();
-    fdvv_core_init(&core, &defaults);
+    fdvv_settings_tighten(&settings, &limits);
+    fdvv_core_init(&core, &settings, &limits);
     fdvv_supervisor_ask(&core.supervisor, &core.settings, FDVV_ASK_BOOTED, 0);
     fdvv_link_init(&link, &core, &board);
     vibration_silence();

@@ -37,12 +37,13 @@ static fdvv_twin_noise from_tick(const fdvv_twin_noise *n, int64_t k, int64_t re
 }
 
 int fdvv_twin_press(const fdvv_rig_model *model, const fdvv_rig_grid *grid, const fdvv_twin_press_plan *plan,
-                    const fdvv_settings *settings, const fdvv_force_loop_gains *loop, const uint8_t *image,
-                    const fdvv_twin_noise *noise, double *rows, double *tick_rows, fdvv_outputs *outputs) {
+                    const fdvv_settings *settings, const fdvv_board_limits *limits, const fdvv_force_loop_gains *loop,
+                    const uint8_t *image, const fdvv_twin_noise *noise, double *rows, double *tick_rows,
+                    fdvv_outputs *outputs) {
     fdvv_rig rig;
     fdvv_core core;
     fdvv_inputs inputs;
-    fdvv_core_init(&core, settings);
+    fdvv_core_init(&core, settings, limits);
     fdvv_core_close_loop(&core, loop);
     fdvv_core_activate(&core, image);
     fdvv_core_announce(&core, (uint16_t)plan->announced_mm_s16);

@@ -41,8 +41,9 @@ void fdvv_twin_run(fdvv_core *core, fdvv_rig *rig, int64_t ticks, const fdvv_twi
  * tick_rows (ticks, FDVV_RIG_TICK_COLUMNS) at each tick; outputs (ticks,) of the core.
  * Returns 0; 1 if the grid is invalid; 2 if the plan is invalid or the core did not arm. */
 int fdvv_twin_press(const fdvv_rig_model *model, const fdvv_rig_grid *grid, const fdvv_twin_press_plan *plan,
-                    const fdvv_settings *settings, const fdvv_force_loop_gains *loop, const uint8_t *image,
-                    const fdvv_twin_noise *noise, double *rows, double *tick_rows, fdvv_outputs *outputs);
+                    const fdvv_settings *settings, const fdvv_board_limits *limits, const fdvv_force_loop_gains *loop,
+                    const uint8_t *image, const fdvv_twin_noise *noise, double *rows, double *tick_rows,
+                    fdvv_outputs *outputs);
 
 /* Sizes of the structures in bytes, for Python to compare with its own. */
 void fdvv_twin_sizes(int64_t *plan_bytes, int64_t *noise_bytes, int64_t *outputs_bytes);

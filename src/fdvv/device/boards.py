@@ -13,7 +13,8 @@ from pathlib import Path
 from fdvv import _native
 from fdvv.device.plant import OUTPUTS_BYTES, Inputs, Outputs
 from fdvv.errors import BuildError, DeviceError
-from fdvv.protocol.tables import ImageHeader
+from fdvv.firmware.limits import limits_like
+from fdvv.protocol.tables import BoardLimits, ImageHeader, Settings
 
 TAIL = struct.Struct("<II")
 SENT = struct.Struct("<I")
@@ -32,11 +33,17 @@ class LibraryBoard:
         self._library = library = _native.library()
         library.fdvv_host_new.restype = library.fdvv_host_program.restype = ctypes.c_void_p
         library.fdvv_host_receive.restype = library.fdvv_host_transmit.restype = ctypes.c_uint16
-        self._handle = ctypes.c_void_p(self._library.fdvv_host_new())
+        self._handle = ctypes.c_void_p()
+        self.build(limits_like(Settings()))
         self._outputs = ctypes.create_string_buffer(OUTPUTS_BYTES)
         self._room = ctypes.create_string_buffer(4096)
         self._waiting = b""
         self._plugged = True
+
+    def build(self, limits: BoardLimits) -> None:
+        """Start as a build for another rig."""
+        self._library.fdvv_host_free(self._handle)
+        self._handle = ctypes.c_void_p(self._library.fdvv_host_new(limits.pack()))
 
     def tick(self, inputs: Inputs) -> Outputs:
         if not self._handle.value:
@@ -111,6 +118,14 @@ class HostBoard:
         self._written = self._heard = 0
         self._waiting = self._arrived = self._answer = b""
         self._plugged, self._open, self._owed = True, True, False
+        self._limits = limits_like(Settings())
+        self._built = False
+
+    def build(self, limits: BoardLimits) -> None:
+        """Be a build for this rig; DeviceError after the first tick."""
+        if self._built:
+            raise DeviceError("host: it runs already; open another board for this rig")
+        self._limits = limits
 
     @property
     def pid(self) -> int:
@@ -118,6 +133,9 @@ class HostBoard:
 
     def tick(self, inputs: Inputs) -> Outputs:
         try:
+            if not self._built:
+                os.write(self._requests, self._limits.pack())
+                self._built = True
             if self._owed:
                 self._take()  # Ctrl-C came between question and answer
             self._flush()

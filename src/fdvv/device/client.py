@@ -7,8 +7,9 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from fdvv.device.telemetry import Telemetry
-from fdvv.device.wire import ClockRelation, Exchange, Notice, Port, Wire, relate, unwrap_us
+from fdvv.device.wire import ClockRelation, Exchange, Notice, Port, RefusedError, Wire, relate, unwrap_us
 from fdvv.errors import DeviceError
+from fdvv.firmware.limits import refused_because
 from fdvv.protocol.messages import data_request, head_of
 from fdvv.protocol.record import Record
 from fdvv.protocol.tables import (
@@ -18,6 +19,7 @@ from fdvv.protocol.tables import (
     VERSION,
     AnnounceRequest,
     BeginRequest,
+    BoardLimits,
     CellSpec,
     ClearFaultRequest,
     EventRequest,
@@ -35,6 +37,7 @@ from fdvv.protocol.tables import (
     ReadForceLoopReply,
     ReadForceLoopRequest,
     RecordsRequest,
+    Refusal,
     SelftestReply,
     Settings,
     TelemetryRequest,
@@ -126,9 +129,22 @@ class Client:
     def read_settings(self) -> Settings:
         return self._request(Message.READ_SETTINGS, Settings)
 
+    def read_limits(self) -> BoardLimits:
+        """Return what the board was built for."""
+        return self._request(Message.READ_LIMITS, BoardLimits)
+
     def write_settings(self, settings: Settings) -> None:
-        """Replace calibration and limits; while idle, and the device forgets its programs."""
-        self._command(Message.WRITE_SETTINGS, settings)
+        """Replace calibration and limits; while idle, and the device forgets its programs.
+
+        RefusedError names the field, and what the board was built for if it is looser than that.
+        """
+        try:
+            self._command(Message.WRITE_SETTINGS, settings)
+        except RefusedError as error:
+            if error.refusal is not Refusal.BAD_VALUE:
+                raise
+            why = refused_because(list(Settings.LIMITS)[error.detail], settings, self.read_limits())
+            raise RefusedError(self.port.name, error.message, error.refusal, error.detail, why) from None
 
     def upload(self, image: bytes) -> None:
         """Send a program and have it checked; it becomes the active one whole, or the old one stays."""

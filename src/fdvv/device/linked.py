@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -14,8 +14,9 @@ from fdvv.device.plant import CellPerson, Inputs, Outputs, Person, Plant, Truth
 from fdvv.device.remote import Remote
 from fdvv.device.telemetry import IntArray, TickColumns
 from fdvv.errors import DeviceError
+from fdvv.firmware.limits import limits_like
 from fdvv.model.press import Press
-from fdvv.protocol.tables import CellSpec, Fault, Settings, TickFlag
+from fdvv.protocol.tables import BoardLimits, CellSpec, Fault, Settings, TickFlag
 
 
 class Board(Protocol):
@@ -46,6 +47,14 @@ class Board(Protocol):
 
     def close(self) -> None:
         """Switch the board off."""
+
+
+@runtime_checkable
+class BuiltBoard(Board, Protocol):
+    """A board that is a build for the rig it is connected to, as one without hardware can be."""
+
+    def build(self, limits: BoardLimits) -> None:
+        """Be built for this rig, before the first tick."""
 
 
 class LockstepPort:
@@ -123,6 +132,8 @@ class LinkedDevice(Remote):
 
     def __init__(self, board: Board, person: Person) -> None:
         self._person = person
+        if isinstance(board, BuiltBoard):
+            board.build(limits_like(person.settings))
         self.port = LockstepPort(board, person.rest(person.settings), person.settings.tick_us)
         try:
             super().__init__(Client(self.port))

@@ -23,7 +23,7 @@ from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.plant import RigPlant
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_kernel import LoopConstants
-from fdvv.twin.settings import cell_of, settings_of
+from fdvv.twin.settings import cell_of, limits_of, settings_of
 from fdvv.twin.simulate import simulate_program
 from fdvv.twin.trace import Trace
 from fdvv.units import m_from_mm, mm_from_m
@@ -79,7 +79,7 @@ class TwinDevice:
             if fixed != requested:
                 raise DeviceError(f"twin: {name} is {fixed} in this rig and cannot be {requested}")
         try:
-            Core(settings)  # refuses them as a board does
+            Core(settings, limits=limits_of(self._rig))  # refuses them as a board does
         except ModelError as error:
             raise DeviceError(f"twin: {error}") from error
         self._settings, self._active, self.loop = settings, None, None

@@ -72,10 +72,12 @@ class RefusedError(DeviceError):
     message, refusal, detail : what was asked, why not, and where (an offset or the number of a field).
     """
 
-    def __init__(self, name: str, message: Message, refusal: Refusal, detail: int) -> None:
+    def __init__(
+        self, name: str, message: Message, refusal: Refusal, detail: int, why: str | None = None
+    ) -> None:
         self.message, self.refusal, self.detail = message, refusal, detail
         where = f" (detail {detail})" if detail else ""
-        super().__init__(f"{name}: refused {message.name.lower()}: {REASONS[refusal]}{where}")
+        super().__init__(f"{name}: refused {message.name.lower()}: {why or REASONS[refusal] + where}")
 
 
 class Wire:

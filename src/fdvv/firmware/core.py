@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from fdvv._native import address, library, words
 from fdvv.errors import BuildError, DeviceError, ModelError
-from fdvv.protocol.tables import IMAGE_BYTES, Evidence, Fault, LoopFault, Mode, Refusal, Settings
+from fdvv.firmware.limits import limits_like, refused_because
+from fdvv.protocol.tables import IMAGE_BYTES, BoardLimits, Evidence, Fault, LoopFault, Mode, Refusal, Settings
 
 RecordArray = np.ndarray[Any, np.dtype[np.void]]
 """Records of one kind, one for each tick (n,)."""
@@ -90,14 +91,22 @@ class Core:
     ----------
     settings : calibration and limits of the rig; ModelError if the firmware would refuse them.
     image : program to render (layout in protocol/fdvv.toml), or None; ModelError if it would be refused.
+    limits : of the board, which no settings may loosen; None: those of a board built for these settings.
     """
 
-    def __init__(self, settings: Settings | None = None, image: bytes | None = None) -> None:
+    def __init__(
+        self,
+        settings: Settings | None = None,
+        image: bytes | None = None,
+        limits: BoardLimits | None = None,
+    ) -> None:
         self._lib = doors()
         self._memory = np.zeros(layout(self._lib)[0] // 8 + 1, np.uint64)
         self._core = address(self._memory)
         self.settings = Settings() if settings is None else settings
-        self._lib.fdvv_core_init(self._core, address(self._checked(self.settings)))
+        self.limits = limits_like(self.settings) if limits is None else limits
+        self._limits = words(self.limits.pack())  # the core goes on reading it
+        self._lib.fdvv_core_init(self._core, address(self._checked(self.settings)), address(self._limits))
         self.activate(image)
 
     def set(self, settings: Settings) -> None:
@@ -206,9 +215,10 @@ class Core:
 
     def _checked(self, settings: Settings) -> np.ndarray[tuple[int], np.dtype[np.uint32]]:
         packed = words(settings.pack())
-        wrong = self._lib.fdvv_settings_check(address(packed))
+        wrong = self._lib.fdvv_settings_check(address(packed), address(self._limits))
         if wrong:
-            raise ModelError(f"the firmware refuses the settings: {list(Settings.LIMITS)[wrong - 1]}")
+            why = refused_because(list(Settings.LIMITS)[wrong - 1], settings, self.limits)
+            raise ModelError(f"the firmware refuses the settings: {why}")
         return packed
 
     def _checked_image(self, image: bytes) -> np.ndarray[tuple[int], np.dtype[np.uint32]]:

@@ -28,7 +28,7 @@ from fdvv.twin.rig_kernel import (
     plant_of,
     rig_library,
 )
-from fdvv.twin.settings import settings_of
+from fdvv.twin.settings import limits_of, settings_of
 from fdvv.twin.trace import CUT, controller_columns
 from fdvv.units import FloatArray, N_from_cN, cN_from_N, m_from_mm, mm_from_m
 
@@ -126,7 +126,7 @@ class InteractiveRig(RunningRig):
         super().__init__(rig, finger, seed)
         if loop and not self.rig.has_cell:
             raise ModelError("this rig has no load cell to close a force loop with")
-        self.core = Core(settings or settings_of(self.rig), image)
+        self.core = Core(settings or settings_of(self.rig), image, limits_of(self.rig))
         self._loop = loop
         self._grid = replace(self._grid, steps_per_row=self._grid.steps_per_tick)
         self.effort = Effort(self.finger.habit, self.rig.controller.tick_s)

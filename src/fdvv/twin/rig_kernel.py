@@ -16,7 +16,7 @@ from fdvv._native import address, library, words
 from fdvv._native.structures import fill, structure
 from fdvv.errors import ModelError
 from fdvv.firmware.core import OUTPUTS, RecordArray
-from fdvv.protocol.tables import Settings
+from fdvv.protocol.tables import BoardLimits, Settings
 from fdvv.twin.finger import Finger, bare
 from fdvv.twin.gesture import Gesture
 from fdvv.twin.noise import Noise, lsb_of
@@ -110,7 +110,7 @@ def rig_bytes() -> int:
 def run(
     plant: ctypes.Structure,
     grid: Grid,
-    settings: Settings,
+    settings: tuple[Settings, BoardLimits],
     image: bytes,
     gesture: Gesture,
     noise: Noise,
@@ -118,7 +118,10 @@ def run(
     announced_mm_s: float,
     loop: LoopConstants | None = None,
 ) -> Rows:
-    """Simulate one press in C; ModelError if the noise is of another length, or the grid is impossible."""
+    """Simulate one press in C, under settings and the board's limits.
+
+    ModelError if the noise is of another length, or the grid is impossible.
+    """
     noise.check(grid.reads)
     ticks = noise.force_N.size - settle_ticks
     n = max(ticks, 0)  # fewer than none are refused by the kernel
@@ -132,13 +135,14 @@ def run(
     physics, sensed = np.empty((n * grid.rows_per_tick, RIG_COLUMNS)), np.empty((n, TICK_COLUMNS))
     rows = Rows(physics, sensed, np.zeros(n, OUTPUTS))
     arrays = noise.arrays()
-    settings_words, image_words = words(settings.pack()), words(image)
+    settings_words, limits_words, image_words = (words(d) for d in (*(s.pack() for s in settings), image))
     held_loop = None if loop is None else np.frombuffer(loop, np.float32).copy()
     failed = rig_library().fdvv_twin_press(
         ctypes.byref(plant),
         ctypes.byref(grid.counts()),
         ctypes.byref(fill("fdvv_twin_press_plan", plan)),
         address(settings_words),
+        address(limits_words),
         None if held_loop is None else address(held_loop),
         address(image_words),
         ctypes.byref(noise_pointers(arrays)),

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 
 from fdvv.errors import ModelError
+from fdvv.firmware.limits import limits_like
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
-from fdvv.protocol.tables import CellSpec, Settings
+from fdvv.protocol.tables import BoardLimits, CellSpec, Settings
 from fdvv.twin.rig import Rig
 
 UM16_m = 1000 * UM16_PER_mm
@@ -15,6 +16,9 @@ CN64_N = 100 * CN64_PER_cN
 """Sixty-fourths of a centinewton in a newton."""
 FASTEST_m_s = 4.0
 """No cap moves faster; beyond it a reading is a fault."""
+HOTTEST_K = 65_000
+"""The firmware's thermal model holds 16 bits of a kelvin."""
+RISE_K = BoardLimits.LIMITS["full_duty_rise_K"][1]
 STUCK_s = 10.0
 """Equal readings for so long are a dead sensor; without noise a resting cap gives equal readings for long."""
 
@@ -29,6 +33,17 @@ def settings_of(rig: Rig) -> Settings:
         return Settings(**_position(rig), **_loop(rig), **_output(rig), **_extras(rig))
     except ModelError as error:
         raise ModelError(f"the firmware cannot hold the settings of this rig: {error}") from error
+
+
+def limits_of(rig: Rig) -> BoardLimits:
+    """Return the limits of a board that is built for this rig; ModelError as for settings_of."""
+    limits = limits_like(settings_of(rig))
+    hottest_K = limits.full_duty_rise_K * (limits.supply_high_mV / limits.nominal_supply_mV) ** 2
+    if hottest_K > HOTTEST_K or limits.full_duty_rise_K == RISE_K:
+        raise ModelError(
+            f"a coil that would end {hottest_K:.0f} K warmer is beyond the thermal model's {RISE_K} K"
+        )
+    return limits
 
 
 def cell_of(rig: Rig) -> CellSpec | None:
@@ -80,6 +95,8 @@ def _output(rig: Rig) -> dict[str, int]:
     # a current loop's full scale is what the coil alone would draw
     ohm = coil.resistance_ohm + (coil.bridge_ohm if coil.drive == "voltage" else 0.0)
     full_A = coil.supply_V / coil.resistance_ohm
+    # a held current heats hot copper more; a held voltage, less
+    hot = 1 + coil.copper_1_K * Settings().heat_limit_K if coil.drive == "current" else 1.0
     duty_N = ohm / (coil.force_constant_N_A * coil.supply_V) * (1 + loop.gain_error_ratio)
     return {
         # Q15 duty per cN64, in Q16
@@ -91,7 +108,7 @@ def _output(rig: Rig) -> dict[str, int]:
         "supply_low_mV": round(750 * coil.supply_V),
         "supply_high_mV": min(40000, round(1167 * coil.supply_V)),
         "heat_time_ms": min(600000, max(100, round(1000 * coil.heat_s))),
-        "full_duty_rise_K": min(20000, round(coil.heat_K_W * coil.resistance_ohm * full_A**2)),
+        "full_duty_rise_K": min(RISE_K, math.ceil(hot * coil.heat_K_W * coil.resistance_ohm * full_A**2)),
         "over_force_cN64": 32000,
     }
 

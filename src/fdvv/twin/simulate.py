@@ -13,7 +13,7 @@ from fdvv.twin.gesture import Gesture
 from fdvv.twin.noise import Noise, count_ticks, settle_ticks
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_kernel import LoopConstants, STEP_s, grid_of, plant_of, run
-from fdvv.twin.settings import settings_of
+from fdvv.twin.settings import limits_of, settings_of
 from fdvv.twin.trace import Trace
 
 
@@ -45,7 +45,8 @@ def simulate_program(
     grid = replace(grid_of(rig, step_s), audit=int(audit))
     plant = plant_of(rig, finger, step_s)
     held = settings or settings_of(rig)
-    rows = run(plant, grid, held, image, gesture, noise, settle_ticks(rig), announced_mm_s, loop)
+    pair = held, limits_of(rig)
+    rows = run(plant, grid, pair, image, gesture, noise, settle_ticks(rig), announced_mm_s, loop)
     if not np.isfinite(rows.physics[-1]).all():
         raise ModelError(
             f"the press diverged: rig or finger are too stiff or too light for steps of {step_s:g} s; "

@@ -1,0 +1,157 @@
+"""The thermal model is never cooler than the coil that the board was built for, whatever is written to it."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+from tools.make_board_limits import SHIPPED, header
+
+from fdvv.errors import ModelError
+from fdvv.firmware.core import Core, RecordArray
+from fdvv.firmware.limits import limits_like
+from fdvv.protocol.tables import BoardLimits, Mode, Settings
+from fdvv.twin.files import load_rig
+from fdvv.twin.settings import limits_of, settings_of
+from fdvv.units import FloatArray
+from tests.safety._build import REPOSITORY, SOURCES, compile_c
+from tests.safety.test_zero_force import constant_force
+from tests.support.inputs import inputs_at
+
+SCENE_s = 60.0
+RIGS = ("default", "recommended", "light")
+
+
+class Result(ctypes.Structure):
+    """As heat_result in _heat.c."""
+
+    _fields_ = (
+        ("ticks", ctypes.c_int64),
+        ("least_margin_K", ctypes.c_double),
+        ("hottest_K", ctypes.c_double),
+        ("mean_margin_K", ctypes.c_double),
+    )
+
+
+def boards() -> Iterator[BoardLimits]:
+    """Yield the boards of the shipped rigs, then one with the quickest and one with the slowest coil."""
+    for name in RIGS:
+        yield limits_of(load_rig(name))
+    yield replace(limits_of(load_rig("default")), heat_time_ms=100, full_duty_rise_K=16_383)
+    yield replace(limits_of(load_rig("default")), heat_time_ms=600_000, full_duty_rise_K=1)
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
+    folder = tmp_path_factory.mktemp("heat")
+    sources = (Path(__file__).with_name("_heat.c"), *SOURCES)
+    flags = ("-O3", "-fPIC", "-shared", "-ffp-contract=off")
+    return ctypes.CDLL(str(compile_c(folder / "libheat.so", *flags, sources=sources, after=("-lm",))))
+
+
+def play(library: ctypes.CDLL, seed: int, scenes: int, limits: BoardLimits) -> tuple[int, Result]:
+    """Play scenes; return how many went well before one did not, and their margins."""
+    result = Result()
+    done = library.safety_heat(
+        ctypes.c_uint32(seed),
+        ctypes.c_int(scenes),
+        ctypes.c_double(SCENE_s),
+        ctypes.create_string_buffer(limits.pack(), BoardLimits.length_bytes()),
+        ctypes.byref(result),
+    )
+    return done, result
+
+
+def test_the_model_is_never_cooler_than_the_coil_in_random_minutes(library: ctypes.CDLL) -> None:
+    for limits in boards():
+        done, result = play(library, 1, 100, limits)
+        assert done == 100
+        assert result.hottest_K > (limits.heat_time_ms <= 60_000) * 0.25 * limits.full_duty_rise_K
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(7200)
+def test_a_million_random_minutes_leave_the_model_hotter(library: ctypes.CDLL) -> None:
+    for number, limits in enumerate(boards()):
+        start = time.perf_counter()
+        done, result = play(library, 1_000_000 * (number + 1), 200_000, limits)
+        took_s = time.perf_counter() - start
+        sys.stdout.write(
+            f"{done} minutes, {result.ticks} ticks, least margin {result.least_margin_K:.2e} K, mean "
+            f"{result.mean_margin_K:.1f} K, hottest {result.hottest_K:.0f} K, {took_s:.0f} s\n"
+        )
+        assert done == 200_000
+
+
+def coil_K(limits: BoardLimits, tick_s: float, outputs: RecordArray, start_K: float = 0.0) -> FloatArray:
+    """Return the rise of the board's coil after each tick of these outputs, at the nominal supply."""
+    keep = math.exp(-1e3 * tick_s / limits.heat_time_ms)
+    end_K = limits.full_duty_rise_K * (outputs["duty_q15"] / 32768.0) ** 2
+    warmed, _ = lfilter([1 - keep], [1, -keep], end_K, zi=[keep * start_K])
+    return np.asarray(warmed)
+
+
+def loaded(settings: Settings, force_cN: float, limits: BoardLimits) -> tuple[Core, RecordArray]:
+    """Return an armed core with a flat program, and the inputs of a minute, with a little noise."""
+    core = Core(settings, constant_force(round(64 * force_cN)), limits)
+    inputs = inputs_at(settings, np.full(round(60e6 / settings.tick_us), 2.0))
+    inputs["sum"] += np.arange(inputs.size, dtype=np.uint32) % 2
+    inputs["supply_mV"] = limits.nominal_supply_mV
+    core.arm()
+    return core, inputs
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_the_limits_of_a_board_are_those_of_its_rig(name: str) -> None:
+    written = (REPOSITORY / "firmware" / "boards" / name / "limits.h").read_text()
+    assert written == header(name, SHIPPED[name].rig)
+
+
+def test_settings_that_hide_the_heat_are_refused() -> None:
+    # 1 K at full duty and the largest gain: the coil was at 253 K after a minute, the model at 0
+    board = limits_of(load_rig("default"))
+    wrong = Settings(full_duty_rise_K=1, duty_gain_q16=65_535, force_limit_cN64=32_000)
+    with pytest.raises(ModelError, match=r"duty_gain_q16 is 65535, this board was built for at most 27783;"):
+        Core(wrong, limits=board)
+    for name, value, limit in (
+        ("full_duty_rise_K", 1, "at least 596"),
+        ("force_limit_cN64", 32_000, "at most 28160"),
+    ):
+        with pytest.raises(ModelError, match=f"{name} is {value}, this board was built for {limit};"):
+            Core(Settings(**{name: value}), limits=board)
+
+
+def test_the_largest_load_that_a_board_allows_never_takes_its_coil_over_the_limit() -> None:
+    for rig in RIGS:
+        board = limits_of(load_rig(rig))
+        for time_ms in (100, board.heat_time_ms, 600_000):
+            settings = replace(
+                settings_of(load_rig(rig)),
+                heat_time_ms=time_ms,
+                duty_gain_q16=board.duty_gain_q16,
+                derate_start_K=board.heat_limit_K - 1,
+                tick_us=1000,
+            )
+            core, inputs = loaded(settings, board.force_limit_cN64 / 64, board)
+            rise_K = coil_K(board, 1e-3, core.run(inputs))
+            assert 5 < rise_K.max() < board.heat_limit_K
+
+
+def test_a_coil_that_only_the_model_saves_stays_below_the_limit() -> None:
+    # a force limit that would end at 600 K
+    strong = Settings(duty_gain_q16=65_535, force_limit_cN64=32_000, tick_us=1000, heat_time_ms=5000)
+    board = replace(limits_like(strong), duty_gain_q16=65_535)
+    for time_ms, rise_K in ((100, 596), (5000, 20_000), (600_000, 596)):
+        core, inputs = loaded(replace(strong, heat_time_ms=time_ms, full_duty_rise_K=rise_K), 440, board)
+        outputs = core.run(inputs)
+        rises_K = coil_K(board, 1e-3, outputs)
+        assert rises_K.max() < board.heat_limit_K
+        assert set(outputs["mode"]) & {Mode.DERATED, Mode.FAULT}
