@@ -307,7 +307,7 @@ void fdvv_supervisor_fault(fdvv_supervisor *supervisor, uint8_t fault, int32_t v
 
 /* -- modes -------------------------------------------------------------------------------------------------- */
 
-#define HOTTEST_K 65534 /* more does not fit, as a whole number of 1/65536 K at full duty, into 32 bits */
+#define HOTTEST_K 65533 /* with the two kelvins that are added to it, the most that 16 bits hold */
 
 /* part / whole for part < whole < 2^31, rounded down, by long division. */
 static FDVV_COLD uint32_t fraction_q32(uint32_t part, uint32_t whole)
@@ -487,4 +487,18 @@ void fdvv_supervisor_heat(fdvv_supervisor *supervisor, int16_t duty_q15, uint16_
         set_heat_K_q48(supervisor, heat_K_q48(supervisor) + part_q48(end_q16 - heat_q16, supervisor->heating_q32));
     else
         set_heat_K_q48(supervisor, heat_K_q48(supervisor) - part_q48(heat_q16 - end_q16, supervisor->cooling_q32));
+}
+
+void fdvv_supervisor_keep_heat(const fdvv_supervisor *supervisor, fdvv_kept_heat *kept)
+{
+    kept->heat_K_q16 = supervisor->heat_K_q16 + (1 << 16);
+    kept->check = ~kept->heat_K_q16;
+}
+
+FDVV_COLD void fdvv_supervisor_resume_heat(fdvv_supervisor *supervisor, const fdvv_kept_heat *kept, uint8_t is_power_on)
+{
+    if (kept->check == ~kept->heat_K_q16)
+        supervisor->heat_K_q16 = kept->heat_K_q16;
+    else if (!is_power_on)
+        supervisor->heat_K_q16 = (uint32_t)supervisor->limits->heat_limit_K << 16;
 }

@@ -42,6 +42,12 @@ typedef struct {
     fdvv_evidence evidence;   /* of the latched fault */
 } fdvv_supervisor;
 
+/* The heat over a reset, in memory that start-up leaves alone. */
+typedef struct {
+    uint32_t heat_K_q16;
+    uint32_t check;           /* ~heat_K_q16 */
+} fdvv_kept_heat;
+
 /* limits: of the board; constant, and kept by reference. */
 void fdvv_supervisor_init(fdvv_supervisor *supervisor, const fdvv_board_limits *limits);
 
@@ -73,6 +79,13 @@ int16_t fdvv_supervisor_limit_cN64(fdvv_supervisor *supervisor, const fdvv_setti
 /* Advance the thermal model to the end of the tick that begins with this duty at this supply; ticks missed before it
  * had the duty of the last call. */
 void fdvv_supervisor_heat(fdvv_supervisor *supervisor, int16_t duty_q15, uint16_t supply_mV, uint16_t elapsed_ticks);
+
+/* After every tick: keep the heat, and a kelvin for what the coil may get until the watchdog resets a stopped board. */
+void fdvv_supervisor_keep_heat(const fdvv_supervisor *supervisor, fdvv_kept_heat *kept);
+
+/* After a reset: go on with the heat that was kept. If it is damaged, start at the limit of the board, at which there is
+ * no force; if the power was switched on and nothing was kept, start cold. */
+void fdvv_supervisor_resume_heat(fdvv_supervisor *supervisor, const fdvv_kept_heat *kept, uint8_t is_power_on);
 
 /* Return 0 if the settings are valid, else 1 + the number of the first field that is out of range, inconsistent with
  * another one, or looser than the limits of the board. */

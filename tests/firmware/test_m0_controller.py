@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from dataclasses import replace
 from pathlib import Path
 
@@ -168,6 +169,32 @@ def test_a_hanging_controller_is_reset_with_the_bridge_off_and_says_why(emulated
     emulator.run_us(3000)
     assert emulator.reset_cause == "watchdog"
     assert not emulator.outputs().enable
+
+
+def kept_heat_K(emulator: M0Emulator) -> tuple[float, bool]:
+    """Return the heat that the board would go on with after a reset, and whether it is whole."""
+    at = emulator._program.symbols["kept_heat"]
+    heat, check = struct.unpack("<II", emulator._bus.ram_read(at, 8))
+    return heat / 65536, heat ^ check == 2**32 - 1
+
+
+@pytest.mark.parametrize(
+    ("cause", "flipped", "kelvins"),
+    [("watchdog", 0, 2), ("watchdog", 1, 91), ("software", 0, 2), ("power on", 0, 2), ("power on", 1, 1)],
+)
+def test_the_heat_survives_a_reset_or_starts_at_the_limit(
+    emulated: LinkedDevice, cause: str, flipped: int, kelvins: int
+) -> None:
+    emulator = board_of(emulated).emulator
+    emulator.run_ticks(20)
+    assert kept_heat_K(emulator) == (1.0, True)
+    at = emulator._program.symbols["kept_heat"]
+    emulator._bus.ram_write(at, bytes([emulator._bus.ram_read(at, 1)[0] ^ flipped]))
+    emulator.reset(cause)
+    emulator.run_ticks(20)
+    heat_K, is_whole = kept_heat_K(emulator)
+    assert is_whole
+    assert heat_K == pytest.approx(kelvins, abs=0.02)
 
 
 @pytest.mark.parametrize(("tick_us", "reads"), [(500, 25), (1000, 25), (250, 10)])

@@ -69,6 +69,20 @@ static double heat_of(const fdvv_supervisor *me)
     return ldexp((double)me->heat_K_q16, -16) + ldexp((double)me->heat_rest_q48, -48);
 }
 
+/* A stopped board: the coil keeps its duty until the watchdog resets the board, if that is less than the kelvin. */
+static void restart(fdvv_supervisor *me, coil *it, const fdvv_settings *settings)
+{
+    double volts = (double)it->limits->supply_high_mV / it->limits->nominal_supply_mV, stopped_s = 8e-3;
+    fdvv_kept_heat kept;
+    fdvv_supervisor_keep_heat(me, &kept);
+    if (it->limits->full_duty_rise_K * volts * volts * stopped_s < it->time_s)
+        it->heat_K = it->end_K + (it->heat_K - it->end_K) * exp(-stopped_s / it->time_s);
+    it->end_K = 0.0;
+    fdvv_supervisor_init(me, it->limits);
+    fdvv_supervisor_settings(me, settings);
+    fdvv_supervisor_resume_heat(me, &kept, 0);
+}
+
 /* One scene; returns 0 where the model was cooler than the coil, or settings were refused. */
 static int play(uint32_t *state, double scene_s, const fdvv_board_limits *limits, heat_result *result)
 {
@@ -103,6 +117,8 @@ static int play(uint32_t *state, double scene_s, const fdvv_board_limits *limits
                 return 0;
             time_s += elapsed * tick_s;
         }
+        if (draw(state) % 8 == 0)
+            restart(&me, &it, &settings);
         if (draw(state) % 4 == 0) {
             settings = draw_settings(state, limits);
             fdvv_supervisor_settings(&me, &settings);

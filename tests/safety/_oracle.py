@@ -386,6 +386,18 @@ class Supervisor:
         else:
             self.heat_K_q48 += way_K_q16 * self.cooling_q32
 
+    def kept(self) -> tuple[int, int]:
+        """Return what a board keeps over a reset: the heat and a kelvin, and its complement."""
+        heat = ((self.heat_K_q48 >> 32) + 2**16) % 2**32
+        return heat, 2**32 - 1 - heat
+
+    def resume(self, heat_K_q16: int, check: int, is_power_on: bool) -> None:
+        """Go on after a reset."""
+        if heat_K_q16 + check == 2**32 - 1:
+            self.heat_K_q48 = heat_K_q16 * 2**32
+        elif not is_power_on:
+            self.heat_K_q48 = self.limits.heat_limit_K * 2**48
+
     def _warm(self, ticks: int) -> None:
         part_q32 = ticks * self.heating_q32
         if part_q32 >= 2**32:
@@ -400,7 +412,7 @@ class Supervisor:
         if supply_mV > low_mV:
             highest_K = rise_K
             for _ in range(2):
-                highest_K = min(65_534, highest_K * high_mV // low_mV + 1)
+                highest_K = min(65_533, highest_K * high_mV // low_mV + 1)
             slope_q16 = (highest_K - rise_K) * 2**16 // (high_mV - low_mV) + 1 if high_mV > low_mV else 0
             rise_K += (supply_mV - low_mV) * slope_q16 % 2**32 // 2**16 + 1
         return rise_K * -(-(duty_q15**2) // 2**14) % 2**32

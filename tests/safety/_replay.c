@@ -4,7 +4,7 @@
 
 #include "supervisor.h"
 
-enum { INIT, SETTINGS, ASK, HOST, CHECK, FAULT, LIMIT, HEAT, POKE_MODE, POKE_FAULTS };
+enum { INIT, SETTINGS, ASK, HOST, CHECK, FAULT, LIMIT, HEAT, RESUME, POKE_MODE, POKE_FAULTS };
 
 typedef struct {
     uint32_t call, settings;           /* which call; number of the settings */
@@ -23,6 +23,7 @@ int safety_replay(const step *steps, int count, const fdvv_settings *settings, c
 
 static int32_t play(fdvv_supervisor *me, const step *it, const fdvv_settings *settings, const fdvv_board_limits *limits)
 {
+    fdvv_kept_heat kept;
     switch (it->call) {
     case INIT: fdvv_supervisor_init(me, limits + it->a); return 0;
     case SETTINGS: fdvv_supervisor_settings(me, settings); return 0;
@@ -35,6 +36,14 @@ static int32_t play(fdvv_supervisor *me, const step *it, const fdvv_settings *se
     case FAULT: fdvv_supervisor_fault(me, (uint8_t)it->a, it->b, it->c); return 0;
     case LIMIT: return fdvv_supervisor_limit_cN64(me, settings);
     case HEAT: fdvv_supervisor_heat(me, (int16_t)it->a, (uint16_t)it->b, (uint16_t)it->c); return 0;
+    case RESUME: /* a restart: keep, spoil by b and c, start anew */
+        fdvv_supervisor_keep_heat(me, &kept);
+        kept.heat_K_q16 ^= (uint32_t)it->b;
+        kept.check ^= (uint32_t)it->c;
+        fdvv_supervisor_init(me, me->limits);
+        fdvv_supervisor_settings(me, settings);
+        fdvv_supervisor_resume_heat(me, &kept, (uint8_t)it->a);
+        return 0;
     case POKE_MODE: me->mode = (uint8_t)it->a; return 0;
     case POKE_FAULTS: me->faults = (uint16_t)it->a; return 0;
     default: return -1;

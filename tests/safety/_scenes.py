@@ -334,10 +334,28 @@ def boards(script: Script) -> None:
     script.start(warm, replace(board, full_duty_rise_K=16_383, heat_time_ms=600_000))
     for duty in (32767, 0):
         script.heat(duty, 9)
+    restarts(script)
     loose = replace(limits_like(SENSED), force_limit_cN64=SENSED.force_limit_cN64 - 1)
     script.start(SENSED, loose)
     script.ask(SENSED, CoreRequest.BOOTED)
     script.ask(SENSED, CoreRequest.ARM)
+
+
+def restarts(script: Script) -> None:
+    """Restart cold and warm, after the power was switched on and not, the memory whole and damaged."""
+    for is_power_on in (False, True):
+        for spoilt in ((0, 0), (1, 0), (0, 2**30), (-1, 0), (0, -1)):
+            for ticks in (0, 60_000):
+                script.start(SENSED)
+                for _ in range(3):
+                    script.heat(32767, 1 + ticks)
+                script.resume(SENSED, is_power_on, spoilt)
+                script.ask(SENSED, CoreRequest.BOOTED)
+                script.host(0)
+                script.ask(SENSED, CoreRequest.ARM)
+                script.limit(SENSED)
+                script.heat(0)
+                script.tick(SENSED, Inputs(sum=1))
 
 
 def chance(script: Script, seed: int, ticks: int) -> None:

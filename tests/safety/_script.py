@@ -25,6 +25,7 @@ CALLS = {
             "fault",
             "limit",
             "heat",
+            "resume",
             "poke_mode",
             "poke_faults",
         )
@@ -117,6 +118,14 @@ class Script:
         """Warm the coil, or let it cool."""
         self.oracle.heat(duty_q15, supply_mV, elapsed_ticks)
         self._keep("heat", None, (duty_q15, supply_mV, elapsed_ticks))
+
+    def resume(self, settings: Settings, is_power_on: bool = False, spoilt: tuple[int, int] = (0, 0)) -> None:
+        """Start anew with what was kept, some bits of heat and check turned over."""
+        heat, check = self.oracle.kept()
+        self.oracle = self._fresh(self.oracle.limits)
+        self.oracle.settings(settings)
+        self.oracle.resume(heat ^ spoilt[0], check ^ spoilt[1], is_power_on)
+        self._keep("resume", settings, (int(is_power_on), *spoilt))
 
     def tick(self, settings: Settings, inputs: Inputs, duty_q15: int = 0) -> int:
         """Run what the core runs of the supervisor in a tick; return the limit."""

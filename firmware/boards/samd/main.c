@@ -17,6 +17,7 @@ static fdvv_board board;
 static fdvv_read_counters_reply counters;
 static fdvv_inputs inputs;       /* of the last tick */
 static uint8_t reset_bits;       /* FDVV_BOARD_…: cause of the reset, until it was reported once */
+static fdvv_kept_heat kept_heat __attribute__((section(".noinit")));
 static uint8_t is_testing;
 static uint16_t tick_us;
 static uint8_t reads;
@@ -111,6 +112,7 @@ static uint8_t serve_tick(void)
     fdvv_core_tick(&core, &inputs, &outputs);
     board_key(outputs.key); /* 0 unless rendering, so never down in mode fault */
     board_drive(outputs.duty_q15, outputs.enable);
+    fdvv_supervisor_keep_heat(&core.supervisor, &kept_heat);
     board_watchdog_clear();
     update_counters(&readings);
     board_stop(outputs.stop_us);
@@ -183,6 +185,7 @@ static void start(void)
     describe();
     fdvv_settings_tighten(&settings, &limits);
     fdvv_core_init(&core, &settings, &limits);
+    fdvv_supervisor_resume_heat(&core.supervisor, &kept_heat, cause == BOARD_RESET_OTHER);
     fdvv_supervisor_ask(&core.supervisor, &core.settings, FDVV_ASK_BOOTED, 0);
     fdvv_link_init(&link, &core, &board);
     vibration_silence();
