@@ -30,7 +30,7 @@ class Board:
 
 
 SHIPPED = {
-    "itsybitsy_m0": Board(RIGS / "default.toml", 250),
+    "itsybitsy_m0": Board(RIGS / "voltage.toml", 250),
     "itsybitsy_m4": Board(RIGS / "recommended.toml", 100),
 }
 

@@ -27,7 +27,7 @@ from tests.safety.test_zero_force import constant_force
 from tests.support.inputs import inputs_at
 
 SCENE_s = 60.0
-RIGS = ("default", "recommended", "light")
+RIGS = ("voltage", "recommended", "light")
 
 
 class Result(ctypes.Structure):
@@ -45,8 +45,8 @@ def boards() -> Iterator[BoardLimits]:
     """Yield the boards of the shipped rigs, then one with the quickest and one with the slowest coil."""
     for name in RIGS:
         yield limits_of(load_rig(name))
-    yield replace(limits_of(load_rig("default")), heat_time_ms=100, full_duty_rise_K=16_383)
-    yield replace(limits_of(load_rig("default")), heat_time_ms=600_000, full_duty_rise_K=1)
+    yield replace(limits_of(load_rig("voltage")), heat_time_ms=100, full_duty_rise_K=16_383)
+    yield replace(limits_of(load_rig("voltage")), heat_time_ms=600_000, full_duty_rise_K=1)
 
 
 @pytest.fixture(scope="module")
@@ -117,7 +117,7 @@ def test_the_limits_of_a_board_are_those_of_its_rig(name: str) -> None:
 
 def test_settings_that_hide_the_heat_are_refused() -> None:
     # 1 K at full duty and the largest gain: the coil was at 253 K after a minute, the model at 0
-    board = limits_of(load_rig("default"))
+    board = limits_of(load_rig("voltage"))
     wrong = Settings(full_duty_rise_K=1, duty_gain_q16=65_535, force_limit_cN64=32_000)
     with pytest.raises(ModelError, match=r"duty_gain_q16 is 65535, this board was built for at most 27783;"):
         Core(wrong, limits=board)

@@ -1,4 +1,4 @@
-/* Made by tools/make_board_limits.py from default.toml; do not edit.
+/* Made by tools/make_board_limits.py from voltage.toml; do not edit.
  * No setting is looser than these. */
 #ifndef ITSYBITSY_M0_LIMITS_H
 #define ITSYBITSY_M0_LIMITS_H
