@@ -41,7 +41,7 @@ void fdvv_force_loop_watch(fdvv_force_loop *loop, uint16_t counts, uint16_t midd
 /* Why the loop was opened, FDVV_LOOP_FAULT_SOUND if it was not. */
 uint8_t fdvv_force_loop_fault(const fdvv_force_loop *loop);
 
-/* Is the cell believed in this tick? An overload opens the loop while it lasts. */
+/* Does the loop use the cell in this tick? An overload opens the loop while it lasts. */
 uint8_t fdvv_force_loop_is_closed(const fdvv_force_loop *loop);
 
 /* Nothing is rendered: forget the estimates, keep gains and fault. */

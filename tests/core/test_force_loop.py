@@ -100,7 +100,7 @@ class Loop:
         return int(self._lib.fdvv_force_loop_fault(self._memory))
 
     def is_closed(self) -> bool:
-        """Return whether the cell was believed in the last tick."""
+        """Return whether the loop used the cell in the last tick."""
         return bool(self._lib.fdvv_force_loop_is_closed(self._memory))
 
 
