@@ -26,7 +26,7 @@ def test_the_bill_has_a_total_beside_the_papers(fdvv: Run) -> None:
     rows = list(csv.DictReader(io.StringIO(fdvv("hardware", "bill", "--csv").out)))
     assert len(rows) == len(bill["lines"])
     ran = fdvv("hardware", "bill", "--csv", "--json")
-    assert (ran.status, ran.out) == (2, "")
+    assert (ran.status, ran.json["error"]["source"]) == (2, "--csv")
 
 
 def test_the_circuit_is_checked_and_printed_with_units(fdvv: Run) -> None:

@@ -97,7 +97,8 @@ def test_ctrl_c_ends_in_one_line_that_says_how_to_go_on(fdvv: Run, monkeypatch: 
     monkeypatch.setattr("fdvv.rendering.session.open_device", lambda *_: Stopped())
     ran = fdvv("compensate", "mx-clear", *SHORT, "--session", "s", "--json")
     message = "fdvv: interrupted; 2 presses are kept in s; run the same command again to go on\n"
-    assert (ran.status, ran.err, ran.out) == (130, message, "")
+    assert (ran.status, ran.err) == (130, message)
+    assert ran.json["error"]["status"] == 130
     shown = fdvv("show", "s").out.splitlines()
     assert shown[-2:] == ["2 presses used, 0 not", "not finished; run the session's command again to go on"]
     ran = fdvv("probe", "mx-clear", *SHORT[:4], "--session", "p", "--presses", "2")
