@@ -28,7 +28,8 @@ from ._core_on_arm import M4, CoreOnArm, board_flags, compile_core
 from ._simavr import say
 
 pytestmark = pytest.mark.firmware
-WORST_CYCLES, WORST_CYCLES_DEAREST = 3900, 7700
+WORST_CYCLES, WORST_CYCLES_DEAREST = 4200, 8100
+"""Of the 12,000 of a tick: what was measured and 3 % more, so that a dearer tick is noticed."""
 
 
 @pytest.fixture(scope="module", params=["-Os", "-O2", board_flags()])
