@@ -9,7 +9,7 @@ from threading import Event
 
 import pytest
 
-from fdvv.library.catalog import Catalog
+from fdvv.library.catalog import Catalog, own_files
 from fdvv.library.index import CatalogIndex, IndexStatus, ReadAnswer, ReadRequest, RowReader
 from fdvv.library.row import Origin
 from fdvv.model.file import MODEL_SUFFIX, builtin_names, load_builtin, save_model
@@ -168,3 +168,20 @@ def test_a_file_that_takes_too_long_is_given_up(tmp_path: Path) -> None:
     reader = RowReader(longest_s=0.02)
     assert "took over 0.02 s" in read_by(reader, tmp_path / "long.csv").reason
     assert reader._process is None
+
+
+def test_a_button_deleted_while_the_folder_is_listed_is_passed_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("gone.fdvv.json", "here.fdvv.json"):
+        (tmp_path / name).write_text("{}")
+    listed = os.scandir
+
+    def listed_then_deleted(folder: Path | str) -> list[os.DirEntry[str]]:
+        with listed(folder) as entries:
+            found = list(entries)
+        (tmp_path / "gone.fdvv.json").unlink(missing_ok=True)
+        return found
+
+    monkeypatch.setattr(os, "scandir", listed_then_deleted)
+    assert [file.id for file in own_files(tmp_path)] == ["own:here"]

@@ -58,7 +58,9 @@ def own_files(folder: Path) -> Iterator[ButtonFile]:
         if entry.name.endswith(MODEL_SUFFIX) and inside == entry.name:
             name = inside.removesuffix(MODEL_SUFFIX)
             button_id = f"own:{name.encode(errors='replace').decode()}"
-            yield ButtonFile(button_id, Origin.OWN, Path(entry.path), button_id, stamp_of(entry.stat()))
+            # one that is deleted or renamed while the folder is listed is passed over
+            if stamp := _stamp(entry):
+                yield ButtonFile(button_id, Origin.OWN, Path(entry.path), button_id, stamp)
 
 
 def source_files(sources: Sequence[Path]) -> Iterator[ButtonFile]:
@@ -75,12 +77,14 @@ def source_files(sources: Sequence[Path]) -> Iterator[ButtonFile]:
             if other and beside and other.name < path.name:
                 continue  # the press is listed, which is first in the alphabet for every way of naming
             place = os.fsencode(f"{label}/{inside}")
+            if not (stamp := _stamp(entry)):
+                continue
             yield ButtonFile(
                 id=f"measured:{hashlib.sha256(place).hexdigest()[:16]}",
                 origin=Origin.MEASURED,
                 path=path,
                 place=place.decode(errors="replace"),
-                stamp=stamp_of(entry.stat()) + (stamp_of(beside.stat()) if beside else ""),
+                stamp=stamp + (_stamp(beside) if beside else ""),
                 pair=Path(beside.path) if beside else None,
             )
 
@@ -110,6 +114,14 @@ def _walk(folder: Path | str, inside: str) -> Iterator[tuple[str, os.DirEntry[st
             yield from _walk(entry.path, f"{inside}{entry.name}/")
         elif entry.is_file() and (is_force_file(entry.name) or entry.name.endswith(MODEL_SUFFIX)):
             yield inside + entry.name, entry
+
+
+def _stamp(entry: os.DirEntry[str]) -> str:
+    """Return the stamp of a listed file; empty if it is gone."""
+    try:
+        return stamp_of(entry.stat())
+    except FileNotFoundError:
+        return ""
 
 
 def stamp_of(status: os.stat_result) -> str:
