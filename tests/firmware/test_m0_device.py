@@ -10,8 +10,9 @@ import pytest
 from fdvv.device.contract import ProgramDevice
 from fdvv.device.linked import LinkedDevice
 from fdvv.device.open import open_device
-from fdvv.errors import InputError
+from fdvv.errors import DeviceError, InputError
 from fdvv.testing.conformance import ProgramConformance, plain_surface
+from fdvv.twin.files import load_rig
 from fdvv_m0.board import EmulatedBoard
 from tests.support.scripted_person import ScriptedPerson
 
@@ -34,6 +35,11 @@ class TestEmulatedBoard(ProgramConformance):
 
     def make(self) -> ProgramDevice:
         return LinkedDevice(EmulatedBoard(self.elf), ScriptedPerson())
+
+
+def test_a_rig_whose_sensor_has_more_bits_than_the_board_is_refused(elf: Path) -> None:
+    with pytest.raises(DeviceError, match="choose a rig whose sensor has 12 bits"):
+        open_device(f"emulated:{elf}", load_rig("light"))
 
 
 def test_a_press_on_the_simulated_rig_is_nearly_that_of_the_host_program(elf: Path) -> None:

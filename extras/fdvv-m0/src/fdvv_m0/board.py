@@ -51,7 +51,10 @@ class EmulatedBoard:
         self.ticks = self.emulator.tick
 
     def tick(self, inputs: Inputs) -> Outputs:
-        """Run from one tick nearly to the next."""
+        """Run from one tick nearly to the next. DeviceError where the converter cannot have such readings."""
+        if inputs.highest > COUNTS_MAX:
+            reason = f"its converter ends at {COUNTS_MAX} counts, the simulated sensor gave {inputs.highest}"
+            raise DeviceError(f"emulated: {reason}; choose a rig whose sensor has 12 bits, such as voltage")
         others = {
             "supply_counts": min(round(inputs.supply_mV / self.emulator.supply_mV_counts), COUNTS_MAX),
             "force_counts": inputs.force_counts,
