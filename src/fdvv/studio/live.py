@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 from starlette.concurrency import run_in_threadpool
-from starlette.websockets import WebSocket
+from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from fdvv.errors import FdvvError
 from fdvv.studio.auth import SEAT_ONLY
@@ -77,7 +77,9 @@ class LiveConnection:
             except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
                 self._say(b"", error=str(error))
                 await self._outgoing_done()
-                await self._socket.close(MALFORMED, "a message that is none")
+                # the page may have gone meanwhile
+                with suppress(RuntimeError, WebSocketDisconnect):
+                    await self._socket.close(MALFORMED, "a message that is none")
                 return
             await self._queue_of(kind).put(ask)
 
