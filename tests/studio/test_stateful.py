@@ -203,12 +203,12 @@ def test_calls_and_messages_with_known_ids_cause_no_internal_error(page: Page) -
 
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
+@pytest.mark.skipif("FDVV_ROUNDS" not in os.environ, reason="by hand: FDVV_ROUNDS=8, or 84 for 50,000 calls")
 def test_many_calls_and_messages_reach_nearly_every_call_and_leak_nothing(
     page: Page, studio: RunningStudio
 ) -> None:
-    rounds = int(os.environ.get("FDVV_ROUNDS", "8"))
     after_first = (0, 0)
-    for turn in range(rounds):
+    for turn in range(int(os.environ["FDVV_ROUNDS"])):
         page.ask_many(500)
         page.talk(100)
         page.end_all()
