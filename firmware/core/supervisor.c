@@ -217,7 +217,6 @@ static uint32_t rotate_add(uint32_t sum, settings_word word)
 }
 
 /* Depends on every word and on their order. Unrolled by twelve, because it is computed in every tick. */
-
 static uint32_t checksum(const fdvv_settings *settings)
 {
     const settings_word *word = (const settings_word *)settings, *end = (const settings_word *)(settings + 1);

@@ -95,10 +95,9 @@ def free_name(wanted: str, there: Iterable[str]) -> str:
     """Return a valid free name near the wanted one: "name", "name 2", "name 3"."""
     taken = {name.casefold() for name in there}
     base = re.sub(r"[^\w .+()-]+", "-", unicodedata.normalize("NFC", wanted)).strip(" ._-+()")
-    # six characters are left for a number
-    base = _cut(base, LONGEST_bytes - 6)[: LONGEST - 6].rstrip(" .") or "button"
+    base = _cut(base).rstrip(" .") or "button"
     if _wrong(base):
-        base = _cut(f"button {base}", LONGEST_bytes - 6)[: LONGEST - 6]
+        base = _cut(f"button {base}")
     number, name = 1, base
     while name.casefold() in taken:
         number += 1
@@ -106,6 +105,11 @@ def free_name(wanted: str, there: Iterable[str]) -> str:
     return name
 
 
-def _cut(name: str, most_bytes: int) -> str:
-    """Return as many letters as fit into these bytes of UTF-8."""
-    return name.encode(errors="replace")[:most_bytes].decode(errors="ignore")
+NUMBER_length = 6
+"""What is left for a number behind a name."""
+
+
+def _cut(name: str) -> str:
+    """Return as much of a name as leaves room for a number."""
+    fits = name.encode(errors="replace")[: LONGEST_bytes - NUMBER_length].decode(errors="ignore")
+    return fits[: LONGEST - NUMBER_length]
