@@ -244,3 +244,17 @@ def test_compensate_and_probe_report_errors_per_curve_and_say_simulated(fdvv: Ru
     other = fdvv("probe", "mx-blue", "red.actuation.json", *short, "--presses", "1")
     assert other.err == "warning: red.actuation.json was learned for mx-red, not for mx-blue\n"
     assert other.json["model"] == "mx-blue"
+
+
+def test_compare_and_show_write_a_page_to_share(fdvv: Run, tmp_path: Path) -> None:
+    assert "written to both.html" in fdvv("compare", "mx-red", "mx-clear", "--report", "both.html").out
+    assert "mx-clear feels clearly different from mx-red" in (tmp_path / "both.html").read_text()
+    assert fdvv("show", "mx-clear", "--report", "one.html").status == 0
+    assert "Tactile: the press falls" in (tmp_path / "one.html").read_text()
+    refused = fdvv("compare", "mx-red", "mx-clear", "--report", "page.pdf")
+    assert (refused.status, (tmp_path / "page.pdf").exists()) == (2, False)
+
+
+def test_compare_begins_with_how_different_the_buttons_feel(fdvv: Run) -> None:
+    first = fdvv("compare", "mx-red", "mx-clear", "mx-blue").out.splitlines()[0]
+    assert first.startswith("mx-clear feels clearly different from mx-red: about 2.3 just noticeable")

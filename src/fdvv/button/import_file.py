@@ -32,7 +32,7 @@ class ImportSettings:
     Attributes
     ----------
     name : of the model; by default the file's, or that of the button it goes into.
-    into : the button that a vibration is given to, as open_button takes it.
+    into : the button that a vibration is given to: a model, or what open_button takes.
     stroke, velocity_mm_s : whose vibration it becomes; None is every speed.
     onset_mm : where it starts; by default at the button's peak, or where its contact closes.
     full_scale_m_s2 : what 1 in the file stands for; by default what the file says.
@@ -40,7 +40,7 @@ class ImportSettings:
     """
 
     name: str | None = None
-    into: str | None = None
+    into: FDVVModel | str | None = None
     stroke: Stroke = Stroke.PRESS
     velocity_mm_s: float | None = None
     onset_mm: float | None = None
@@ -153,7 +153,7 @@ def _given(path: Path, settings: ImportSettings, form: str, read: VibrationRead)
     """Put a vibration into a button, in place of the one it has there."""
     if settings.into is None:
         raise InputError(path, "whole file", "holds a vibration, no button", "name the button with --into")
-    model = open_button(settings.into)
+    model = settings.into if isinstance(settings.into, FDVVModel) else open_button(settings.into)
     onset, assumed = settings.onset_mm, read.assumptions
     if onset is None:
         onset, where = _onset(model, settings)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,13 @@ from fdvv.errors import InputError
 from fdvv.io.documents import ACTUATION, own_kind
 from fdvv.model.curve import Stroke
 from fdvv.model.landmarks import LandmarkError, landmark_errors, landmarks
+from fdvv.model.model import FDVVModel
 
 LABEL_WIDTH, NAME_WIDTH = 19, 28
 """Of the names of landmarks, and what the columns of LANDMARKS or TABLE leave for the names of buttons."""
+
+MOST_SENTENCES = 6
+"""Of a comparison, one for each button; a folder is a table."""
 
 LANDMARKS = ("travel_mm", "peak_cN", "peak_mm", "snap_ratio", "bottom_out_cN", "work_mJ")
 TABLE = ("travel_mm", "actuation_mm", "peak_cN", "peak_mm", "snap_ratio", "bottom_out_cN")
@@ -27,9 +32,14 @@ TABLE = ("travel_mm", "actuation_mm", "peak_cN", "peak_mm", "snap_ratio", "botto
 @click.argument("buttons", nargs=-1, required=True)
 @ui.velocity_option(help="Compare at this speed, mm/s; default: the slowest.")
 @ui.option("--figure", type=ui.PATH, help="Draw the overlay: .svg, .png or .pdf.")
+@ui.option("--report", type=ui.PATH, help="Write a page to share: .html with chart, tables and models.")
 @ui.json_option
 def compare(
-    buttons: tuple[str, ...], velocity_mm_s: float | None, figure: Path | None, as_json: bool
+    buttons: tuple[str, ...],
+    velocity_mm_s: float | None,
+    figure: Path | None,
+    report: Path | None,
+    as_json: bool,
 ) -> None:
     """Compare buttons: landmarks side by side and force differences.
 
@@ -37,6 +47,7 @@ def compare(
     The first is the reference; displacement counts from each button's contact.
     """
     ui.check_output(figure, *ui.FIGURES)
+    ui.check_output(report, ".html")
     refused: list[str] = []
     with ui.progress("opening", len(buttons)) as advance:
         opened = open_models(buttons, refused, advance)
@@ -50,9 +61,17 @@ def compare(
         from fdvv.report.model_figures import plot_comparison
 
         ui.save_figure(plot_comparison(models, velocity_mm_s=velocity_mm_s).figure, figure)
+    if report:
+        _write_page(report, models, velocity_mm_s)
     if as_json:
         ui.print_json({**result.to_dict(), "refused": refused})
         return
+    if len(models) <= MOST_SENTENCES:
+        from fdvv.library.page import difference_sentences
+
+        for sentence in difference_sentences(models):
+            ui.print_wrapped(sentence)
+        click.echo("")
     widths = [
         2 + max(16 if errors else 8, len(name))
         for name, errors in zip(result.names, result.errors, strict=True)
@@ -61,6 +80,14 @@ def compare(
         _print_columns(result)
     else:
         _print_lines(result)
+    ui.print_written(report)
+
+
+def _write_page(path: Path, models: Sequence[FDVVModel], velocity_mm_s: float | None) -> None:
+    from fdvv.library.page import buttons_page
+    from fdvv.report.report import write_report
+
+    write_report(path, buttons_page(models, velocity_mm_s))
 
 
 def _print_columns(result: Comparison) -> None:
@@ -93,8 +120,11 @@ def _print_lines(result: Comparison) -> None:
 @click.argument("button")
 @ui.velocity_option(help="Landmarks of the press nearest to this (mm/s); default: slowest.")
 @ui.option("--figure", type=ui.PATH, help="Draw the curves into this .svg, .png or .pdf.")
+@ui.option("--report", type=ui.PATH, help="Write a page to share: .html with chart, landmarks and model.")
 @ui.json_option
-def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json: bool) -> None:
+def show(
+    button: str, velocity_mm_s: float | None, figure: Path | None, report: Path | None, as_json: bool
+) -> None:
     """Show landmarks and curves of a button.
 
     BUTTON is a built-in's name, a *.fdvv.json file, a file of measured curves, or a folder of them (a
@@ -102,11 +132,13 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
     shown: rig, method, presses, errors.
     """
     ui.check_output(figure, *ui.FIGURES)
+    ui.check_output(report, ".html")
     if _show_receipt(button, as_json):
         return
     if button and Path(button).is_dir():
-        if figure:
-            raise click.UsageError(f"--figure draws one button, and {button} is a folder")
+        if figure or report:
+            option = "--figure" if figure else "--report"
+            raise click.UsageError(f"{option} is of one button, and {button} is a folder")
         _show_folder(Path(button), velocity_mm_s, as_json)
         return
     model = open_button(button)
@@ -119,6 +151,8 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
         from fdvv.report.model_figures import plot_model
 
         ui.save_figure(plot_model(model).figure, figure)
+    if report:
+        _write_page(report, [model], velocity_mm_s)
     if as_json:
         uncertain = {name: vars(error) for name, error in errors.items()}
         source = model.provenance.source
@@ -132,6 +166,7 @@ def show(button: str, velocity_mm_s: float | None, figure: Path | None, as_json:
             click.echo(f"  {stroke} at {speeds + ' mm/s' if speeds else 'one unknown speed'}")
     _print_landmarks(marks, errors)
     _print_spreads(spread_reports(model))
+    ui.print_written(report)
 
 
 def _print_landmarks(marks: dict[str, float | None], errors: dict[str, LandmarkError]) -> None:

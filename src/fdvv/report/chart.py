@@ -18,6 +18,8 @@ from fdvv.units import FloatArray
 
 COLOURS = ("#2f8fd8", "#e0702a", "#1fa37a", "#b86fc4", "#c79a1b", "#d8577b")
 """Distinct for a colour-blind reader, and above 3:1 against both white and near-black."""
+SPEEDS = ("#4ec36b", "#1f9a8a", "#2e6f8e", "#433e85", "#440154")
+"""From slow to fast, as fdvv.report.style.velocity_colour; for pages whose figures are white."""
 MOST_POINTS = 400
 LEFT, RIGHT, TOP, BOTTOM = 46.0, 12.0, 10.0, 36.0
 LEGEND, LETTER = 34.0, 6.2
@@ -33,7 +35,7 @@ class ChartLine:
     ----------
     x, y : (n,) points; where one is not finite the line has a gap.
     name : for the legend; empty for none.
-    colour : number of the colour.
+    colour : number of the colour, or the colour as #rrggbb.
     dashed : drawn with dashes.
     opacity : 0 to 1.
     dots : drawn as points without a line.
@@ -42,7 +44,7 @@ class ChartLine:
     x: FloatArray
     y: FloatArray
     name: str = ""
-    colour: int = 0
+    colour: int | str = 0
     dashed: bool = False
     opacity: float = 1.0
     dots: bool = False
@@ -136,7 +138,7 @@ def _mark(line: ChartLine, px: FloatArray, py: FloatArray) -> dict[str, Any]:
     points = list(zip(px[finite].tolist(), py[finite].tolist(), strict=True))
     pens = np.where(follows[finite], "L", "M")
     path = "".join(f"{pen}{x:.1f} {y:.1f}" for pen, (x, y) in zip(pens, points, strict=True))
-    colour = COLOURS[line.colour % len(COLOURS)]
+    colour = line.colour if isinstance(line.colour, str) else COLOURS[line.colour % len(COLOURS)]
     return {"line": line, "name": printable(line.name), "colour": colour, "points": points, "path": path}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -77,20 +78,42 @@ class Section:
                 raise ModelError(f"a figure must be an svg element as figure_svg gives it, got {svg[:40]!r}")
 
 
+@dataclass(frozen=True)
+class Download:
+    """A file inside a report, which its reader can save. name : of the file."""
+
+    name: str
+    text: str
+
+    @property
+    def address(self) -> str:
+        """The content as the address of a link."""
+        return f"data:application/json;base64,{base64.b64encode(self.text.encode()).decode()}"
+
+
 def render_html(
     title: str,
     summary: str,
     sections: Sequence[Section],
     footer: str = "",
     simulated: str | None = None,
+    downloads: Sequence[Download] = (),
 ) -> str:
     """Return a report as one self-contained HTML document; every text is escaped.
 
     simulated : where the numbers come from if no hardware made them ("the twin, seed 1"); shown in a
         banner at the top as "Simulated: ...". None for measured data.
+    downloads : files that the reader can save from the document.
     """
     page = environment().get_template("report.html")
-    return page.render(title=title, summary=summary, sections=sections, footer=footer, simulated=simulated)
+    return page.render(
+        title=title,
+        summary=summary,
+        sections=sections,
+        footer=footer,
+        simulated=simulated,
+        downloads=downloads,
+    )
 
 
 def write_report(path: Path, html: str) -> None:

@@ -15,7 +15,8 @@ import msgspec
 from fdvv.studio.contract import Call, ChannelKind
 
 PARTS = (
-    *("about", "library", "library_buttons", "documents", "editor", "press", "programs", "jobs", "device"),
+    *("about", "library", "library_buttons", "documents", "files", "editor", "press", "programs"),
+    *("jobs", "device"),
     *("optimize", "optimize_setup", "optimize_trials", "play", "studies", "study_plans", "study"),
 )
 """In the order in which a person may want them: the first page is the library's."""

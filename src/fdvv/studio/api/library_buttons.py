@@ -9,6 +9,7 @@ from msgspec import Meta
 
 from fdvv.errors import FdvvError
 from fdvv.library.figures import row_of_model
+from fdvv.library.page import MOST_BUTTONS, buttons_page
 from fdvv.library.row import NUMBERS, ButtonType, Origin
 from fdvv.library.search import SearchQuery
 from fdvv.model.model import FDVVModel
@@ -142,6 +143,28 @@ def sampled_strokes(model: FDVVModel) -> list[LibraryStroke]:
         start_mm, step_mm = float(x[0]), float(x[1] - x[0])
         strokes.append(LibraryStroke(curve.stroke, curve.velocity_mm_s, start_mm, step_mm, force_cN))
     return strokes
+
+
+class LibraryPageAsk(Message):
+    """Ask for the page of one button or of several compared; velocity_mm_s : null is the slowest of each."""
+
+    ids: Annotated[list[str], Meta(min_length=1, max_length=MOST_BUTTONS)]
+    velocity_mm_s: Annotated[float, Meta(gt=0)] | None = None
+
+
+class LibraryPage(Message):
+    """An HTML document with nothing outside itself, and a name for its file."""
+
+    name: str
+    html: str
+
+
+@call("library.page")
+def page(studio: Studio, ask: LibraryPageAsk) -> LibraryPage:
+    models = [studio.catalog.model(button_id) for button_id in ask.ids]
+    return LibraryPage(
+        f"{' and '.join(m.name for m in models)}.html", buttons_page(models, ask.velocity_mm_s)
+    )
 
 
 @call("library.search")
