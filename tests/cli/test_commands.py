@@ -14,7 +14,7 @@ from pathlib import Path
 import click
 import pytest
 
-from fdvv.cli.main import COMMANDS, cli
+from fdvv.cli.main import COMMANDS, GROUPS, cli
 from fdvv.model.file import load_model
 from tests.cli.conftest import Run, tactile_csv
 
@@ -54,6 +54,12 @@ def test_the_line_in_the_table_is_the_first_of_the_commands_own_help(name: str) 
     command = cli.get_command(click.Context(cli), name)
     assert command is not None
     assert (command.help or "").split("\n\n")[0].replace("\n", " ").strip() == line
+
+
+def test_help_lists_every_command_in_one_group() -> None:
+    listed = [name for names in GROUPS.values() for name in names]
+    assert sorted(listed) == sorted(COMMANDS)
+    assert len(GROUPS["Every day"]) == 10
 
 
 @pytest.mark.parametrize("name", COMMANDS)

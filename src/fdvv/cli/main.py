@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import io
 import os
+import shlex
 import sys
 from typing import Any, NoReturn
 
@@ -50,6 +51,26 @@ COMMANDS = {
 }
 """By name: the module below fdvv.cli that defines a command, and the first line of its help."""
 
+GROUPS = {
+    "Every day": (
+        "studio",
+        "demo",
+        "show",
+        "compare",
+        "fit",
+        "capture",
+        "press",
+        "compensate",
+        "optimize",
+        "study",
+    ),
+    "Models and files": ("library", "merge", "assign", "vibration", "import", "export", "check"),
+    "Recordings": ("process", "join"),
+    "Rigs": ("device", "feasible", "probe", "tune", "program"),
+    "Many at once": ("sweep",),
+}
+"""The commands as help lists them; those of extras come last."""
+
 EXTRA_HELP = {
     "hardware": "Build a rig: what to print and to buy, how to wire it, and which part is wrong.",
     "mechanism": "Design a real switch that follows a model's curves.",
@@ -71,8 +92,13 @@ class MainGroup(click.Group):
         return ui.extra_command("commands", cmd_name)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        with formatter.section("Commands"):
-            formatter.write_dl(sorted(_short_helps().items()))
+        helps = _short_helps()
+        listed = {name for names in GROUPS.values() for name in names}
+        width = max(map(len, helps))
+        for title, names in {**GROUPS, "Extras": tuple(sorted(helps.keys() - listed))}.items():
+            if names:
+                with formatter.section(title):
+                    formatter.write_dl([(name.ljust(width), helps[name]) for name in names])
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; click would turn Ctrl-C into an empty line of its own."""
@@ -124,7 +150,7 @@ def main() -> NoReturn:
         sys.stdout.reconfigure(errors="replace")
     try:
         # click gives the status of an Exit, and None or whatever a command returns otherwise
-        status = cli.main(prog_name="fdvv", standalone_mode=False)
+        status = _run(sys.argv[1:])
         sys.exit(status if isinstance(status, int) else 0)
     except click.UsageError as error:
         _stop(2, _usage(error))
@@ -136,6 +162,24 @@ def main() -> NoReturn:
         _stop(2, _system(error))
     except (Interrupted, KeyboardInterrupt, click.Abort) as stop:
         _stop(130, str(stop) or "interrupted")
+
+
+def _run(arguments: list[str]) -> Any:
+    """Run the command; on a terminal a person is asked for the arguments that are missing."""
+    while True:
+        try:
+            return cli.main(arguments, prog_name="fdvv", standalone_mode=False)
+        except click.MissingParameter as error:
+            if not (isinstance(error.param, click.Argument) and sys.stdin.isatty() and sys.stderr.isatty()):
+                raise
+            arguments = [*arguments, *_asked(error.param)]
+
+
+def _asked(argument: click.Argument) -> list[str]:
+    """Ask for an argument; of several, each is a word as a shell would split them."""
+    name = argument.human_readable_name.lower().removesuffix("...")
+    typed = str(click.prompt(name, err=True))
+    return shlex.split(typed) if argument.nargs != 1 else [typed]
 
 
 def _stop(status: int, reason: str, error: FdvvError | None = None) -> NoReturn:

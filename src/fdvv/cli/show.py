@@ -14,6 +14,7 @@ from fdvv.button.open import button_files, open_button, open_files, open_models
 from fdvv.cli import ui
 from fdvv.errors import InputError
 from fdvv.io.documents import ACTUATION, own_kind
+from fdvv.library.kind import kind_sentence
 from fdvv.model.curve import Stroke
 from fdvv.model.landmarks import LandmarkError, landmark_errors, landmarks
 from fdvv.model.model import FDVVModel
@@ -72,6 +73,7 @@ def compare(
         for sentence in difference_sentences(models):
             ui.print_wrapped(sentence)
         click.echo("")
+        _draw(models, velocity_mm_s)
     widths = [
         2 + max(16 if errors else 8, len(name))
         for name, errors in zip(result.names, result.errors, strict=True)
@@ -81,6 +83,14 @@ def compare(
     else:
         _print_lines(result)
     ui.print_written(report)
+
+
+def _draw(models: Sequence[FDVVModel], velocity_mm_s: float | None) -> None:
+    """Draw the curves where standard output is a terminal that can show them."""
+    from fdvv.cli.terminal_chart import can_draw, print_curves
+
+    if can_draw():
+        print_curves(models, velocity_mm_s)
 
 
 def _write_page(path: Path, models: Sequence[FDVVModel], velocity_mm_s: float | None) -> None:
@@ -159,11 +169,14 @@ def show(
         head = {"name": model.name, "source": source, "landmarks": marks, "landmark_errors": uncertain}
         ui.print_json({**head, **spread_reports(model)})
         return
+    ui.print_wrapped(kind_sentence(model))
     ui.print_wrapped(f"{model.name}: {model.provenance.source or 'source not stated'}")
     for stroke in ("press", "release"):
         speeds = ", ".join(f"{v:g}" for v in model.velocities_mm_s(stroke))
         if model.of(stroke):
             click.echo(f"  {stroke} at {speeds + ' mm/s' if speeds else 'one unknown speed'}")
+    click.echo("")
+    _draw([model], velocity_mm_s)
     _print_landmarks(marks, errors)
     _print_spreads(spread_reports(model))
     ui.print_written(report)

@@ -82,6 +82,12 @@ def kind_of(model: FDVVModel) -> ButtonKind:
     return ButtonKind(kind, fact, sure.get(kind))
 
 
+def kind_sentence(model: FDVVModel) -> str:
+    """Say what kind of button the curve suggests, and by which fact."""
+    found = kind_of(model)
+    return f"{str(found.kind).capitalize().rstrip('?')}: {found.fact}."
+
+
 def _kind_of(model: FDVVModel) -> tuple[ButtonType, str]:
     found = _samples(model, Stroke.PRESS)
     if found is None:

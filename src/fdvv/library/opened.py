@@ -10,7 +10,7 @@ from typing import Protocol
 from fdvv.button.fit import FitSettings, fit_file
 from fdvv.formats.force.read import stroke_of
 from fdvv.io.documents import MODEL, own_kind
-from fdvv.library.page import kind_sentence
+from fdvv.library.kind import kind_sentence
 from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.model.file import load_model
 from fdvv.model.fit import CurveFit

@@ -9,7 +9,7 @@ import numpy as np
 from fdvv.button.compare import Comparison, compare
 from fdvv.errors import ModelError
 from fdvv.library.figures import row_of_model
-from fdvv.library.kind import kind_of
+from fdvv.library.kind import kind_sentence
 from fdvv.library.like import LikeTable, distances
 from fdvv.library.row import Origin
 from fdvv.model.curve import ForceCurve, Stroke
@@ -19,7 +19,7 @@ from fdvv.report.chart import SPEEDS, ChartLine, chart_svg
 from fdvv.report.report import Download, Section, Table, render_html
 
 MOST_BUTTONS = 6
-"""Lines of more colours are not told apart."""
+"""More colours are hard to distinguish."""
 
 WIDE, HIGH = 720.0, 340.0
 STEP_mm = 0.01
@@ -69,12 +69,6 @@ def buttons_page(models: Sequence[FDVVModel], velocity_mm_s: float | None = None
         f"{' and '.join(simulated)} was not measured on hardware" if simulated else None,
         [Download(f"{model.name}{MODEL_SUFFIX}", model_to_json(model)) for model in models],
     )
-
-
-def kind_sentence(model: FDVVModel) -> str:
-    """Say what kind of button the curve suggests, and by which fact."""
-    found = kind_of(model)
-    return f"{str(found.kind).capitalize().rstrip('?')}: {found.fact}."
 
 
 def difference_sentences(models: Sequence[FDVVModel]) -> Iterator[str]:
