@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from fdvv.errors import ModelError
 from fdvv.model.model import FDVVModel
 from fdvv.report.model_figures import plot_vibration
-from fdvv.report.report import Section, Table, render_html, write_report
+from fdvv.report.report import Headline, Section, Table, render_html, write_report
 from fdvv.report.svg import figure_svg
 
 VOID = {"meta", "link", "br", "img", "hr", "input"}
@@ -156,3 +156,31 @@ def test_a_report_is_written_whole(tmp_path: Path) -> None:
     write_report(path, render_html("é", "µ", []))
     assert "<h1>é</h1>" in path.read_text(encoding="utf-8")
     assert list(path.parent.iterdir()) == [path]
+
+
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"><title>one</title></svg>'
+
+
+def test_one_of_several_figures_is_chosen_without_a_script() -> None:
+    choices = (("50 mm/s", SVG), ("100 mm/s", SVG))
+    html = render_html("title", "", [Section("Speeds", choices=choices)])
+    assert "<script" not in html
+    assert html.count('type="radio"') == 2
+    assert html.count(" checked>") == 1
+    assert html.count("<figure>") == 2
+
+
+def test_more_choices_than_the_style_sheet_counts_are_refused() -> None:
+    with pytest.raises(ModelError, match="at most 8"):
+        Section("Speeds", choices=tuple((str(i), SVG) for i in range(9)))
+
+
+def test_a_folded_section_keeps_its_heading_in_view() -> None:
+    html = render_html("title", "", [Section("Detail", ("text",), folded=True)])
+    assert re.search(r"<details>\s*<summary><h2[^>]*>Detail</h2></summary>\s*<p>text</p>\s*</details>", html)
+
+
+def test_headlines_come_before_the_summary_and_are_escaped() -> None:
+    html = render_html("title", "the summary", [], headlines=[Headline("9 → 1 cN", "mean <error>")])
+    assert html.index("9 → 1 cN") < html.index("the summary")
+    assert "mean &lt;error&gt;" in html

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -13,11 +14,11 @@ from fdvv.cli.demo_run import DemoResult
 from fdvv.cli.ui import bump_kept
 from fdvv.rendering.evaluation.probe_figures import rendered_curves
 from fdvv.rendering.evaluation.probe_report import sources_section, vibration_section
-from fdvv.rendering.evaluation.verdict import verdict
+from fdvv.rendering.evaluation.verdict import headline, headline_figures, verdict
 from fdvv.rendering.figures import plot_convergence, plot_rendering
 from fdvv.report.model_figures import plot_model, plot_surface
-from fdvv.report.records import ErrorHistory
-from fdvv.report.report import Section, Table, render_html
+from fdvv.report.records import ErrorHistory, RenderedCurve
+from fdvv.report.report import Headline, Section, Table, render_html
 from fdvv.report.svg import figure_svg
 
 
@@ -26,21 +27,38 @@ def demo_report(result: DemoResult) -> str:
     source = (
         f"the twin, seed {result.seed} for learning, {result.seed + 1000} for judging; no hardware was used"
     )
-    fit, uniform = result.switch.adaptive.fits[0], result.switch.uniform[0]
-    errors = ", ".join(
-        f"{r.label} {np.mean([row[r.label]['mean_error_cN'] for row in result.rows()]):.1f} cN"
-        for r in result.renderings
-    )
+    before, after = result.renderings[0].judged.curves, result.renderings[-1].judged.curves
+    found = headline(after, before)
     summary = (
-        f"A real switch is fitted from its raw curve to {fit.rmse_cN:.2f} cN (uniform knots: "
-        f"{uniform.rmse_cN:.2f} cN). The published FDVV button is rendered on the simulated rig at four "
-        "velocities and judged on fresh presses in true displacement. Mean error over all curves: "
-        f"{errors}."
+        f"{result.button.name}, the published FDVV button, on the simulated rig at four speeds, judged on "
+        f"fresh presses. {found[0].upper()}{found[1:]}. Open it in the studio: run fdvv studio, and search for "
+        f"{result.button.name}."
     )
     footer = f"fdvv {__version__}; {result.time_s:.0f} s; built-in sources and licences: fdvv library --json"
-    sections = [_switch(result), _button(result), _rendering(result), _vibration(result), _learning(result)]
-    sections.append(sources_section())
-    return render_html("fdvv demo", summary, sections, footer, simulated=source)
+    detail = (_every_rendering, _vibration, _learning, _button, _scan)
+    sections = [_before_and_after(result), _switch(result)]
+    sections += [replace(make(result), folded=True) for make in detail]
+    sections.append(replace(sources_section(), folded=True))
+    figures = [Headline(*figure) for figure in headline_figures(after, before)]
+    return render_html("fdvv demo", summary, sections, footer, simulated=source, headlines=figures)
+
+
+def _before_and_after(result: DemoResult) -> Section:
+    """Show target and rendered force of one speed at a time, with and without compensation."""
+    first, last = result.renderings[0].judged.curves, result.renderings[-1].judged.curves
+    methods = {"uncompensated": first, "compensated": last}
+    shown = rendered_curves(methods, simulated=True)
+    speeds = sorted({curve.velocity_mm_s for curve in shown})
+    choices = tuple(
+        (f"{v:g} mm/s", _figure(_of_speed(shown, v), f"Target and rendered force at {v:g} mm/s"))
+        for v in speeds
+    )
+    text = "The grey band is one JND of force around the target. A bar marks where a finger would notice it."
+    return Section("Before and after compensation", (text,), choices=choices)
+
+
+def _of_speed(curves: Sequence[RenderedCurve], velocity_mm_s: float) -> Any:
+    return plot_rendering([c for c in curves if c.velocity_mm_s == velocity_mm_s], simulated=True)
 
 
 def _figure(drawn: Any, text: str) -> str:
@@ -63,18 +81,20 @@ def _switch(result: DemoResult) -> Section:
     ]
     columns = ("curve", "RMSE (cN)", "max (cN)", "control points", "bump kept", "time (ms)")
     press = (fitted.fits[0], result.switch.uniform[0])
-    figures = (
-        _figure(plot_fit(fitted.measured[0], press, title=fitted.model.name), "Raw press and two fits"),
-        _figure(
-            plot_scan(result.switch.scan, title=fitted.model.name), "BIC* over the number of control points"
-        ),
-    )
+    drawn = plot_fit(fitted.measured[0], press, title=fitted.model.name)
+    figures = (_figure(drawn, "Raw press and two fits"),)
     text = (
         f"{fitted.model.name}: measured, from contact to bottom-out, not smoothed. Errors are against the "
         "raw curve, each distinct displacement counting once.",
         *(f"Warning: {warning}." for warning in fitted.warnings),
     )
     return Section("A real switch, fitted", text, figures, (Table(columns, tuple(rows)),))
+
+
+def _scan(result: DemoResult) -> Section:
+    drawn = plot_scan(result.switch.scan, title=result.switch.adaptive.model.name)
+    figure = _figure(drawn, "BIC* over the number of control points")
+    return Section("How many control points the switch needs", figures=(figure,))
 
 
 def _button(result: DemoResult) -> Section:
@@ -87,7 +107,7 @@ def _button(result: DemoResult) -> Section:
     return Section("The published button", text, figures)
 
 
-def _rendering(result: DemoResult) -> Section:
+def _every_rendering(result: DemoResult) -> Section:
     labels = [r.label for r in result.renderings]
     columns = ("curve", *(f"{label}, mean / max (cN)" for label in labels))
     rows = [
@@ -112,7 +132,12 @@ def _rendering(result: DemoResult) -> Section:
     learned = {r.label: r.judged.curves for r in result.renderings if r.learned}
     grid = plot_rendering(rendered_curves(learned, simulated=True), title=result.button.name, simulated=True)
     figure = _figure(grid, "Target and rendered force per velocity and stroke")
-    return Section("Rendered on the rig", text, (figure,), (Table(columns, tuple(rows), caption),))
+    return Section(
+        "Every speed, and what each part of the model brings",
+        text,
+        (figure,),
+        (Table(columns, tuple(rows), caption),),
+    )
 
 
 def _vibration(result: DemoResult) -> Section:

@@ -23,6 +23,18 @@ _NOTHING = {"", "-", "–", "—"}
 """What a cell says where there is no number."""
 
 
+MOST_CHOICES = 8
+"""The style sheet counts that far."""
+
+
+@dataclass(frozen=True)
+class Headline:
+    """A result in a few characters, such as "14 → 0.8 cN", and what it is of."""
+
+    value: str
+    label: str
+
+
 @dataclass(frozen=True)
 class Table:
     """A table of text.
@@ -61,19 +73,27 @@ class Section:
     ----------
     title : its heading.
     paragraphs : plain text, no markup.
+    choices : figures of which one is shown, each with the label that chooses it; the first is shown first.
     figures : svg elements as figure_svg gives them.
     tables : see Table.
+    folded : shown by its title until the reader opens it.
     """
 
     title: str
     paragraphs: tuple[str, ...] = ()
     figures: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
+    choices: tuple[tuple[str, str], ...] = ()
+    folded: bool = False
 
     def __post_init__(self) -> None:
-        for name in ("paragraphs", "figures", "tables"):
+        for name in ("paragraphs", "figures", "tables", "choices"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
-        for svg in self.figures:
+        if len(self.choices) > MOST_CHOICES:
+            raise ModelError(
+                f"a section has at most {MOST_CHOICES} figures to choose, got {len(self.choices)}"
+            )
+        for svg in (*self.figures, *(svg for _, svg in self.choices)):
             if not svg.lstrip().startswith("<svg"):
                 raise ModelError(f"a figure must be an svg element as figure_svg gives it, got {svg[:40]!r}")
 
@@ -98,12 +118,14 @@ def render_html(
     footer: str = "",
     simulated: str | None = None,
     downloads: Sequence[Download] = (),
+    headlines: Sequence[Headline] = (),
 ) -> str:
     """Return a report as one self-contained HTML document; every text is escaped.
 
     simulated : where the numbers come from if no hardware made them ("the twin, seed 1"); shown in a
         banner at the top as "Simulated: ...". None for measured data.
     downloads : files that the reader can save from the document.
+    headlines : the results, shown large before everything else.
     """
     page = environment().get_template("report.html")
     return page.render(
@@ -113,6 +135,7 @@ def render_html(
         footer=footer,
         simulated=simulated,
         downloads=downloads,
+        headlines=headlines,
     )
 
 

@@ -65,6 +65,27 @@ def headline(curves: Sequence[ProbeCurve], before: Sequence[ProbeCurve] = ()) ->
     return f"Mean error {parts[0]} cN, largest {parts[1]}; {_noticed_where(curves)}"
 
 
+def headline_figures(
+    curves: Sequence[ProbeCurve], before: Sequence[ProbeCurve] = ()
+) -> tuple[tuple[str, str], ...]:
+    """Return the three figures of a rendering, each with what it is of; before : without compensation.
+
+    The mean and the largest error of force, and how much of the strokes is above one JND of force.
+    """
+    return (
+        (f"{_fell(_mean_cN(before), _mean_cN(curves))} cN", "mean error of force"),
+        (f"{_fell(_largest_cN(before), _largest_cN(curves))} cN", "largest error"),
+        (
+            f"{_fell(_noticed_percent(before), _noticed_percent(curves))} %",
+            "of the strokes a finger would notice",
+        ),
+    )
+
+
+def _noticed_percent(curves: Sequence[ProbeCurve]) -> float | None:
+    return 100 * float(np.mean([noticed(c.force_JND).above_ratio for c in curves])) if curves else None
+
+
 def next_step(curves: Sequence[ProbeCurve], means: RenderingMeans) -> str:
     """Return what improves the rendering most, judged by the worst that was found; empty without a curve."""
     if not curves:
