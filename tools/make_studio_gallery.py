@@ -1,4 +1,5 @@
-"""Photograph the studio for the documents: docs/images/studio/*.png. Run from the repository root.
+"""Photograph the studio for the documents: docs/images/studio/*.png, and one film. Run it from the repository
+root as ``python -m tools.make_studio_gallery [NAME ...]``.
 
 A fresh studio with built-in buttons only, driven in Chromium as a person does; what it renders is simulated.
 """
@@ -6,6 +7,7 @@ A fresh studio with built-in buttons only, driven in Chromium as a person does; 
 from __future__ import annotations
 
 import io
+import math
 import shutil
 import subprocess
 import sys
@@ -14,6 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from benchmarks.studio_drag import place_of
 from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
 
@@ -138,6 +141,36 @@ SHOTS = (
 )
 
 
+FILM = "drag"
+FRAMES, FRAME_ms, FILM_px = 26, 90, (720, 405)
+POINT = 7
+"""Of the press of mx-clear: on its bump."""
+
+
+def film(page: Page, base: str) -> None:
+    """Film a control point of the bump as it is dragged up and down, and the force that the rig renders."""
+    page.emulate_media(color_scheme="light", reduced_motion="reduce")
+    page.set_viewport_size({"width": WIDE[0], "height": WIDE[1]})
+    page.goto("about:blank")
+    page.goto(f"{base}/#/edit/builtin:mx-clear")
+    follow(page)
+    x, y = place_of(page, POINT)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    frames = []
+    for i in range(FRAMES):
+        page.mouse.move(x, y - 45 * math.sin(2 * math.pi * i / FRAMES))
+        # the force that the rig renders follows within some hundredths of a second
+        page.wait_for_timeout(250)
+        frames.append(Image.open(io.BytesIO(page.screenshot())).convert("RGB").resize(FILM_px))
+    page.mouse.up()
+    colours = frames[0].quantize(64)
+    first, *others = (frame.quantize(palette=colours, dither=Image.Dither.NONE) for frame in frames)
+    path = TARGET / f"{FILM}.gif"
+    first.save(path, save_all=True, append_images=others, duration=FRAME_ms, loop=0, optimize=True)
+    print(path)
+
+
 def take(page: Page, base: str, shot: Shot) -> None:
     """Make one picture."""
     page.emulate_media(color_scheme="dark" if shot.scheme == "dark" else "light", reduced_motion="reduce")
@@ -178,6 +211,8 @@ def photograph(studio: subprocess.Popen[str], browser: Browser) -> None:
     for shot in SHOTS:
         if shot.name in sys.argv[1:] or len(sys.argv) == 1:
             take(page, address.partition("/?")[0], shot)
+    if FILM in sys.argv[1:] or len(sys.argv) == 1:
+        film(page, address.partition("/?")[0])
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""Type what the README says, in a folder of its sources; tools/newcomer.sh calls it.
+"""Type what the README and the page of features say, in a folder of the sources; tools/newcomer.sh calls it.
 
-usage: python -m tools.newcomer FOLDER install|use. The commands are read out of the README, so that neither
-can leave the other.
+usage: python -m tools.newcomer FOLDER install|use. The commands are read out of these documents, so that they
+cannot differ from what is tried.
 """
 
 from __future__ import annotations
@@ -26,18 +26,21 @@ def blocks(readme: str) -> list[tuple[str, list[str]]]:
     return [(language, text.splitlines()) for language, text in found]
 
 
-def commands(readme: str) -> tuple[list[str], list[str], str]:
+def commands(folder: Path) -> tuple[list[str], list[str], str]:
     """Return what is typed to install, what is typed then, and the program in Python; all without remarks."""
-    plain = [
-        [line.partition("#")[0].strip() for line in lines]
-        for language, lines in blocks(readme)
-        if not language
-    ]
-    (program,) = ["\n".join(lines) for language, lines in blocks(readme) if language == "python"]
-    install, use = plain
+    (install,) = plain(folder / "README.md")
+    (use,) = plain(folder / "docs" / "features.md")
+    features = (folder / "docs" / "features.md").read_text(encoding="utf-8")
+    (program,) = ["\n".join(lines) for language, lines in blocks(features) if language == "python"]
     if install[0] != "make demo" or use[:2] != [ACTIVATE, STUDIO]:
-        raise SystemExit("newcomer: the README begins otherwise than this path; walk it anew")
+        raise SystemExit("newcomer: the documents begin otherwise than this path; walk it anew")
     return install[:1], use, program
+
+
+def plain(page: Path) -> list[list[str]]:
+    """Return the commands of every block that names no language."""
+    found = blocks(page.read_text(encoding="utf-8"))
+    return [[line.partition("#")[0].strip() for line in lines] for language, lines in found if not language]
 
 
 def typed(folder: Path, line: str) -> str:
@@ -65,7 +68,7 @@ def studio(folder: Path, line: str) -> str:
 
 def steps(folder: Path, phase: str) -> Iterator[tuple[str, str]]:
     """Take the steps of a phase; give of each its line and what to tell of it."""
-    install, use, program = commands((folder / "README.md").read_text(encoding="utf-8"))
+    install, use, program = commands(folder)
     if phase == "install":
         for line in install:
             yield line, typed(folder, line).splitlines()[-1]

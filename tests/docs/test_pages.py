@@ -29,7 +29,7 @@ RUN_ELSEWHERE = {
 NOT_RUN = {"docs/how-to/exchange.md"}
 """Pages that start from a recording of the reader."""
 FAST = {
-    "README.md",
+    "docs/features.md",
     "docs/tutorials/first-button.md",
     "docs/tutorials/new-program.md",
     "docs/tutorials/capture-a-button.md",

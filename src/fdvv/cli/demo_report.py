@@ -31,8 +31,8 @@ def demo_report(result: DemoResult) -> str:
     found = headline(after, before)
     summary = (
         f"{result.button.name}, the published FDVV button, on the simulated rig at four speeds, judged on "
-        f"fresh presses. {found[0].upper()}{found[1:]}. Open it in the studio: run fdvv studio, and search for "
-        f"{result.button.name}."
+        f"fresh presses. {found[0].upper()}{found[1:]}. To open it in the studio, run fdvv studio and search "
+        f"for {result.button.name}."
     )
     footer = f"fdvv {__version__}; {result.time_s:.0f} s; built-in sources and licences: fdvv library --json"
     detail = (_every_rendering, _vibration, _learning, _button, _scan)
