@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.errors import InputError
+from fdvv.errors import DeviceError, InputError
 from fdvv.live.press import LiveEvent, LiveEventKind, LivePress
 from fdvv.live.press_subject import PressMode, PressSubject, drawn_trace, model_subject, program_subject
 from fdvv.model.curve import Stroke
@@ -81,20 +81,52 @@ def test_a_program_on_a_rig_with_a_cell_is_pressed_with_its_loop_sound(name: str
     assert not [event.message for event in events if event.message]
 
 
-def test_a_loop_that_opens_is_reported_once_in_each_press_and_closed_again_after_it() -> None:
+def press_with_cell(**broken: float) -> LivePress:
     subject = model_subject(load_builtin("mx-red"), PressMode.COMPENSATED)
-    drifted = replace(subject.rig, load_cell=replace(subject.rig.load_cell, offset_N=-0.5))
-    press = LivePress(replace(subject, rig=drifted))
+    cell = replace(subject.rig.load_cell, **broken)
+    return LivePress(replace(subject, rig=replace(subject.rig, load_cell=cell)))
+
+
+def press_once(press: LivePress) -> list[str]:
+    """Press, lift, let the cap rest; return what was said of the loop."""
     press.push(80.0)
-    for _ in range(2):
-        opened = [event for event in press.advance(0.6)[1] if event.kind is LiveEventKind.LOOP]
-        assert [event.message for event in opened] == [
-            "the force loop opened, cell wrong: tables render this press"
+    events = press.advance(0.6)[1]
+    press.lift()
+    events += press.advance(0.5)[1]
+    return [event.message for event in events if event.kind is LiveEventKind.LOOP]
+
+
+def test_a_loop_that_its_cell_opened_stays_open_which_is_said_then_and_after_each_press() -> None:
+    press = press_with_cell(offset_N=-0.5)
+    for times in (2, 1, 1):
+        assert press_once(press) == times * [
+            "the force loop opened, cell wrong: tables render until the load cell is checked"
         ]
-        press.lift()
-        assert kinds(press.advance(0.5)[1])[-1] is LiveEventKind.PRESSED
+        assert press.rig.loop_fault is LoopFault.CELL_WRONG
+
+
+@pytest.mark.parametrize("offset_N", [-0.5, 0.5])
+def test_a_cap_with_a_broken_cell_lies_still_after_a_press(offset_N: float) -> None:
+    press = press_with_cell(offset_N=offset_N)
+    press_once(press)
+    free, _ = press.advance(1.0)
+    assert np.std(free.velocity_mm_s) < 5.0
+
+
+def test_a_cell_that_reads_a_force_under_a_free_cap_does_not_close_the_loop_again() -> None:
+    press = press_with_cell(offset_N=-0.5)
+    press_once(press)
+    with pytest.raises(DeviceError, match=r"the load cell reads -\d\d\.\d cN; lift the finger"):
+        press.check_cell()
+    assert press.rig.loop_fault is LoopFault.CELL_WRONG
+
+
+def test_a_cell_of_too_small_a_range_passes_the_check_and_opens_the_loop_again_when_pressed() -> None:
+    press = press_with_cell(full_scale_N=0.4)
+    for _ in range(2):
+        assert press_once(press)
+        press.check_cell()
         assert press.rig.loop_fault is LoopFault.SOUND
-        press.push(80.0)
 
 
 def test_the_loop_is_closed_again_when_a_fault_is_cleared() -> None:

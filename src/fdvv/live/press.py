@@ -28,6 +28,8 @@ from fdvv.units import FloatArray
 TOP_mm, DEEP_mm = 0.1, 0.3
 """A press begins where the cap passes the first; it counts once it was deeper than the second."""
 STEP_mm = 0.02
+FREE_CELL_cN = 3.0
+"""A sound load cell reads no more than this under a cap that nothing touches."""
 DOWN_RATIO = 0.9
 """Of its depth: there a press counts as down; what follows may be a finger that holds."""
 
@@ -37,7 +39,8 @@ class LiveEventKind(StrEnum):
 
     actuation, reset : the key went down, came up. level : it changed from one level to another.
     vibration : a signal starts at the cap. pressed : a press is over. fault : the firmware fell to no force.
-    loop : the firmware opened its force loop by itself; after this press it is closed again.
+    loop : the firmware opened its force loop by itself; it stays open, which is said again after each press,
+        until LivePress.check_cell().
     """
 
     ACTUATION = "actuation"
@@ -225,6 +228,22 @@ class LivePress:
         self.rig.arm()
         self._faulted = False
 
+    def check_cell(self) -> None:
+        """Close the loop again that a fault of the cell opened, the finger lifted before.
+
+        DeviceError if the cell of the free cap reads a force. One that passes and is broken opens the loop
+        again in the next press.
+        """
+        if self.rig.loop_fault is LoopFault.SOUND:
+            return
+        if abs(reads_cN := self.rig.cell_cN) > FREE_CELL_cN:
+            raise DeviceError(
+                f"the load cell reads {reads_cN:.1f} cN; lift the finger, and if nothing touches the cap, "
+                "mend or zero the cell"
+            )
+        self.rig.close_loop()
+        self._opened = False
+
     def _lead_along(self, ticks: int) -> int:
         """Lead by the trace that is replayed, if any; return how many ticks may pass before the next lead."""
         if self._path is None or not ticks:
@@ -261,9 +280,8 @@ class LivePress:
         ended = [event for event in found if event]
         for event in ended:
             self.rig.announce(float(np.clip(event.velocity_mm_s, *PACE_mm_s)))
-        if ended and self._opened:
-            self.rig.close_loop()
-            self._opened = False
+        if ended:
+            self._opened = False  # a loop that is still open is reported again
         return ended
 
     def _loop(self, columns: InteractiveTicks) -> list[LiveEvent]:
@@ -273,7 +291,12 @@ class LivePress:
         self._opened = True
         reason = found.name.lower().replace("_", " ")
         event = _event(LiveEventKind.LOOP, columns, -1, int(found))
-        return [replace(event, message=f"the force loop opened, {reason}: tables render this press")]
+        return [
+            replace(
+                event,
+                message=f"the force loop opened, {reason}: tables render until the load cell is checked",
+            )
+        ]
 
     def _faults(self, columns: InteractiveTicks) -> list[LiveEvent]:
         fell = np.flatnonzero(columns.mode == Mode.FAULT)

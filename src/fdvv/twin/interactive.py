@@ -13,7 +13,7 @@ import numpy.typing as npt
 from fdvv._native import address
 from fdvv.errors import ModelError
 from fdvv.firmware.core import OUTPUTS, Core
-from fdvv.protocol.messages import MM_S16_PER_mm_s
+from fdvv.protocol.messages import CN64_PER_cN, MM_S16_PER_mm_s
 from fdvv.protocol.tables import Fault, ForceLoopGains, LoopFault, Settings, TickFlag
 from fdvv.twin.finger import Finger
 from fdvv.twin.noise import Effort, Noise
@@ -107,6 +107,10 @@ class InteractiveRig(RunningRig):
     seed : of all noise; None: no noise at all.
     loop : gains that the force loop is closed with, on a rig with a load cell; None leaves it open.
 
+    Attributes
+    ----------
+    cell_cN : mean reading of the load cell over the ticks that were advanced last.
+
     It begins armed and at rest, the finger LIFTED_m above the cap. Time passes only in advance(); the host is
     heard in every tick. The same calls at the same times give the same columns, however time is cut.
     ModelError if rig, settings and image do not go together.
@@ -128,6 +132,7 @@ class InteractiveRig(RunningRig):
             raise ModelError("this rig has no load cell to close a force loop with")
         self.core = Core(settings or settings_of(self.rig), image, limits_of(self.rig))
         self._loop = loop
+        self.cell_cN = 0.0
         self._grid = replace(self._grid, steps_per_row=self._grid.steps_per_tick)
         self.effort = Effort(self.finger.habit, self.rig.controller.tick_s)
         self._noise, self._used = self._draw(), 0
@@ -170,9 +175,13 @@ class InteractiveRig(RunningRig):
         self.core.announce(min(65535, max(0, round(MM_S16_PER_mm_s * velocity_mm_s))))
 
     def arm(self) -> None:
-        """Render again after a fault, which has opened the loop. DeviceError as Core.arm."""
+        """Render again after a fault, which has opened the loop. DeviceError as Core.arm.
+
+        A loop that its cell opened stays open.
+        """
         self.core.arm()
-        self.close_loop()
+        if self.loop_fault is LoopFault.SOUND:
+            self.close_loop()
 
     @property
     def loop_fault(self) -> LoopFault:
@@ -202,6 +211,8 @@ class InteractiveRig(RunningRig):
         if not np.isfinite(rows.physics).all():
             raise ModelError(f"the motion diverged: rig or finger are too stiff for steps of {STEP_s:g} s")
         self._ticks += ticks
+        if ticks:
+            self.cell_cN = float(rows.outputs["force_cN64"].mean()) / CN64_PER_cN
         return InteractiveTicks.of_rows(rows, self._ticks - ticks, self.rig.controller.tick_s)
 
     def _run(self, ticks: int, rows: Rows) -> None:
