@@ -42,7 +42,9 @@ class ProbeCurve:
     Attributes
     ----------
     displacement_mm, target_cN : (n,) bins judged, and what the model asks for at the asked speed.
-    rendered_cN : (presses, n) force on the finger; 0 in bins the cap did not reach, where there was none.
+    rendered_cN : (presses, n) force on the finger; 0 in bins that the press did not reach. Above the place
+        where the cap rests under the finger it is what the finger rests with, if the target is not less: a
+        button gives way to that too.
     achieved_mm_s : (presses,) mean speed of each stroke.
     at_achieved_cN : (presses, n) what the model asks for at the achieved speed.
     reached_ratio : part of the bins that the cap reached, of the worst press.
@@ -171,11 +173,14 @@ def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Pres
     x, curves = grid[judged], []
     spans = [split_strokes(press.displacement_mm, model.travel_mm) for press in presses]
     for i, stroke in enumerate(Stroke):
-        forces, speeds = [], []
+        forces, resting, speeds = [], [], []
         served = _served(model, stroke)
+        target = model.force_cN(x, velocity_mm_s, served)
         for press, strokes in zip(presses, spans, strict=True):
             rows = strokes[i]
             forces.append(bin_force(press.displacement_mm[rows], press.force_cN[rows], grid)[judged])
+            rests_cN = press.force_cN[0 if stroke is Stroke.PRESS else -1]
+            resting.append(_resting_cN(forces[-1], target, float(rests_cN)))
             speeds.append(mean_speed_mm_s(press.t_s, press.displacement_mm, rows))
         rendered, achieved = np.stack(forces), np.array(speeds)
         paces = np.nan_to_num(achieved, nan=velocity_mm_s)[:, None]
@@ -184,14 +189,25 @@ def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Pres
                 stroke,
                 velocity_mm_s,
                 x,
-                model.force_cN(x, velocity_mm_s, served),
-                np.nan_to_num(rendered, nan=0.0),
+                target,
+                np.nan_to_num(np.stack(resting), nan=0.0),
                 achieved,
                 model.force_cN(x[np.newaxis], paces, served),
                 float(np.isfinite(rendered).mean(axis=1).min()),
             )
         )
     return curves
+
+
+def _resting_cN(rendered_cN: FloatArray, target_cN: FloatArray, rests_cN: float) -> FloatArray:
+    """Return the force in each bin, (n,), with that of the resting finger above where the cap rests.
+
+    rendered_cN : NaN in bins that were not visited. rests_cN : before a press, and after a release.
+    """
+    above = np.cumsum(np.isfinite(rendered_cN)) == 0
+    if above.all():
+        return rendered_cN
+    return np.where(above, np.clip(rests_cN, 0.0, target_cN), rendered_cN)
 
 
 def _served(model: FDVVModel, stroke: Stroke) -> Stroke:
