@@ -228,7 +228,8 @@ static float gate(const fdvv_force_loop *loop, float feedback_N, float top, floa
     return bottom * (loop->release > 0.5f ? top : 1.0f) * loop->contact;
 }
 
-/* A finger stiffer than any that the gains were chosen for makes the loop ring: halve them, for good. */
+/* A finger stiffer than any that the gains were chosen for makes the loop ring: halve them, for good. What is watched is
+ * not halved with them: a tip of steel would go on ringing at whatever gain passes unseen. */
 static void watch_ringing(fdvv_force_loop *loop, float fed_N)
 {
     int8_t side = (int8_t)(fed_N > LARGE_N ? 1 : fed_N < -LARGE_N ? -1 : 0);
@@ -249,7 +250,7 @@ static float feedback_N(fdvv_force_loop *loop, float error_N, float top, float b
     loop->low_N[0] += g->lowpass_rate * (g->proportional * error_N + g->derivative_s * rate_N_s - loop->low_N[0]);
     loop->low_N[1] += g->lowpass_rate * (loop->low_N[0] - loop->low_N[1]);
     fed_N = clamp(loop->scale * loop->low_N[1], -FEEDBACK_N, FEEDBACK_N);
-    watch_ringing(loop, fed_N);
+    watch_ringing(loop, loop->low_N[1]);
     loop->integral_N += g->integral_1_s * g->tick_s * error_N * top * bottom * loop->contact;
     loop->integral_N = clamp(loop->integral_N * (1.0f - g->leak), -INTEGRAL_N, INTEGRAL_N);
     return fed_N * gate(loop, fed_N, top, bottom) + loop->integral_N;

@@ -329,6 +329,13 @@ def test_ringing_halves_what_is_fed_back() -> None:
     assert np.ptp(commands[-80:]) < 0.6 * np.ptp(commands[20:80])
 
 
+def test_ringing_that_goes_on_at_half_the_gain_is_halved_again() -> None:
+    """A tip of steel rings at a quarter of the gain as at the whole of it."""
+    loop = Loop(replace(GAINS, damping_N_s_m=0.0, integral_1_s=0.0, lead_s=0.0))
+    commands = [loop.tick(2e-3, 0.6 + 0.25 * (-1) ** (k // 8), 0.6)[1] for k in range(2000)]
+    assert np.ptp(commands[-80:]) < 0.05 * np.ptp(commands[:80])
+
+
 def test_a_force_that_swings_slowly_is_no_ringing() -> None:
     loop = Loop(replace(GAINS, damping_N_s_m=0.0))
     commands = [loop.tick(2e-3, 0.6 + 0.4 * np.sin(2 * np.pi * 20 * k * TICK_s), 0.6)[1] for k in range(2000)]
