@@ -40,6 +40,8 @@ PRESSES, RIGS = 10_000, 10
 HOLD_s, LEAVE_s, FREE_s = 0.25, 0.05, 0.2
 SETTLE_s = 0.1
 HIGHPASS_s = 0.012
+STOP_mm = 0.06
+"""So near a stop the loop is not closed."""
 CYCLE_cN, CYCLE_mm_s = 3.0, 5.0
 """A held cap with more ripple than this, or a free one that moves faster (rms), swings by itself."""
 LOW_N_m, HIGH_N_m, HAND_N_m = 100.0, 5000.0, 1255.0
@@ -104,24 +106,31 @@ def drawn(on: ClosedRig, random: np.random.Generator) -> HeldPress:
     return HeldPress(finger, gesture, speed, draw_noise(on.rig, finger, gesture, random))
 
 
-def hold(on: ClosedRig, press: HeldPress) -> tuple[float, float, bool]:
-    """Return the ripple of a held cap, cN rms, the speed of the one left, mm/s rms, and if it faulted."""
+def hold(on: ClosedRig, press: HeldPress) -> tuple[float, float, bool, bool]:
+    """Return the ripple of a held cap, cN rms, the speed of the one left, mm/s rms, if it faulted, and if it
+    lay on a stop, where no loop is closed and a trembling hand is felt as it is."""
     image = image_of(on.surface, on.travel_mm, paced=True).image
     trace = simulate_program(
         on.rig, press.finger, press.gesture, image, press.noise, press.speed_mm_s, loop=on.constants
     )
     felt = _felt(press.gesture, trace.t_s, trace.force_cN, trace.cap_velocity_mm_s)
-    return *felt, bool((trace.mode == Mode.FAULT).any())
+    held_mm = float(np.median(trace.displacement_mm[_held(press.gesture, trace.t_s)]))
+    on_stop = not STOP_mm < held_mm < on.travel_mm - STOP_mm
+    return *felt, bool((trace.mode == Mode.FAULT).any()), on_stop
 
 
 def _felt(
     gesture: Gesture, t: FloatArray, force_cN: FloatArray, velocity_mm_s: FloatArray
 ) -> tuple[float, float]:
-    until = gesture.onset_s + gesture.press_s + HOLD_s
-    held = (t > until - HOLD_s + SETTLE_s) & (t < until - HIGHPASS_s)
+    held = _held(gesture, t)
     free = (t > gesture.duration_s - SETTLE_s) & (t < gesture.duration_s)
     ripple = float(np.std(_high_passed(t, force_cN)[held]))
     return ripple, float(np.std(velocity_mm_s[free]))
+
+
+def _held(gesture: Gesture, t: FloatArray) -> npt.NDArray[np.bool_]:
+    until = gesture.onset_s + gesture.press_s + HOLD_s
+    return np.asarray((t > until - HOLD_s + SETTLE_s) & (t < until - HIGHPASS_s))
 
 
 def swings(ripple_cN: FloatArray, speed_mm_s: FloatArray) -> npt.NDArray[np.bool_]:
@@ -154,10 +163,12 @@ class _Held:
     def __call__(self, case: Case) -> FloatArray:
         on, random = closed(case), np.random.default_rng(20_000 + case.seed)
         presses = [drawn(on, random) for _ in range(self.presses)]
-        found = np.array([(*hold(on, press), False) for press in presses], dtype=float)
+        found = np.array(
+            [(*hold(on, press), False) for press in presses], dtype=float
+        )  # the last: on an ideal one
         swinging = np.flatnonzero(swings(found[:, 0], found[:, 1]))
         if swinging.size:
-            found[swinging, 3] = hold_ideal(case.model, [presses[i] for i in swinging], Reversal())
+            found[swinging, 4] = hold_ideal(case.model, [presses[i] for i in swinging], Reversal())
         return found
 
 
@@ -166,12 +177,13 @@ def main() -> None:
     cases = [Case(FIRST_SEED + i, button, DESIGNS[RECOMMENDED]) for i in range(RIGS) for button in BUTTONS]
     found = list(run_all(_Held(-(-presses // len(cases))), cases))
     rows = np.vstack([rows for _, rows in found if not isinstance(rows, str)])
-    ripple, speed, faults, ideal = rows.T
+    ripple, speed, faults, on_stop, ideal = rows.T
     print(f"{len(rows)} presses on {len(cases)} rigs; simulated")
     for name, values, unit in (("held: ripple", ripple, "cN"), ("left: cap's speed", speed, "mm/s")):
         middle, high, most = np.quantile(values, [0.5, 0.99, 1.0])
         print(f"{name}, rms: median {middle:.2f}, 99 % {high:.2f}, largest {most:.2f} {unit}")
-    print(f"held caps above 1 cN: {100 * float((ripple > 1.0).mean()):.1f} %")
+    for name, held in (("on the way", ripple[on_stop == 0]), ("on a stop", ripple[on_stop == 1])):
+        print(f"held {name}: {held.size}, {int((held > 1.0).sum())} above 1 cN, largest {held.max(initial=0.0):.2f} cN")
     swinging = int(swings(ripple, speed).sum())
     print(f"swinging by themselves: {swinging}, of them on an ideal button too: {int(ideal.sum())}")
     print(f"faults: {int(faults.sum())}")

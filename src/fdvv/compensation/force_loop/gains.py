@@ -20,7 +20,7 @@ LEAK_1_s = 2.0
 
 # Of the estimator: force noise per tick, and the walk of the force that the model does not know.
 FORCE_NOISE_N, STOP_NOISE_N = 0.05, 0.5
-WALK_N_s = 0.5
+WALK_N_s = 0.2
 LEAST_NOISE_m = 1e-6
 FINE = 16
 """Places between two values of the own force."""
