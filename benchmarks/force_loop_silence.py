@@ -163,9 +163,8 @@ class _Held:
     def __call__(self, case: Case) -> FloatArray:
         on, random = closed(case), np.random.default_rng(20_000 + case.seed)
         presses = [drawn(on, random) for _ in range(self.presses)]
-        found = np.array(
-            [(*hold(on, press), False) for press in presses], dtype=float
-        )  # the last: on an ideal one
+        # the last column: on an ideal button too
+        found = np.array([(*hold(on, press), False) for press in presses], dtype=float)
         swinging = np.flatnonzero(swings(found[:, 0], found[:, 1]))
         if swinging.size:
             found[swinging, 4] = hold_ideal(case.model, [presses[i] for i in swinging], Reversal())
@@ -183,7 +182,9 @@ def main() -> None:
         middle, high, most = np.quantile(values, [0.5, 0.99, 1.0])
         print(f"{name}, rms: median {middle:.2f}, 99 % {high:.2f}, largest {most:.2f} {unit}")
     for name, held in (("on the way", ripple[on_stop == 0]), ("on a stop", ripple[on_stop == 1])):
-        print(f"held {name}: {held.size}, {int((held > 1.0).sum())} above 1 cN, largest {held.max(initial=0.0):.2f} cN")
+        print(
+            f"held {name}: {held.size}, {int((held > 1.0).sum())} above 1 cN, largest {held.max(initial=0.0):.2f} cN"
+        )
     swinging = int(swings(ripple, speed).sum())
     print(f"swinging by themselves: {swinging}, of them on an ideal button too: {int(ideal.sum())}")
     print(f"faults: {int(faults.sum())}")

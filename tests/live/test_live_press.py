@@ -81,9 +81,9 @@ def test_a_program_on_a_rig_with_a_cell_is_pressed_with_its_loop_sound(name: str
     assert not [event.message for event in events if event.message]
 
 
-def press_with_cell(**broken: float) -> LivePress:
+def press_with_cell(*, offset_N: float = 0.0, full_scale_N: float = 4.45) -> LivePress:
     subject = model_subject(load_builtin("mx-red"), PressMode.COMPENSATED)
-    cell = replace(subject.rig.load_cell, **broken)
+    cell = replace(subject.rig.load_cell, offset_N=offset_N, full_scale_N=full_scale_N)
     return LivePress(replace(subject, rig=replace(subject.rig, load_cell=cell)))
 
 

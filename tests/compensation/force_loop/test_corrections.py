@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -70,3 +72,24 @@ def test_the_faster_the_stroke_the_more_is_foreseen_at_a_bump() -> None:
     sizes = [np.abs(stroke(bump(), speed).foreseen_cN()).max() for speed in (25.0, 50.0, 100.0, 200.0)]
     assert sizes == sorted(sizes)
     assert sizes[0] < 1.0 < sizes[-1]
+
+
+@pytest.mark.parametrize("downward", [True, False])
+def test_a_hand_that_speeds_up_and_slows_down_needs_less_force_where_it_pushes_the_cap_on(
+    downward: bool,
+) -> None:
+    """The cap is hurried downward in the upper half of a press, and slowed down there in a release."""
+    needed = stroke(bump(), 200.0, downward).hand_cN()
+    upper, lower = needed[(GRID_mm > 0.5) & (GRID_mm < 1.5)], needed[(GRID_mm > 3.0) & (GRID_mm < 3.7)]
+    assert upper.max() < -0.5
+    assert lower.min() > 0.5
+
+
+def test_what_the_cap_itself_needs_grows_with_the_square_of_speed_and_less_with_a_tighter_loop() -> None:
+    slow, fast = (stroke(bump(), v).hand_cN()[10:74] for v in (100.0, 200.0))
+    assert np.abs(fast).mean() == pytest.approx(4.0 * np.abs(slow).mean(), rel=0.3)
+    open_loop = replace(design_controller(PLANT), proportional=0.0, derivative_s=0.0, integral_1_s=0.0)
+    bare = replace(stroke(bump(), 200.0), response=LoopResponse(PLANT, replace(open_loop, damping_N_s_m=0.0)))
+    acceleration = bare.response.felt_N(np.full(300, 10.0), TICK_s)[200]
+    assert acceleration == pytest.approx(10.0 * (PLANT.mass_kg + PLANT.plate_kg), rel=0.05)
+    assert np.abs(fast).max() < 0.5 * np.abs(1e2 * acceleration)

@@ -12,7 +12,7 @@ from fdvv.compensation.method import error_cN
 from fdvv.compensation.rig_learning import PressError
 from fdvv.compensation.tables import bin_force, smooth
 from fdvv.errors import ModelError
-from fdvv.units import FloatArray
+from fdvv.units import FloatArray, cN_from_N
 
 SMOOTHED_mm = 0.04
 LARGEST_STEP_cN = 15.0
@@ -23,6 +23,9 @@ STOP_mm = 0.08
 FORESEEN_ratio = 0.5
 """Part of a foreseen correction that is applied: the finger is none of those it is foreseen for."""
 RUN_UP_mm = 0.5
+BEYOND_mm, GIVES_mm = 3.0, 1.2
+"""An assumed hand turns so much deeper than the stop, 1.5 N on a joint of 600 N/m and the pad, and gives way
+so much to the force of a stroke."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +59,29 @@ class StrokeCorrection:
         target = np.interp(x_mm, self.grid_mm, self.target_cN) - self.target_cN[0]
         late = self.response.correction(target, self.tick_s) - target
         return FORESEEN_ratio * self._in_bins(x_mm, self._faded(x_mm) * late)
+
+    def hand_cN(self) -> FloatArray:
+        """Return the correction for the cap's own dynamics under a hand of minimum jerk, (n,).
+
+        The hand turns BEYOND_mm deeper than the stop, and its finger gives way by GIVES_mm.
+        """
+        x_mm, a_m_s2 = self._hand()
+        felt_cN = cN_from_N(self.response.felt_N(a_m_s2, self.tick_s))
+        needed = self.response.correction(felt_cN, self.tick_s)
+        return -self._in_bins(x_mm, self._faded(x_mm) * needed)
+
+    def _hand(self) -> tuple[FloatArray, FloatArray]:
+        """Return places and accelerations of the cap, downward, each tick from one stop to the other."""
+        whole_mm = self.travel_mm + BEYOND_mm
+        part = np.linspace(0.0, 1.0, 2001)
+        way_mm = whole_mm * part**3 * (10 - 15 * part + 6 * part**2)
+        first, last = np.interp([GIVES_mm, GIVES_mm + self.travel_mm], way_mm, part)
+        duration_s = self.travel_mm / (self.speed_mm_s * (last - first))
+        at = np.arange(first, last, self.tick_s / duration_s)
+        x_mm = np.interp(at, part, way_mm) - GIVES_mm
+        a_m_s2 = 1e-3 * whole_mm / duration_s**2 * 60 * at * (1 - at) * (1 - 2 * at)
+        # a release is the same way back: the same acceleration at each place
+        return (x_mm, a_m_s2) if self.downward else (x_mm[::-1], a_m_s2[::-1])
 
     def press_error(self, x_mm: FloatArray, force_cN: FloatArray, row_cN: FloatArray) -> PressError:
         """Return the error of a stroke, (m,) ticks, pressed with a row. ModelError if it was not recorded."""

@@ -208,7 +208,7 @@ class ForceLoop:
             rig=rig,
             gains=gains,
             response=response,
-            corrections=_foreseen(state.job, response, self.tick_s),
+            corrections=_foreseen(state.job, response, self.tick_s, self.learned_rig is not None),
             message=explain_rig(rig, 0.5 * state.job.travel_mm),
         )
 
@@ -248,10 +248,13 @@ def _strokes(
     return press, release
 
 
-def _foreseen(job: CompensationJob, response: LoopResponse, tick_s: float) -> Rows:
-    """Return the corrections before any press."""
+def _foreseen(job: CompensationJob, response: LoopResponse, tick_s: float, with_hand: bool) -> Rows:
+    """Return the corrections before any press. with_hand : for a usual hand, since no press may follow."""
     pairs = [_strokes(job, response, tick_s, at) for at in range(job.target.velocity_mm_s.size)]
-    press, release = (np.stack([pair[j].foreseen_cN() for pair in pairs]) for j in (0, 1))
+    press, release = (
+        np.stack([pair[j].foreseen_cN() + (pair[j].hand_cN() if with_hand else 0.0) for pair in pairs])
+        for j in (0, 1)
+    )
     return press, release
 
 
