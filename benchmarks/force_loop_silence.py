@@ -182,9 +182,8 @@ def main() -> None:
         middle, high, most = np.quantile(values, [0.5, 0.99, 1.0])
         print(f"{name}, rms: median {middle:.2f}, 99 % {high:.2f}, largest {most:.2f} {unit}")
     for name, held in (("on the way", ripple[on_stop == 0]), ("on a stop", ripple[on_stop == 1])):
-        print(
-            f"held {name}: {held.size}, {int((held > 1.0).sum())} above 1 cN, largest {held.max(initial=0.0):.2f} cN"
-        )
+        above, most = int((held > 1.0).sum()), held.max(initial=0.0)
+        print(f"held {name}: {held.size}, {above} above 1 cN, largest {most:.2f} cN")
     swinging = int(swings(ripple, speed).sum())
     print(f"swinging by themselves: {swinging}, of them on an ideal button too: {int(ideal.sum())}")
     print(f"faults: {int(faults.sum())}")
