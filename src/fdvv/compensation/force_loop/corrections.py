@@ -66,8 +66,8 @@ class StrokeCorrection:
         The hand turns BEYOND_mm deeper than the stop, and its finger gives way by GIVES_mm.
         """
         x_mm, a_m_s2 = self._hand()
-        felt_cN = cN_from_N(self.response.felt_N(a_m_s2, self.tick_s))
-        needed = self.response.correction(felt_cN, self.tick_s)
+        left_cN = cN_from_N(self.response.left_N(a_m_s2, self.tick_s))
+        needed = self.response.correction(left_cN, self.tick_s)
         return -self._in_bins(x_mm, self._faded(x_mm) * needed)
 
     def _hand(self) -> tuple[FloatArray, FloatArray]:

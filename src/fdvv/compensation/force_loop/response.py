@@ -53,7 +53,7 @@ class LoopResponse:
         tops = [plant.plate_kg * s**2 + finger.dynamic_stiffness_N_m(s) for finger in self.fingers]
         return np.stack([1 / (1 + felt / (in_series(cell, top) + SLOPE_N_m)) for top in tops])
 
-    def felt_N(self, acceleration_m_s2: FloatArray, tick_s: float) -> FloatArray:
+    def left_N(self, acceleration_m_s2: FloatArray, tick_s: float) -> FloatArray:
         """Return what the loop leaves of the force of the cap's own dynamics, (n,): Z x / (1 + D C)."""
         size = 2 * acceleration_m_s2.size + round(2 * LONGEST_s / tick_s)
         s = 2j * np.pi * np.maximum(np.fft.rfftfreq(size, tick_s), LOWEST_Hz)
