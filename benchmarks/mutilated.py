@@ -1,13 +1,13 @@
 """Is any garbage taken for a button, does any file end in a traceback, or take long, or much memory?
 
-    python -m benchmarks.mutilated [FILES] [FOLDER]
+    python -m benchmarks.mutilated [FILES] [FOLDER] [SET] [SEED]
 
 FILES (1000) are spoilt, with fixed seeds, out of the measured files of FOLDER (by default ../shared/data or
-FDVV_SHARED if there is one, and the shipped example), in turn by every way of `benchmarks.mutilations`; then
-`fdvv fit` reads each. A file that is accepted is compared with the one it was made of, which no gate knows:
-every stroke must lie within 5 cN or 5 % of its range (RMS) of the stroke that was measured, aligned at
-contact, and no travel may be longer. Less than half of the travel needs a warning. Two buttons in one file
-may not be accepted.
+FDVV_SHARED if there is one, and the shipped example), in turn by every way of SET: `first` is that of
+`benchmarks.mutilations`, `second` that of `benchmarks.mutilations_second`; then `fdvv fit` reads each. A file
+that is accepted is compared with the one it was made of, which no gate knows: every stroke must lie within
+5 cN or 5 % of its range (RMS) of the stroke that was measured, aligned at contact, and no travel may be longer.
+Less than half of the travel needs a warning. Two buttons in one file may not be accepted.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.mutilations import OF_BYTES, OF_TABLES, OUT_OF_NOTHING, Table, table_of
+from benchmarks import mutilations, mutilations_second
+from benchmarks.mutilations import OUT_OF_NOTHING, Mutilation, Table, table_of
 from fdvv.button.fit import MeasuredParts, ModelFit, fit_file, measured_files, measured_parts
 from fdvv.errors import FdvvError
 from fdvv.formats.force.read import read_force_file
@@ -39,6 +40,26 @@ SPRINGS = ("huge, a ramp",)
 """Made of nothing, and yet what a bare spring looks like."""
 LONGEST_s, MOST_MB = 10.0, 1000.0
 SUFFIXES = (".csv", ".json", ".txt")
+
+
+@dataclass(frozen=True)
+class Ways:
+    """A set of ways to spoil a file, and the seed of its first file."""
+
+    of_tables: Mapping[str, Mutilation]
+    of_bytes: Mapping[str, Callable[[bytes, np.random.Generator], bytes]]
+    others: Sequence[str]
+    seed: int
+
+    @property
+    def kinds(self) -> list[str]:
+        return [*self.of_tables, *self.of_bytes, *self.others]
+
+
+WAYS = {
+    "first": Ways(mutilations.OF_TABLES, mutilations.OF_BYTES, [TWO, *OUT_OF_NOTHING], 0),
+    "second": Ways(mutilations_second.OF_TABLES, mutilations_second.OF_BYTES, [], 1_000_000),
+}
 
 
 @dataclass
@@ -70,13 +91,13 @@ def originals(folder: Path | None) -> list[tuple[Path, MeasuredParts]]:
 
 
 def spoilt(
-    files: Sequence[tuple[Path, MeasuredParts]], count: int, cheap: bool = False
+    files: Sequence[tuple[Path, MeasuredParts]], count: int, cheap: bool = False, ways: Ways = WAYS["first"]
 ) -> Iterator[tuple[str, str, bytes, MeasuredParts | None]]:
     """Make files: kind, name, content and what was measured (None where nothing was).
 
     cheap : leave out what takes a second or more to make and read.
     """
-    kinds = [*OF_TABLES, *OF_BYTES, TWO, *OUT_OF_NOTHING]
+    kinds = ways.kinds
     if cheap:
         kinds = [
             kind
@@ -84,27 +105,27 @@ def spoilt(
             if "huge" not in kind and kind not in ("wide", "beyond the limit", "deep JSON")
         ]
     for number in range(count):
-        kind, rng = kinds[number % len(kinds)], np.random.default_rng(number)
+        kind, rng = kinds[number % len(kinds)], np.random.default_rng(ways.seed + number)
         if kind in OUT_OF_NOTHING:
             suffix = ".json" if "JSON" in kind else ".csv"
             yield kind, f"made{suffix}", OUT_OF_NOTHING[kind](rng), None
             continue
-        path, parts, content = _one(kind, files, rng)
+        path, parts, content = _one(kind, files, rng, ways)
         yield kind, path.name, content, parts
 
 
 def _one(
-    kind: str, files: Sequence[tuple[Path, MeasuredParts]], rng: np.random.Generator
+    kind: str, files: Sequence[tuple[Path, MeasuredParts]], rng: np.random.Generator, ways: Ways
 ) -> tuple[Path, MeasuredParts, bytes]:
     while True:
         path, parts = files[int(rng.integers(len(files)))]
-        if kind in OF_BYTES:
-            return path, parts, OF_BYTES[kind](path.read_bytes(), rng)
+        if kind in ways.of_bytes:
+            return path, parts, ways.of_bytes[kind](path.read_bytes(), rng)
         table = table_of(path)
         if table is None:
             continue
         if kind != TWO:
-            made = OF_TABLES[kind](table, rng)
+            made = ways.of_tables[kind](table, rng)
             return path, parts, made if isinstance(made, bytes) else made.encode()
         return path, parts, _joined(table, _other(table, parts, files, rng), rng)
 
@@ -165,12 +186,12 @@ def _off(stroke: MeasuredCurve, parts: MeasuredParts) -> str:
     return f"the {stroke.stroke} is {least:.1f} times the bound from what was measured" if least > 1 else ""
 
 
-def run(count: int, folder: Path | None = None, cheap: bool = False) -> Found:
+def run(count: int, folder: Path | None = None, cheap: bool = False, ways: Ways = WAYS["first"]) -> Found:
     """Spoil and fit; every file of its own is written, read and removed."""
     found = Found()
     files = originals(folder)
     with tempfile.TemporaryDirectory() as place:
-        for kind, name, content, parts in spoilt(files, count, cheap):
+        for kind, name, content, parts in spoilt(files, count, cheap, ways):
             path = Path(place) / name
             path.write_bytes(content)
             del content
@@ -201,9 +222,10 @@ def _fit(found: Found, kind: str, path: Path, parts: MeasuredParts | None) -> No
         found.slow.append(f"{label}: {took:.1f} s")
 
 
-def main(count: str = "1000", folder: str = "") -> None:
+def main(count: str = "1000", folder: str = "", of: str = "first", seed: str = "") -> None:
     """Print the figures."""
-    found = run(int(count), Path(folder) if folder else None)
+    ways = replace(WAYS[of], seed=int(seed)) if seed else WAYS[of]
+    found = run(int(count), Path(folder) if folder else None, ways=ways)
     print(f"{'way':32s} {'files':>6s} {'accepted':>9s}")
     for kind, number in found.kinds.items():
         print(f"{kind:32s} {number:6d} {found.accepted[kind]:9d}")
@@ -216,4 +238,4 @@ def main(count: str = "1000", folder: str = "") -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:3])
+    main(*sys.argv[1:5])
