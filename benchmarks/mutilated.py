@@ -6,8 +6,8 @@ FILES (1000) are spoilt, with fixed seeds, out of the measured files of FOLDER (
 FDVV_SHARED if there is one, and the shipped example), in turn by every way of SET: `first` is that of
 `benchmarks.mutilations`, `second` that of `benchmarks.mutilations_second`; then `fdvv fit` reads each. A file
 that is accepted is compared with the one it was made of, which no gate knows: every stroke must lie within
-5 cN or 5 % of its range (RMS) of the stroke that was measured, aligned at contact, and no travel may be longer.
-Less than half of the travel needs a warning. Two buttons in one file may not be accepted.
+5 cN or 5 % of its range (RMS) of the stroke that was measured, aligned at contact, and no travel may be
+longer. Less than half of the travel needs a warning. Two buttons in one file may not be accepted.
 """
 
 from __future__ import annotations

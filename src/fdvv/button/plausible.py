@@ -14,7 +14,7 @@ import numpy as np
 
 from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.model.fit import CurveFit, FitMethod
-from fdvv.units import FloatArray
+from fdvv.model.residual import noise_cN
 
 OPTION = "--accept-implausible"
 
@@ -201,18 +201,6 @@ def implausible_fit(fit: CurveFit, measured: MeasuredCurve) -> Iterator[Implausi
     if enough and fit.smoothing_mm == 0 and fit.rmse_cN > MISFIT_ratio * span:
         reason = f"no smooth curve follows it: RMSE {fit.rmse_cN:.3g} cN over a range of {span:.4g} cN"
         yield Implausible(str(fit.curve.stroke), reason, ROWS)
-
-
-def noise_cN(force_cN: FloatArray) -> float:
-    """Estimate the noise of successive samples: from what each differs from the mean of its neighbours.
-
-    After Gasser, Sroka and Jennen-Steinmetz 1986, with the median in place of the mean, so that steps and
-    clicks do not count. 0 for fewer than three samples.
-    """
-    if force_cN.size < 3:
-        return 0.0
-    apart = force_cN[1:-1] - 0.5 * (force_cN[:-2] + force_cN[2:])
-    return float(1.4826 * np.sqrt(2 / 3) * np.median(np.abs(apart)))
 
 
 def _range(bounds: tuple[float, float]) -> str:

@@ -17,7 +17,8 @@ from fdvv.model.bump import find_bottom_out_mm, find_contact_mm
 from fdvv.model.bump_kept import felt_ratio, is_felt, is_kept, sampled_ratio
 from fdvv.model.curve import ForceCurve, MeasuredCurve
 from fdvv.model.fit_holds import hold_bump, hold_floor
-from fdvv.model.knot_search import LARGEST, Spline, free_knots, knot_path, refine
+from fdvv.model.knot_search import LARGEST, KnotPath, Spline, free_knots, knot_path, refine
+from fdvv.model.residual import holds_shape
 from fdvv.units import FloatArray
 
 PAPERS_CONTROL_POINTS = 15
@@ -26,6 +27,8 @@ COMPLEXITY_PENALTY = 2.5
 
 SCAN_SIZES = range(5, 41)
 AUTO_LEAST = 5
+SCHWARZ_PENALTY = 1.0
+"""P of Schwarz's BIC, for a residual that still holds shape."""
 AUTO_SAMPLES = 16
 """With fewer distinct displacements the number cannot be chosen."""
 AUTO_EXCHANGES = 3
@@ -129,25 +132,37 @@ def _held(x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size: in
 def _auto(x: FloatArray, y: FloatArray, degree: int, penalty: float) -> Spline:
     """Choose the number of free control points: the least BIC*, more while the bump is not kept.
 
-    Never above the BIC* of 15.
+    Where that leaves shape, the least BIC (P = 1). Never above the BIC* of 15.
     """
     if x.size < AUTO_SAMPLES:
         raise FitError(f"auto takes {AUTO_SAMPLES} distinct displacements, got {x.size}: ask for a number")
     papers = _held(x, y, FitMethod.ADAPTIVE, degree, PAPERS_CONTROL_POINTS)
     bound = _score(x, y, degree, papers, penalty)
     path = knot_path(x, y, degree, (AUTO_LEAST, min(LARGEST, x.size)))
-    best = min(path, key=lambda size: bic_star(x.size, size, path[size][0], penalty))
     tried = [papers]
-    # control points first, weight on the bump only where they do not help
-    for hold in (False, True):
-        for size in range(best, max(path) + 1, AUTO_STEP):
-            found = _from_knots(x, y, degree, path[size][1], hold)
-            if _score(x, y, degree, found, penalty) > bound:
-                break
-            if is_kept(x, y, bspline.evaluate(*found, degree, x)):
-                return found
-            tried.append(found)
+    for start in _starts(x, y, degree, path, penalty):
+        # control points first, weight on the bump only where they do not help
+        for hold in (False, True):
+            for size in range(start, max(path) + 1, AUTO_STEP):
+                found = _from_knots(x, y, degree, path[size][1], hold)
+                if _score(x, y, degree, found, penalty) > bound:
+                    break
+                if is_kept(x, y, bspline.evaluate(*found, degree, x)):
+                    return found
+                tried.append(found)
     return min(tried, key=lambda spline: _score(x, y, degree, spline, penalty))
+
+
+def _starts(x: FloatArray, y: FloatArray, degree: int, path: KnotPath, penalty: float) -> list[int]:
+    """Return the sizes to start at: that of the least BIC*, before it that of BIC where BIC* leaves shape."""
+    best, more = _least(path, x.size, penalty), _least(path, x.size, SCHWARZ_PENALTY)
+    knots = path[best][1]
+    fitted = bspline.evaluate(knots, bspline.least_squares(knots, degree, x, y), degree, x)
+    return [more, best] if more > best and holds_shape(y, fitted) else [best]
+
+
+def _least(path: KnotPath, samples: int, penalty: float) -> int:
+    return min(path, key=lambda size: bic_star(samples, size, path[size][0], penalty))
 
 
 def _from_knots(x: FloatArray, y: FloatArray, degree: int, knots: FloatArray, hold: bool) -> Spline:

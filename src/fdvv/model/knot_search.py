@@ -14,6 +14,9 @@ from fdvv.units import FloatArray
 Spline = tuple[FloatArray, FloatArray]
 """Knots and coefficients."""
 
+KnotPath = dict[int, tuple[float, FloatArray]]
+"""Squared error and knots, by number of control points."""
+
 LARGEST = 64
 ROW = LARGEST + 4
 """Knots that the kernel leaves room for per size."""
@@ -68,9 +71,7 @@ def _search(
     return t, c
 
 
-def knot_path(
-    x: FloatArray, y: FloatArray, degree: int, sizes: Sequence[int]
-) -> dict[int, tuple[float, FloatArray]]:
+def knot_path(x: FloatArray, y: FloatArray, degree: int, sizes: Sequence[int]) -> KnotPath:
     """Search knots of every size: squared error and knots by number of control points.
 
     sizes : least and most. Each size is found from the next by removing the least important knot, so that all
