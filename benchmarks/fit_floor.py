@@ -76,7 +76,7 @@ def _piece_costs(x: FloatArray, y: FloatArray) -> FloatArray:
     found = np.linalg.solve(normal.transpose(2, 0, 1), right.T[:, :, None])[:, :, 0]
     cost = np.maximum(np.cumsum(v**2) - np.sum(found * right.T, axis=1), 0.0)
     cost[: DEGREE + 1] = 0.0
-    return cost
+    return np.asarray(cost, dtype=np.float64)
 
 
 def main(folder: str = "../shared/data", exchanges: str = "400") -> None:

@@ -5,18 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from benchmarks.mutilated import Found, run
+from benchmarks.mutilated import WAYS, Found, run
 
 SPOILT = 80
 
 
-KNOWN = ("shifted force: Cherry-MX-Hyperglide-Black.csv",)
-"""Garbage that is still accepted: the stop that the shift puts in the air is dropped as a spike."""
-
-
-def check(found: Found, known: tuple[str, ...] = ()) -> None:
+def check(found: Found) -> None:
     assert found.tracebacks == []
-    assert sorted(": ".join(one.split(": ")[:2]) for one in found.garbage) == sorted(known)
+    assert found.garbage == []
     assert found.unclear == []
     assert found.slow == []
     assert sum(found.accepted.values()) > 0.1 * sum(found.kinds.values())
@@ -32,4 +28,15 @@ def test_spoilt_copies_of_the_shipped_example_are_refused_or_right() -> None:
 @pytest.mark.timeout(900)
 def test_a_thousand_spoilt_files_of_every_kind(shared_data: Path) -> None:
     found = run(1000, shared_data)
-    check(found, KNOWN)
+    check(found)
+
+
+@pytest.mark.slow
+@pytest.mark.shared
+@pytest.mark.timeout(900)
+def test_ways_that_no_gate_was_made_for_are_refused_but_for_one_in_fifty(shared_data: Path) -> None:
+    """What remains are decibels, slow drift and small bursts."""
+    found = run(410, shared_data, ways=WAYS["second"])
+    assert len(found.garbage) <= 0.02 * 410
+    found.garbage.clear()
+    check(found)

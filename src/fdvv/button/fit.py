@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from fdvv.button.distorted import distorted
 from fdvv.button.plausible import (
     OPTION,
     Implausible,
@@ -220,7 +221,10 @@ def measured_parts(file: ForceFile) -> MeasuredParts:
         used=sum(len(group.used) for group in groups),
         cycles=len(file.cycles),
         warnings=tuple(dict.fromkeys(warnings)),
-        implausible=(*implausible_strokes(parts, stop_found), *_implausible_whole(file, groups, strokes)),
+        implausible=(
+            *implausible_strokes(parts, stop_found),
+            *_implausible_whole(file, groups, strokes, parts),
+        ),
     )
 
 
@@ -246,15 +250,19 @@ def _within(part: MeasuredCurve, stop_mm: float | None) -> MeasuredCurve:
 
 
 def _implausible_whole(
-    file: ForceFile, groups: Sequence[Averaged], strokes: Sequence[MeasuredCurve]
+    file: ForceFile,
+    groups: Sequence[Averaged],
+    strokes: Sequence[MeasuredCurve],
+    parts: Sequence[MeasuredCurve],
 ) -> Iterator[Implausible]:
     for stroke in strokes:
         yield from implausible_whole(stroke)
-    for group in groups:
-        if group.press is not None and group.release is not None:
-            yield from implausible_start(group.press, group.release)
+    pairs = [(g.press, g.release) for g in groups if g.press is not None and g.release is not None]
+    for press, release in pairs:
+        yield from implausible_start(press, release)
     of_run = [c.press or c.release for c in file.cycles if c.label.startswith(CYCLE)]
     yield from implausible_cycles([stroke for stroke in of_run if stroke is not None])
+    yield from distorted(strokes, parts, pairs)
 
 
 def one_line(text: str) -> str:

@@ -95,7 +95,7 @@ def implausible_strokes(strokes: Sequence[MeasuredCurve], stop_found: bool) -> I
     """
     for stroke in strokes:
         yield from _of_stroke(str(stroke.stroke), stroke)
-        if stroke.stroke is strokes[0].stroke:
+        if stroke.stroke is strokes[0].stroke and np.ptp(stroke.displacement_mm) > 0:
             yield from _of_mean(str(stroke.stroke), stroke)
     if len(strokes) == 1 and not stop_found and np.ptp(strokes[0].displacement_mm) < FRAGMENT_mm:
         travel = f"ends after {np.ptp(strokes[0].displacement_mm):.2f} mm without a stop or a release"
@@ -109,6 +109,9 @@ def implausible_strokes(strokes: Sequence[MeasuredCurve], stop_found: bool) -> I
 
 def _of_stroke(where: str, stroke: MeasuredCurve) -> Iterator[Implausible]:
     x, force, _ = stroke.by_displacement()
+    if x.size < 2:
+        yield Implausible(where, "has one displacement between contact and bottom-out", COLUMNS)
+        return
     travel, highest, span = float(x[-1] - x[0]), float(force.max()), float(np.ptp(force))
     if not TRAVEL_mm[0] <= travel <= TRAVEL_mm[1]:
         yield Implausible(where, f"travels {travel:.4g} mm, not {_range(TRAVEL_mm)} mm", COLUMNS)

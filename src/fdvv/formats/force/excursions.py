@@ -14,8 +14,9 @@ from fdvv.formats.force.types import Notes, Track
 SPIKE_cN = 20.0
 SPIKE_HALF = 5
 SPIKE_WIDTH_mm = 0.06
-"""A spike stands 20 cN off the running median of 11 samples and is back within 60 um; the undershoot
-of a real snap stays below (15 cN in the loudest click bar measured)."""
+"""A spike stands 20 cN off the running median of 11 samples and is back within 60 um and 5 samples, more of
+which the median does not see through; the undershoot of a real snap stays below (15 cN in the loudest click
+bar measured)."""
 SLIP_CLIMB_mm = 0.1
 RECURS_mm = 0.2
 """The same feature of two cycles lies within this, from contact."""
@@ -87,7 +88,7 @@ def _spikes(track: Track) -> list[Excursion]:
     # the feet of a spike belong to it
     for first, last in runs(off > 0.2 * SPIKE_cN):
         inside = first > 0 and last < force.size - 1
-        if not inside or off[first : last + 1].max() <= SPIKE_cN or last - first >= 2 * SPIKE_HALF:
+        if not inside or off[first : last + 1].max() <= SPIKE_cN or last - first >= SPIKE_HALF:
             continue
         back = abs(force[last + 1] - force[first - 1]) < 0.5 * SPIKE_cN
         if back and abs(x[last + 1] - x[first - 1]) <= SPIKE_WIDTH_mm:

@@ -92,7 +92,7 @@ def _long_enough(track: Track, notes: Notes) -> bool:
 
 def _placed(raw: RawCycle, notes: Notes) -> RawCycle:
     """Point both strokes into the button, the samples of the turn and of a slip where they belong."""
-    oriented = raw.map(lambda track: orient(track, notes))
+    oriented = raw.map(lambda track: orient(track, notes, begins_out=track is raw.press))
     return repair.correct_slip(hand_over_turn(oriented, notes), notes)
 
 

@@ -20,6 +20,11 @@ FAR_mm, STRONG_cN = 1000.0, 100_000.0
 """No button travels a metre or takes a kilonewton."""
 JUMP_mm = 0.5
 PULL_cN = -5.0
+RESTED, FELL_cN = 10, 12.0
+"""Samples within 5 cN of zero after a release (39 were seen), or a fall in one sample: either shows that the
+zero was right while the button was pressed."""
+LOST_TARE_ratio = 0.3
+"""Of the greatest force; at most 0.17 was seen. More is no tare, and stays for the gates."""
 AIR_cN = 2.0
 SLIP_mm = 0.25
 
@@ -70,12 +75,21 @@ def drop_lost_tare(track: Track, notes: Notes) -> Track:
     end = pulls[-1][0] if pulls[-1][1] == pulling.size - 1 else pulling.size
     if end - start < 4 or (start == 0 and end == pulling.size):
         return track
+    if -track.force_cN.min() > LOST_TARE_ratio * track.force_cN.max():
+        return track
+    if end < pulling.size and not _lost_after(track.force_cN, end):
+        return track
     at = 0 if start else pulling.size - 1
     notes.say(
         f"{track.where}, {'begins' if start else 'ends'} at {track.force_cN[at]:.1f} cN in the air, the "
         f"tare was lost; {samples(pulling.size - (end - start))} left out"
     )
     return track.take(slice(start, end))
+
+
+def _lost_after(force_cN: FloatArray, end: int) -> bool:
+    rested = np.abs(force_cN[max(0, end - RESTED) : end]) <= -PULL_cN
+    return bool(rested.all()) or float(force_cN[end - 1] - force_cN[end]) > FELL_cN
 
 
 def warn_of_jumps(track: Track, notes: Notes) -> None:

@@ -16,8 +16,11 @@ LEAST_RETURN = 0.1
 """A run that goes back by less than this part of its travel has no second stroke."""
 
 
-def orient(track: Track, notes: Notes) -> Track:
+def orient(track: Track, notes: Notes, begins_out: bool = True) -> Track:
     """Point displacement into the button and force against the finger.
+
+    begins_out : a run and a press begin outside the button. What would begin inside with its sign turned
+    counts the force from its greatest, so it stays as it is.
 
     The deep end of a stroke is where the force is: if the force is greatest in size at the least
     displacement, the file counted height, and its sign is turned; if the force there is negative, the
@@ -28,7 +31,8 @@ def orient(track: Track, notes: Notes) -> Track:
     # a contact step is 2 % of the travel: a wider window would hold it
     shallow, deep = force[x <= x.min() + 0.01 * span], force[x >= x.max() - 0.01 * span]
     low, high = float(np.median(shallow)), float(np.median(deep))
-    if abs(low) > 2.0 * abs(high) and abs(low) > 20.0:
+    inside = begins_out and x[0] < 0.5 * (x.min() + x.max())
+    if abs(low) > 2.0 * abs(high) and abs(low) > 20.0 and not inside:
         notes.tally("{places}: displacement counts outwards; its sign was turned", track.where, span)
         track = replace(track, x_mm=-x)
         high = low
