@@ -140,3 +140,8 @@ def test_the_knee_of_a_real_dome_is_above_the_slip_in_its_stop(
     press = read_force_file(shared_data / f"buddyog-topre/{log}.csv").cycles[0].press
     assert press is not None
     assert find_bottom_out_mm(press) == pytest.approx(knee_mm, abs=0.05)
+
+
+def test_a_stroke_that_only_pulls_has_a_contact() -> None:
+    pull = MeasuredCurve(np.linspace(0, 2, 50), np.linspace(-20, -6, 50), Stroke.PRESS)
+    assert find_contact_mm(pull) >= 0

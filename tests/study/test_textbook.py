@@ -15,12 +15,13 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.stats import binomtest, norm, ttest_1samp
 from statsmodels.stats.anova import AnovaRM  # type: ignore[import-untyped]
+from statsmodels.stats.proportion import proportion_confint  # type: ignore[import-untyped]
 
 from fdvv.study.analysis.analyse import analyse
 from fdvv.study.analysis.columns import ColumnMap
 from fdvv.study.analysis.read_answers import read_answers
 from fdvv.study.analysis.records import ButtonTest, ChoiceResult, StudyAnalysis
-from tests.support import textbook
+from tests.support import textbook, textbook_levels
 
 DRAWS = 200
 TWO, FOUR = ("FD", "FDVV"), ("reference", "FDVV", "FD", "anchor")
@@ -275,8 +276,19 @@ def test_right_and_wrong(tmp_path: Path) -> None:
                         [m - 0.5 for m in textbook.person_means([(p, v) for p, vs in by.items() for v in vs])]
                     ),
                 )
-            differencing = next(d for d in one.d if "differencing" in d.method)
-            assert_allclose(differencing.d, textbook.distance_abx(right / len(here)), atol=1e-9)
+            check_distances(one, int(right), len(here))
+
+
+def check_distances(found: ChoiceResult, right: int, n: int) -> None:
+    """Check d', its bounds by Clopper and Pearson or of people, each by the rule, and the one-sided p."""
+    for one in found.d:
+        rule = textbook_levels.abx_independent if "independent" in one.method else textbook_levels.abx
+        share = found.people_share if one.people else None
+        bounds = (share.low, share.high) if share else proportion_confint(right, n, method="beta")
+        wanted = [textbook_levels.distance(at, rule, False) for at in (right / n, *bounds)]
+        assert_allclose([one.d, one.low, one.high], wanted, atol=1e-8)
+        if not one.people:
+            assert_allclose(one.p, binomtest(right, n, alternative="greater").pvalue, atol=1e-12)
 
 
 def test_scores_of_complete_people(tmp_path: Path) -> None:

@@ -104,7 +104,9 @@ def first_loaded(x_mm: FloatArray, force_cN: FloatArray) -> int:
     x_mm, force_cN : (n,), x not falling. A load that is gone within 60 um, or after one sample, is a spike,
     which carries nothing.
     """
-    starts, ends = bounds_of_runs(force_cN >= min(LOADED_cN, 0.5 * float(force_cN.max())))
+    most = float(force_cN.max())
+    # where the force only pulls, half of the greatest is above it
+    starts, ends = bounds_of_runs(force_cN >= min(LOADED_cN, 0.5 * most, most))
     after = np.minimum(ends, x_mm.size - 1)
     wide = (ends == x_mm.size) | (x_mm[after] - x_mm[np.maximum(starts - 1, 0)] > ISOLATED_mm)
     single = (ends - starts == 1) & (force_cN[after] < CONTACT_cN)
