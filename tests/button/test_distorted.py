@@ -88,3 +88,10 @@ def test_a_click_bar_that_drops_in_one_sample_is_not_doubted() -> None:
     x = np.arange(0, 4, 0.005)
     force = np.where(x < 1.5, 35 + 27 * x, 30 + 10 * x) + 0.05 * np.sin(100 * x)
     assert list(distorted_active(MeasuredCurve(x, force, Stroke.PRESS))) == []
+
+
+def test_a_snap_between_coarse_samples_is_not_doubted() -> None:
+    """A key sampled at 1 kHz on a fast press: its contact step and its drop each lie between two samples."""
+    x = np.arange(0, 4, 0.1)
+    force = np.interp(x, [0, 0.2, 0.4, 1.5, 1.6, 1.7, 4], [0, 5, 40, 65, 25, 60, 80])
+    assert list(distorted_active(MeasuredCurve(x, force, Stroke.PRESS))) == []

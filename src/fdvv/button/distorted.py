@@ -29,6 +29,9 @@ REPEATS = 6.0
 SWING_cN, SWING_ratio, SWINGS = 5.0, 0.05, 8
 """How often the force turns by more than this much, and this part of its range. Real files: 4; a hum: 20."""
 
+FINE_mm = 0.03
+"""Coarser samples do not tell a snap from a leap: the two bounds below are then not asked."""
+
 LEAP_cN, LEAP_mm, RESTORED_ratio = 15.0, 0.8, 0.3
 """A leap in one sample that another undoes within this travel, the force as it was but for 0.3 of the leap.
 Real files: 10.7 cN."""
@@ -112,9 +115,10 @@ def distorted_active(stroke: MeasuredCurve) -> Iterator[Implausible]:
     if turns > SWINGS:
         reason = f"the force turns {turns} times by more than {least:.3g} cN"
         yield Implausible(where, reason, "check the bench for hum and loose contacts")
-    yield from _leaps(stroke.stroke, x, force)
-    yield from _jumps(stroke.stroke, x, force)
     step = np.diff(x)
+    if np.median(step) <= FINE_mm:
+        yield from _leaps(stroke.stroke, x, force)
+        yield from _jumps(stroke.stroke, x, force)
     lost = float(step[step > max(LOST_mm, LOST_steps * float(np.median(step)))].sum())
     if lost > MISSING_mm:
         reason = f"the displacement jumps by {lost:.2f} mm in all"
