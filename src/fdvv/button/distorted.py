@@ -16,15 +16,18 @@ from fdvv.units import FloatArray
 
 CELL = "check the load cell, its amplifier and its range"
 
-FLAT_mm, FLAT_samples = 0.25, 10
+FLAT_mm, FLAT_coarse_mm, FLAT_samples = 0.25, 1.5, 10
 """A force that stays the same to its last digit. Real files: 0.13 mm. A full converter, or a cell that hangs,
-holds it for longer."""
+holds it for longer; so does a scale of 1 gf on a flat curve, for which the second bound is."""
+FINE_cN = 0.3
+"""Typical step between the forces of a cell whose noise shows: equal samples are then a matter of chance."""
 
 LEVEL_cN, LEVEL_samples = 5.0, 50
 """Typical step between the forces that occur. Real files: 1.2 cN in 81 samples, 0.1 cN in 600."""
 
-REPEATS = 6.0
-"""Rows per displacement. Real files: 2.4; two decimals lost: 20."""
+REPEATS, REPEATS_mm = 6.0, 0.05
+"""Rows per displacement where displacements are so far apart. Real files: 2.4; two decimals lost: 20. A slow
+stage with a fine scale may be sampled as often."""
 
 SWING_cN, SWING_ratio, SWINGS = 5.0, 0.05, 8
 """How often the force turns by more than this much, and this part of its range. Real files: 4; a hum: 20."""
@@ -36,8 +39,8 @@ LEAP_cN, LEAP_mm, RESTORED_ratio = 15.0, 0.8, 0.3
 """A leap in one sample that another undoes within this travel, the force as it was but for 0.3 of the leap.
 Real files: 10.7 cN."""
 
-RISE_ratio = {Stroke.PRESS: 2.0, Stroke.RELEASE: 2.5}
-FALL_ratio = {Stroke.PRESS: 0.3, Stroke.RELEASE: 0.5}
+RISE_ratio = {Stroke.PRESS: 2.5, Stroke.RELEASE: 3.0}
+FALL_ratio = {Stroke.PRESS: 0.25, Stroke.RELEASE: 0.4}
 WITHIN_mm, CONTACT_mm, SMALL_cN = 0.03, 0.15, 5.0
 """The force after 0.03 mm, or two steps, over that before, from 0.15 mm below contact on (a stroke is in the
 order of rising displacement). Real files: up to 1.49 and 1.76, down to 0.38 and 0.69."""
@@ -78,15 +81,16 @@ def distorted_whole(stroke: MeasuredCurve) -> Iterator[Implausible]:
     """Find what no button does in a whole stroke, air and stop included."""
     where, force = str(stroke.stroke), stroke.force_cN
     x, means, _ = stroke.by_displacement()
+    levels = np.unique(np.round(force, 4))
+    level_cN = float(np.median(np.diff(levels))) if levels.size > 1 else 0.0
     start, end, count = _longest_flat(stroke)
-    if end - start > FLAT_mm and count >= FLAT_samples:
+    if end - start > (FLAT_mm if level_cN < FINE_cN else FLAT_coarse_mm) and count >= FLAT_samples:
         reason = f"the force is exactly the same from {start:.2f} to {end:.2f} mm"
         yield Implausible(where, reason, CELL)
-    levels = np.unique(np.round(force, 4))
-    if x.size >= LEVEL_samples and levels.size > 1 and np.median(np.diff(levels)) > LEVEL_cN:
-        reason = f"the force comes in steps of {np.median(np.diff(levels)):.3g} cN"
+    if x.size >= LEVEL_samples and level_cN > LEVEL_cN:
+        reason = f"the force comes in steps of {level_cN:.3g} cN"
         yield Implausible(where, reason, CELL)
-    if force.size > REPEATS * x.size:
+    if force.size > REPEATS * x.size and x.size > 1 and np.median(np.diff(x)) >= REPEATS_mm:
         reason = f"{force.size} rows have only {x.size} displacements"
         yield Implausible(where, reason, "check that no decimals were lost")
     if -means.min() > PULL_ratio * means.max():
