@@ -1,9 +1,13 @@
+import { svelte } from "@sveltejs/vite-plugin-svelte";
 import { defineConfig } from "vitest/config";
 
 // Names carry no hash: the page is committed beside the server, which tells browsers to revalidate.
 export default defineConfig({
   root: import.meta.dirname,
   base: "./",
+  plugins: [svelte()],
+  // else vitest takes the runtime that renders on a server
+  ...(process.env.VITEST ? { resolve: { conditions: ["browser"] } } : {}),
   test: { include: ["tests/**/*.test.ts"] },
   build: {
     outDir: "../src/fdvv/studio/static",

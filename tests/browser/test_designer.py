@@ -99,9 +99,9 @@ def test_a_designer_finds_edits_presses_renders_and_keeps_a_button(
     page.reload()
     page.wait_for_selector(".edit-points")
     assert forces(page) == dragged
-    page.locator("summary", has_text="Export").click()
+    page.get_by_role("button", name="Export").click()
     with page.expect_download() as file:
-        page.get_by_role("button", name="Model file").click()
+        page.get_by_role("menuitem", name="Model file").click()
     exported = tmp_path / "exported.fdvv.json"
     file.value.save_as(exported)
     assert load_model(exported) == load_model(kept)

@@ -337,12 +337,13 @@ def test_constraints_hold_while_a_point_is_moved(editor: Page) -> None:
 def test_a_button_is_renamed_and_duplicated(editor: Page, tmp_path: Path) -> None:
     nudge(editor)
     saved(editor)
-    editor.click("summary:has-text('Button')")
+    editor.click("role=button[name='Button']")
+    editor.click("role=menuitem[name='Rename…']")
     editor.get_by_label("New name").fill("my clear")
     editor.keyboard.press("Enter")
     expect(editor.locator("h1")).to_have_text("my clear")
-    editor.click("summary:has-text('Button')")
-    editor.click("role=button[name=Duplicate]")
+    editor.click("role=button[name='Button']")
+    editor.click("role=menuitem[name=Duplicate]")
     expect(editor.locator("h1")).not_to_have_text("my clear")
     names = {path.name for path in (tmp_path / "project" / "buttons").glob("*.fdvv.json")}
     assert len(names) == 2
@@ -350,9 +351,9 @@ def test_a_button_is_renamed_and_duplicated(editor: Page, tmp_path: Path) -> Non
 
 def test_the_model_and_its_curves_are_taken_away_as_files(editor: Page, tmp_path: Path) -> None:
     def taken(name: str) -> Path:
-        editor.click("summary:has-text('Export')")
+        editor.click("role=button[name='Export']")
         with editor.expect_download() as waiting:
-            editor.click(f"role=button[name='{name}']")
+            editor.click(f"role=menuitem[name='{name}']")
         path = tmp_path / waiting.value.suggested_filename
         waiting.value.save_as(path)
         return path

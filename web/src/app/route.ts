@@ -1,6 +1,6 @@
 /** Where the page is, kept in the address: `#/edit/own:my-button?overlay=a,b`. */
 
-import { type Signal, signal } from "../ui/signal";
+import { type Signal, signal } from "../ui/signal.svelte";
 
 export interface Route {
   readonly page: string;

@@ -1,7 +1,7 @@
 /** Light, dark, or as the system has it; remembered in this browser. */
 
 import { refreshPalette } from "../draw/palette";
-import { signal } from "../ui/signal";
+import { signal } from "../ui/signal.svelte";
 
 export type Theme = "system" | "light" | "dark";
 const KEY = "fdvv-theme";

@@ -1,6 +1,6 @@
 /** The colours of the page as drawings need them: read from the style sheet, anew when the theme changes. */
 
-import { signal } from "../ui/signal";
+import { signal } from "../ui/signal.svelte";
 
 export interface Palette {
   readonly text: string;

@@ -1,7 +1,7 @@
 /** A plot: two axes with units, a still layer and one that moves, zoom, pan and pointers in the plot's units. */
 
 import { h } from "../ui/element";
-import { effect, onCleanup, type Signal, signal } from "../ui/signal";
+import { effect, onCleanup, type Signal, signal } from "../ui/signal.svelte";
 import { type Brush, CanvasBrush, SvgBrush } from "./brush";
 import { drawFrame } from "./frame";
 import { palette } from "./palette";

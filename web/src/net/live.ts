@@ -1,6 +1,6 @@
 /** The one live connection: channels over it, opened again when it is lost. */
 
-import { type Signal, signal } from "../ui/signal";
+import { type Signal, signal } from "../ui/signal.svelte";
 import type { Channels } from "./messages";
 
 export type LiveState = "opening" | "open" | "lost";

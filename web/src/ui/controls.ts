@@ -1,7 +1,7 @@
 /** Controls that every page uses, each with its label and its unit. */
 
 import { type Child, h } from "./element";
-import { effect } from "./signal";
+import { effect } from "./signal.svelte";
 
 let made = 0;
 /** Return an id that no other element has. */
@@ -107,7 +107,10 @@ export function numberField(o: NumberOptions): HTMLElement {
   );
 }
 
-function outside(value: number, o: NumberOptions): string {
+export function outside(
+  value: number,
+  o: { unit: string; least?: number | undefined; most?: number | undefined },
+): string {
   if (o.least !== undefined && value < o.least) return `at least ${o.least} ${o.unit}`;
   if (o.most !== undefined && value > o.most) return `at most ${o.most} ${o.unit}`;
   return "";

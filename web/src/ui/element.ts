@@ -1,6 +1,6 @@
 /** Elements from code: never from text, so that no button name can become markup. */
 
-import { effect } from "./signal";
+import { effect } from "./signal.svelte";
 
 export type Child = Node | string | number | null | false | undefined | readonly Child[] | (() => Child);
 type Value = string | number | boolean | null | undefined;

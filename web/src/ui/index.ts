@@ -5,5 +5,5 @@ export * from "./element";
 export * from "./keys";
 export * from "./later";
 export * from "./pointer";
-export * from "./signal";
+export * from "./signal.svelte";
 export * from "./toast";

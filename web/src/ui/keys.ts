@@ -1,6 +1,6 @@
 /** Shortcuts of a page, all in one list so that a help sheet can show them. */
 
-import { onCleanup, signal } from "./signal";
+import { onCleanup, signal } from "./signal.svelte";
 
 export interface Shortcut {
   /** As it is written for people: "Ctrl+Z", "Shift+ArrowUp", "/", "Space". Ctrl means Cmd on a Mac. */

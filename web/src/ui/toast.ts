@@ -1,36 +1,39 @@
 /** Short notices at the edge of the page, read out by screen readers; errors stay until they are closed. */
 
+import { flushSync, mount } from "svelte";
+import { toast as sonner, Toaster } from "svelte-sonner";
 import { lineOf } from "../math/words";
-import { h } from "./element";
 
 export type ToastKind = "info" | "done" | "wrong";
 
-const SHOWN_ms = 5000;
+let place: object | null = null;
 
-function place(): HTMLElement {
-  return (
-    document.getElementById("toasts") ??
-    document.body.appendChild(h("div", { id: "toasts", role: "status", "aria-live": "polite" }))
-  );
-}
-
-/** Show a notice; the returned function removes it. */
-export function toast(text: string, kind: ToastKind = "info"): () => void {
-  const remove = () => note.remove();
-  const close = h(
-    "button",
-    { type: "button", class: "button quiet glyph", "aria-label": "Close notice", on: { click: remove } },
-    "×",
-  );
-  const note = h(
-    "div",
-    { class: `toast ${kind}`, role: kind === "wrong" ? "alert" : null },
-    h("span", {}, text),
-    close,
-  );
-  place().append(note);
-  if (kind !== "wrong") setTimeout(remove, SHOWN_ms);
-  return remove;
+/** Show a notice, and what can be done about it; the returned function removes it. */
+export function toast(
+  text: string,
+  kind: ToastKind = "info",
+  action?: [label: string, act: () => void],
+): () => void {
+  if (!place)
+    place = mount(Toaster, {
+      target: document.body,
+      props: {
+        theme: "light",
+        closeButton: true,
+        closeButtonAriaLabel: "Close notice",
+        containerAriaLabel: "Notices",
+      },
+    });
+  const id = sonner(text, {
+    unstyled: true,
+    class: `toast ${kind}`,
+    classes: { closeButton: "button quiet glyph", actionButton: "button" },
+    important: kind === "wrong",
+    duration: kind === "wrong" ? Number.POSITIVE_INFINITY : 5000,
+    ...(action && { action: { label: action[0], onClick: action[1] } }),
+  });
+  flushSync();
+  return () => void sonner.dismiss(id);
 }
 
 /** What went wrong, whatever was thrown. */

@@ -1,7 +1,10 @@
 // @vitest-environment jsdom
-import { afterEach, expect, it } from "vitest";
+import { afterEach, expect, it, vi } from "vitest";
 import { Followed } from "../../src/app/followed";
 import { StudioError } from "../../src/net";
+
+// jsdom has none, and the toasts ask it whether motion is wanted
+vi.stubGlobal("matchMedia", () => Object.assign(new EventTarget(), { matches: false }));
 
 const toasts = () => document.querySelectorAll(".toast.wrong").length;
 

@@ -1,5 +1,6 @@
+// @vitest-environment jsdom
 import { describe, expect, it } from "vitest";
-import { batch, computed, effect, onCleanup, scope, signal, untracked } from "../../src/ui/signal";
+import { batch, computed, effect, onCleanup, scope, signal, untracked } from "../../src/ui/signal.svelte";
 
 describe("signals", () => {
   it("run an effect again when what it read changes, and only then", () => {

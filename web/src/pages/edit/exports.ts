@@ -3,33 +3,19 @@
 import { csv, download, type Plot } from "../../draw";
 import { force_cN, places_mm } from "../../math";
 import type { FDVVModel } from "../../model";
-import { button, tell } from "../../ui";
+import { tell } from "../../ui";
 import type { EditorController } from "./editor_controller";
-import { dropDown } from "./menu";
 
-/** A menu that opens under its name. */
-export function exportMenu(editor: EditorController, plot: Plot): HTMLElement {
-  const name = () => editor.model.peek().name;
-  const picture = () => plot.toPng().then((blob) => download(`${name()}.png`, blob), tell);
-  const items = [
-    button({
-      label: "Model file",
-      kind: "quiet",
-      act: () => download(`${name()}.fdvv.json`, modelText(editor.model.peek()), "application/json"),
-    }),
-    button({
-      label: "Curves, CSV",
-      kind: "quiet",
-      act: () => download(`${name()}.csv`, curvesCsv(editor.model.peek()), "text/csv"),
-    }),
-    button({ label: "View, PNG", kind: "quiet", act: () => void picture() }),
-    button({
-      label: "View, SVG",
-      kind: "quiet",
-      act: () => download(`${name()}.svg`, plot.toSvg(), "image/svg+xml"),
-    }),
-  ];
-  return dropDown("Export", items);
+/** What the menu offers, by name. */
+export function exportsOf({ model }: EditorController, plot: Plot): Record<string, () => void> {
+  const save = (end: string, data: string | Blob, type?: string) =>
+    download(`${model.peek().name}.${end}`, data, type);
+  return {
+    "Model file": () => save("fdvv.json", modelText(model.peek()), "application/json"),
+    "Curves, CSV": () => save("csv", curvesCsv(model.peek()), "text/csv"),
+    "View, PNG": () => void plot.toPng().then((blob) => save("png", blob), tell),
+    "View, SVG": () => save("svg", plot.toSvg(), "image/svg+xml"),
+  };
 }
 
 /** A model as the text of its file. */

@@ -9,7 +9,7 @@ import { addShortcuts, batch } from "../../ui";
 import type { EditorCanvas } from "./canvas";
 import { type EditorController, refOf } from "./editor_controller";
 import { keyRecord } from "./events";
-import { pin } from "./history_panel";
+import { pin } from "./pins";
 import { addAt, removeSelected } from "./point_edits";
 import type { PointerController } from "./pointer_controller";
 

@@ -31,3 +31,14 @@ export function addAt(editor: EditorController, x_mm: number): void {
   });
   editor.selection.set([nearest]);
 }
+
+/** Add a point half-way behind the last selected one. */
+export function addBehind(editor: EditorController): void {
+  const positions = controlPoints_mm(editor.curve());
+  const row = Math.min(
+    positions.length - 2,
+    editor.selection.peek().at(-1) ?? Math.floor(positions.length / 2),
+  );
+  const x_mm = 0.5 * (positions[row]! + positions[row + 1]!);
+  if (editor.apply(addPoint(refOf(editor.curve()), Number(x_mm.toFixed(4))))) editor.selection.set([row + 1]);
+}

@@ -6,7 +6,7 @@ import { type ProgramDocument, readDocument, writeDocument } from "../../program
 import { historyOf, type ProgramHistory } from "../../programs/history";
 import { type Choice, isThere, WHOLE } from "../../programs/path";
 import { problemsOf } from "../../programs/problems";
-import { computed, type Signal, signal } from "../../ui/signal";
+import { computed, type Signal, signal } from "../../ui/signal.svelte";
 
 /** What a book needs of a server; all reject with one line for the person. */
 export interface ProgramServer {

@@ -249,10 +249,8 @@ function guardTab(book: ProgramBook): void {
 /** What could not be written must not be lost by going elsewhere. */
 function offerToKeep(book: ProgramBook): void {
   const { name } = book.document.peek();
-  const close = toast(`“${name}” was not saved: ${book.saved.peek().line}`, "wrong");
-  const keep = (): void => {
-    close();
-    call("program.keep", { text: book.text }).then((kept) => go("programs", kept.program), tell);
-  };
-  document.querySelector("#toasts > :last-child span")?.append(" ", button({ label: "Save as", act: keep }));
+  toast(`“${name}” was not saved: ${book.saved.peek().line}`, "wrong", [
+    "Save as",
+    () => void call("program.keep", { text: book.text }).then((kept) => go("programs", kept.program), tell),
+  ]);
 }

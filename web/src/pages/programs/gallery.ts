@@ -90,13 +90,10 @@ function deleteIt(row: ProgramRow): HTMLElement {
 
 /** Say that a program is gone, with an undo while the notice is shown. */
 export function offerBack(name: string, thrown: string): void {
-  const close = toast(`“${name}” is in the trash.`, "done");
-  const note = document.querySelector("#toasts > :last-child span");
-  const back = (): void => {
-    close();
-    call("program.restore", { thrown }).then(refreshRows, tell);
-  };
-  note?.append(" ", button({ label: "Undo", kind: "quiet", act: back }));
+  toast(`“${name}” is in the trash.`, "done", [
+    "Undo",
+    () => void call("program.restore", { thrown }).then(refreshRows, tell),
+  ]);
 }
 
 function importer(): HTMLElement {
