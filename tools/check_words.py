@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-CODE = (".py", ".ts", ".c", ".h")
+CODE = (".py", ".ts", ".svelte", ".c", ".h")
 PROSE = (".md", ".toml", ".html")
 LEFT_OUT = (
     "tests/files/",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -365,3 +366,24 @@ def test_the_model_and_its_curves_are_taken_away_as_files(editor: Page, tmp_path
     assert taken("View, SVG").read_text().count("<path") > 20
     assert taken("View, PNG").read_bytes().startswith(b"\x89PNG")
     assert json.loads((tmp_path / "mx-clear.fdvv.json").read_text())["format"] == "fdvv-model"
+
+
+def test_the_same_state_may_be_pinned_twice(editor: Page) -> None:
+    editor.click("role=tab[name=Steps]")
+    pins = editor.get_by_role("button", name=re.compile("^pin"))
+    for count in (1, 2):
+        editor.click("role=button[name='Pin the current state']")
+        expect(pins).to_have_count(count)
+    editor.get_by_role("button", name="Forget pin 1").click()
+    expect(pins).to_have_count(1)
+
+
+def test_escape_closes_found_buttons_only_where_they_are_searched(editor: Page) -> None:
+    editor.click("role=tab[name=Assign]")
+    found = editor.get_by_role("list", name="Matching buttons").first.get_by_role("button")
+    editor.get_by_role("searchbox").first.fill("clear")
+    expect(found).not_to_have_count(0)
+    editor.locator("role=tab[name=Assign]").press("Escape")
+    expect(found).not_to_have_count(0)
+    editor.get_by_role("searchbox").first.press("Escape")
+    expect(found).to_have_count(0)

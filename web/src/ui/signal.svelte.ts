@@ -43,6 +43,8 @@ export function signal<T>(initial: T): Signal<T> {
 /**
  * Run now, and again whenever a signal that was read changes; ends with its scope, or when called.
  *
+ * A run that fails is reported as an uncaught error; the others that follow the same signal still run.
+ *
  * later: given the next run to do when it suits, such as with the next frame; at once if it is left out.
  */
 export function effect(work: () => void | Cleanup, later?: (run: () => void) => void): Cleanup {
@@ -52,6 +54,8 @@ export function effect(work: () => void | Cleanup, later?: (run: () => void) => 
     depth++;
     try {
       return work();
+    } catch (error) {
+      reportError(error);
     } finally {
       depth--;
     }
