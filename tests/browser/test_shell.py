@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from playwright.sync_api import expect
+
 from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:
@@ -37,3 +39,20 @@ def test_without_the_token_there_is_no_page(context: BrowserContext, studio: Run
     assert answer is not None
     assert answer.status == 403
     assert "whole address" in page.inner_text("body")
+
+
+def test_the_keys_are_listed_and_put_away(page: Page) -> None:
+    sheet = page.get_by_role("complementary", name="Keys")
+    page.keyboard.press("?")
+    expect(sheet.get_by_text("Go to Library")).to_be_visible()
+    sheet.get_by_role("button", name="Close").press("Escape")
+    expect(sheet).to_be_hidden()
+
+
+def test_an_error_is_read_out_and_leaves_with_its_page(page: Page, studio: RunningStudio) -> None:
+    page.goto(f"{studio.base}/#/edit/own:there-is-none")
+    alert = page.get_by_role("alert").filter(has_text="there-is-none")
+    expect(alert).to_be_visible()
+    page.keyboard.press("Alt+1")
+    page.wait_for_selector("main[data-page=library]")
+    expect(alert).to_have_count(0)

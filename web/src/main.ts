@@ -1,7 +1,8 @@
 /** The studio's page. */
 
+import { mount } from "svelte";
 import { followAddress } from "./app/route";
-import { mountShell } from "./app/shell";
+import Shell from "./app/Shell.svelte";
 import { followTheme } from "./app/theme";
 import { live, seat } from "./net/live";
 import { listenForShortcuts } from "./ui/keys";
@@ -11,6 +12,6 @@ followTheme();
 followAddress();
 listenForShortcuts();
 live().open();
-mountShell(document.body);
+mount(Shell, { target: document.body });
 // what runs is in view on every page of the studio; the page of a seat may not ask for it
 if (!seat()) void import("./pages/live/list").then(({ showInHeader }) => showInHeader());

@@ -1,12 +1,12 @@
 /** Short notices at the edge of the page, read out by screen readers; errors stay until they are closed. */
 
-import { flushSync, mount } from "svelte";
-import { toast as sonner, Toaster } from "svelte-sonner";
+import { toast as sonner } from "svelte-sonner";
 import { lineOf } from "../math/words";
+import Alert from "./Alert.svelte";
 
 export type ToastKind = "info" | "done" | "wrong";
 
-let place: object | null = null;
+const SHOWN_ms = 5000;
 
 /** Show a notice, and what can be done about it; the returned function removes it. */
 export function toast(
@@ -14,29 +14,28 @@ export function toast(
   kind: ToastKind = "info",
   action?: [label: string, act: () => void],
 ): () => void {
-  if (!place)
-    place = mount(Toaster, {
-      target: document.body,
-      props: {
-        theme: "light",
-        closeButton: true,
-        closeButtonAriaLabel: "Close notice",
-        containerAriaLabel: "Notices",
-      },
-    });
-  const id = sonner(text, {
-    unstyled: true,
+  const options = {
     class: `toast ${kind}`,
-    classes: { closeButton: "button quiet glyph", actionButton: "button" },
-    important: kind === "wrong",
-    duration: kind === "wrong" ? Number.POSITIVE_INFINITY : 5000,
     ...(action && { action: { label: action[0], onClick: action[1] } }),
-  });
-  flushSync();
+  };
+  const id =
+    kind === "wrong"
+      ? sonner(Alert, {
+          ...options,
+          componentProps: { text },
+          important: true,
+          duration: Number.POSITIVE_INFINITY,
+        })
+      : sonner(text, { ...options, duration: SHOWN_ms });
   return () => void sonner.dismiss(id);
 }
 
 /** What went wrong, whatever was thrown. */
 export function tell(error: unknown): void {
   toast(lineOf(error), "wrong");
+}
+
+/** Remove the errors of a page that goes. */
+export function dismissErrors(): void {
+  for (const { id, important } of sonner.getActiveToasts()) if (important) sonner.dismiss(id);
 }

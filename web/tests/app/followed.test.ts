@@ -1,14 +1,15 @@
 // @vitest-environment jsdom
-import { afterEach, expect, it, vi } from "vitest";
+import { flushSync, mount } from "svelte";
+import { expect, it, vi } from "vitest";
 import { Followed } from "../../src/app/followed";
 import { StudioError } from "../../src/net";
+import Toasts from "../../src/ui/Toasts.svelte";
 
 // jsdom has none, and the toasts ask it whether motion is wanted
 vi.stubGlobal("matchMedia", () => Object.assign(new EventTarget(), { matches: false }));
 
-const toasts = () => document.querySelectorAll(".toast.wrong").length;
-
-afterEach(() => document.body.replaceChildren());
+mount(Toasts, { target: document.body });
+const toasts = () => flushSync(() => document.querySelectorAll(".toast.wrong").length);
 
 it("asks once more, not once each, where changes come while it asks", async () => {
   const answers: ((value: number) => void)[] = [];
