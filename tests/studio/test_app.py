@@ -57,7 +57,7 @@ def test_every_file_of_the_page_is_served_as_it_was_built(client: TestClient, na
     assert again.status_code == 304
 
 
-def test_no_page_waits_for_more_than_70_kB_of_compressed_script() -> None:
+def test_no_page_waits_for_more_than_125_kB_of_compressed_script() -> None:
     static = resources.files("fdvv.studio").joinpath("static")
     scripts = {f.name: f.read_text(encoding="utf-8") for f in static.iterdir() if f.name.endswith(".js")}
     sizes = {name: len(gzip.compress(text.encode())) for name, text in scripts.items()}
@@ -71,7 +71,7 @@ def test_no_page_waits_for_more_than_70_kB_of_compressed_script() -> None:
         return before | {name}
 
     waits = {page: sum(sizes[name] for name in loaded(page) | {"studio.js"}) for page in pages}
-    assert max(waits.values()) < 70_000, waits
+    assert max(waits.values()) < 125_000, waits
     assert min(waits.values()) > sizes["shared.js"]
 
 
