@@ -1,6 +1,6 @@
 /** Svelte's signals as functions, for what is no component: drawing, controllers, pages in plain TypeScript. */
 
-import { flushSync, untrack } from "svelte";
+import { flushSync, getAllContexts, untrack } from "svelte";
 
 /** What must be undone when a page, or a part of it, goes. */
 export type Cleanup = () => void;
@@ -17,6 +17,15 @@ export interface Signal<T> {
 /** Changes that are being made together, and effects that run: what follows waits for their end. */
 let depth = 0;
 
+/** Whether Svelte is making a component: it runs who follows when it is done, and must not be asked to meanwhile. */
+function making(): boolean {
+  try {
+    return !!getAllContexts();
+  } catch {
+    return false;
+  }
+}
+
 /** Make changes together: who follows several of them runs once, before this returns. */
 export function batch(changes: () => void): void {
   depth++;
@@ -24,7 +33,7 @@ export function batch(changes: () => void): void {
     changes();
   } finally {
     depth--;
-    if (!depth && !$effect.tracking()) flushSync();
+    if (!depth && !$effect.tracking() && !making()) flushSync();
   }
 }
 

@@ -1,6 +1,8 @@
 // @vitest-environment jsdom
+import { mount } from "svelte";
 import { describe, expect, it, vi } from "vitest";
 import { batch, computed, effect, onCleanup, scope, signal, untracked } from "../../src/ui/signal.svelte";
+import Holding from "./Holding.svelte";
 
 // as it is shipped: while developing, Svelte writes down every change of an endless loop, for ten seconds
 vi.mock("esm-env", () => ({ BROWSER: true, DEV: false, NODE: false }));
@@ -71,6 +73,13 @@ describe("signals", () => {
     end();
     a.set(3);
     expect(said).toEqual(["run 1", "undone", "run 2", "first", "undone"]);
+  });
+
+  it("are changed while a component is made, once", () => {
+    const [shown, value] = [signal(false), signal(0)];
+    mount(Holding, { target: document.body, props: { shown, value } });
+    shown.set(true);
+    expect([value(), document.body.textContent?.trim()]).toEqual([1, "1"]);
   });
 
   it("do not follow what is read untracked or peeked at", () => {
