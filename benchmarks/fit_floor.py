@@ -55,7 +55,7 @@ def exchanged(
 
 
 def unconnected_cN(x: FloatArray, y: FloatArray, pieces: int = PIECES) -> float:
-    """Return the least RMSE of quadratic pieces that need not meet: no spline of as many spans is below."""
+    """Return the least RMSE of quadratic pieces that need not join: no spline of as many spans is below."""
     cost = np.full((x.size, x.size + 1), np.inf)
     for first in range(x.size):
         cost[first, first + 1 :] = _piece_costs(x[first:], y[first:])

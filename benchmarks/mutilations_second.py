@@ -53,11 +53,11 @@ def saturated(_x: FloatArray, force: FloatArray, rng: Generator) -> FloatArray:
 
 def coarse(_x: FloatArray, force: FloatArray, rng: Generator) -> FloatArray:
     step = rng.choice([20.0, 40.0])
-    return step * np.round(force / step)
+    return np.asarray(step * np.round(force / step))
 
 
 def drifting(_x: FloatArray, force: FloatArray, rng: Generator) -> FloatArray:
-    return force + rng.choice([-1, 1]) * rng.uniform(20, 60) * np.arange(force.size) / force.size
+    return np.asarray(force + rng.choice([-1, 1]) * rng.uniform(20, 60) * np.arange(force.size) / force.size)
 
 
 def humming(x: FloatArray, force: FloatArray, rng: Generator) -> FloatArray:
@@ -78,7 +78,7 @@ def negative_half(_x: FloatArray, force: FloatArray, rng: Generator) -> FloatArr
 
 def lost_tare(_x: FloatArray, force: FloatArray, rng: Generator) -> FloatArray:
     later = np.arange(force.size) > rng.uniform(0.15, 0.85) * force.size
-    return force + rng.choice([-1, 1]) * rng.uniform(20, 80) * later
+    return np.asarray(force + rng.choice([-1, 1]) * rng.uniform(20, 80) * later)
 
 
 def rectified(_x: FloatArray, force: FloatArray, _rng: Generator) -> FloatArray:
@@ -107,7 +107,7 @@ def bursts(_x: FloatArray, force: FloatArray, rng: Generator) -> FloatArray:
 
 def wrapped(_x: FloatArray, force: FloatArray, rng: Generator) -> FloatArray:
     most = rng.choice([32.0, 64.0])
-    return np.mod(force + most, 2 * most) - most
+    return np.asarray(np.mod(force + most, 2 * most) - most)
 
 
 def lagging(_x: FloatArray, force: FloatArray, rng: Generator) -> FloatArray:

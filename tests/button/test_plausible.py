@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from fdvv.button.fit import FitSettings, fit_file, measured_files, measured_parts
-from fdvv.button.plausible import noise_cN
 from fdvv.errors import InputError
 from fdvv.formats.force.read import read_force_file
 from fdvv.library.figures import read_file
+from fdvv.model.residual import noise_cN
 from fdvv.units import FloatArray
 from tests.support.buttons import bench_mm, known_cN
 
