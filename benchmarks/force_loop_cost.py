@@ -22,7 +22,7 @@ from tests.firmware._core_on_arm import M4, CoreOnArm, compile_core
 from tests.support.force_loop_press import SETTINGS, ANNOUNCED_mm_s16, LoopPress, loop_constants, press
 
 from benchmarks.core_cost import dearest, full_image, looking_ahead
-from fdvv.protocol.tables import Settings
+from fdvv.protocol.tables import BoardLimits, Settings
 
 TICK_CYCLES = 12_000
 """Of 100 us at 120 MHz."""
@@ -102,19 +102,25 @@ class Block(NamedTuple):
 class CountingCore(CoreOnArm):
     """A core on an emulated Cortex-M4 that counts what each tick costs, hearing the host included."""
 
-    def __init__(self, folder: Path, settings: Settings, image: bytes) -> None:
-        super().__init__((folder / "core.bin").read_bytes(), settings, image, M4)
+    def __init__(
+        self, folder: Path, settings: Settings, image: bytes, limits: BoardLimits | None = None
+    ) -> None:
+        super().__init__((folder / "core.bin").read_bytes(), settings, image, M4, limits)
         self._code = read_code(folder / "core.elf")
         self._start, self._next = address_of(folder / "core.elf", "fdvv_core_tick"), 0
+        self._after = address_of(folder / "core.elf", "fdvv_core_after_tick")
         self._known: dict[tuple[int, int], Block] = {}
         self._ticks: list[tuple[list[Block], list[int]]] = []
+        self._rests: list[tuple[list[Block], list[int]]] = []
+        self._now: tuple[list[Block], list[int]] | None = None
         self._uc.hook_add(self._unicorn.UC_HOOK_BLOCK, self._count)
 
     def _count(self, _uc: object, address: int, size_bytes: int, _data: object) -> None:
-        if address == self._start:
-            self._ticks.append(([], []))
-        if self._ticks:
-            blocks, refills = self._ticks[-1]
+        if address in (self._start, self._after):
+            self._now = [], []
+            (self._ticks if address == self._start else self._rests).append(self._now)
+        if self._now:
+            blocks, refills = self._now
             blocks.append(self._block(address, size_bytes))
             refills.append(REFILL_CYCLES if address != self._next else 0)
         self._next = address + size_bytes
@@ -135,26 +141,39 @@ class CountingCore(CoreOnArm):
         self._uc.hook_add(self._unicorn.UC_HOOK_CODE, lambda _uc, address, _size, _data: call(address))
 
     def costs(self) -> list[TickCost]:
-        """Return what each tick cost so far."""
+        """Return what each tick cost so far, up to its outputs and the next tick's sign of the host."""
+        return self._costs(self._ticks)
+
+    def rests(self) -> list[TickCost]:
+        """Return what came after each tick's outputs: once in 100 ticks the thermistor."""
+        return self._costs(self._rests)
+
+    @staticmethod
+    def _costs(parts: list[tuple[list[Block], list[int]]]) -> list[TickCost]:
         return [
             TickCost(
                 sum(block.instructions for block in blocks),
                 sum(block.cycles for block in blocks) + sum(refills),
                 len(frozenset().union(*(block.lines for block in blocks))),
             )
-            for blocks, refills in self._ticks
+            for blocks, refills in parts
         ]
 
 
 def measure(folder: Path, pressed: LoopPress, closed: bool) -> list[TickCost]:
     """Return the cost of every tick of a press; the outputs must be those of this machine's own core."""
-    core = CountingCore(folder, pressed.core.settings, pressed.image)
+    return counted(folder, pressed, closed).costs()
+
+
+def counted(folder: Path, pressed: LoopPress, closed: bool) -> CountingCore:
+    """Run a press; the outputs must be those of this machine's own core."""
+    core = CountingCore(folder, pressed.core.settings, pressed.image, pressed.core.limits)
     if closed:
         core.close_loop(loop_constants())
     core.announce(ANNOUNCED_mm_s16)
     outputs = core.run(pressed.inputs)
     assert outputs.tobytes() == pressed.outputs.tobytes(), "the emulated core and this machine's differ"
-    return core.costs()
+    return core
 
 
 def dearest_settings() -> Settings:
@@ -199,6 +218,8 @@ def main() -> None:
             for closed, suffix in ((False, ", loop open"), (True, ", loop closed")):
                 tell(f"MX Clear{suffix}", press_costs(folder, closed))
                 tell(f"dearest{suffix}", dear_costs(folder, closed))
+            rests = counted(folder, press(press_s=0.1, ticks=3000), True).rests()
+            tell("after the tick", rests)
 
 
 if __name__ == "__main__":

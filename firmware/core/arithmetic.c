@@ -21,3 +21,17 @@ fdvv_ratio fdvv_ratio_of_wide(uint64_t value)
     return ratio;
 }
 
+FDVV_COLD uint32_t fdvv_fraction_q32(uint32_t part, uint32_t whole)
+{
+    uint32_t quotient = 0;
+    uint8_t bit;
+    for (bit = 0; bit < 32; bit++) {
+        part <<= 1;
+        quotient <<= 1;
+        if (part >= whole) {
+            part -= whole;
+            quotient |= 1;
+        }
+    }
+    return quotient;
+}

@@ -66,6 +66,9 @@ static inline fdvv_ratio fdvv_ratio_of(uint32_t value)
 
 fdvv_ratio fdvv_ratio_of_wide(uint64_t value);
 
+/* part / whole in Q32 for part < whole < 2^31, rounded down, by long division. */
+uint32_t fdvv_fraction_q32(uint32_t part, uint32_t whole);
+
 /* 1 / ratio, with a relative error of at most 5e-5; exact for powers of two. */
 static inline fdvv_ratio fdvv_ratio_inverse(fdvv_ratio ratio)
 {

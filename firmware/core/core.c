@@ -214,3 +214,12 @@ void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *ou
     outputs->mode = supervisor->mode;
     fill_record(core, flags, force_cN64, &outputs->record);
 }
+
+void fdvv_core_after_tick(fdvv_core *core, const fdvv_inputs *inputs)
+{
+#ifdef FDVV_NO_THERMISTOR
+    (void)core, (void)inputs;
+#else
+    fdvv_supervisor_thermistor(&core->supervisor, inputs->thermistor_counts, inputs->elapsed_ticks);
+#endif
+}

@@ -57,4 +57,7 @@ uint8_t fdvv_core_loop_fault(const fdvv_core *core);
 
 void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *outputs);
 
+/* After each tick, once its outputs are set: what can wait until then, with the same inputs. */
+void fdvv_core_after_tick(fdvv_core *core, const fdvv_inputs *inputs);
+
 #endif

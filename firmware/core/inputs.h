@@ -20,6 +20,7 @@ typedef struct {
     uint16_t elapsed_ticks;  /* since the last call: 1 unless ticks were missed */
     uint16_t supply_mV;
     uint16_t force_counts;   /* keycap force sensor; 0 if there is none */
+    uint16_t thermistor_counts; /* of the coil; not read if the board's limits have none */
     uint8_t board;           /* bits FDVV_BOARD_… */
 } fdvv_inputs;
 

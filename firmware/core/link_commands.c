@@ -58,6 +58,20 @@ static uint8_t read_limits(fdvv_link *link, const void *request)
     return FDVV_REFUSAL_NONE;
 }
 
+static uint8_t read_coil(fdvv_link *link, const void *request)
+{
+    fdvv_read_coil_reply *reply = (fdvv_read_coil_reply *)link->reply;
+    const fdvv_supervisor *supervisor = &link->core->supervisor;
+    (void)request;
+    reply->heat_K = (uint16_t)(supervisor->heat_K_q16 >> 16);
+    reply->thermistor_K = (uint16_t)(FDVV_THERMISTOR(supervisor, is_known)
+                                         ? FDVV_THERMISTOR(supervisor, reading_K_q16) >> 16
+                                         : UINT16_MAX);
+    reply->thermistor_counts = FDVV_THERMISTOR(supervisor, counts);
+    reply->spare = 0;
+    return FDVV_REFUSAL_NONE;
+}
+
 static uint8_t write_settings(fdvv_link *link, const void *request)
 {
     const fdvv_settings *settings = (const fdvv_settings *)request;
@@ -214,6 +228,7 @@ static const fdvv_command commands[] = {
     {FDVV_MSG_ANNOUNCE, sizeof(fdvv_announce_request), 0, announce},
     {FDVV_MSG_VIBRATE, sizeof(fdvv_vibrate_request), 0, vibrate},
     {FDVV_MSG_READ_LIMITS, 0, sizeof(fdvv_board_limits), read_limits},
+    {FDVV_MSG_READ_COIL, 0, sizeof(fdvv_read_coil_reply), read_coil},
     LOOP_COMMANDS
 };
 

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #define FDVV_PROTOCOL_VERSION 1
-#define FDVV_PROTOCOL_HASH 0xd27b87fdu
+#define FDVV_PROTOCOL_HASH 0xd7e0f6f6u
 
 #define FDVV_FRAME_BYTES 232 /* largest frame before stuffing: id, sequence, payload, checksum; COBS adds one byte below 254 */
 #define FDVV_DATA_BYTES 192 /* image bytes in one data message, a multiple of 4 */
@@ -53,7 +53,11 @@ enum {
     FDVV_FAULT_SETTINGS_CORRUPT = 15,
     FDVV_FAULT_VIBRATION_BOARD = 16,
     FDVV_FAULT_INTERNAL = 17,
-    FDVV_FAULTS = 18,
+    FDVV_FAULT_THERMISTOR_OPEN = 18,
+    FDVV_FAULT_THERMISTOR_SHORT = 19,
+    FDVV_FAULT_THERMISTOR_JUMP = 20,
+    FDVV_FAULT_THERMISTOR_COLD = 21,
+    FDVV_FAULTS = 22,
 };
 
 /* why a request was not carried out */
@@ -123,7 +127,8 @@ enum {
     FDVV_PART_COIL = 4,
     FDVV_PART_MEMORY = 5,
     FDVV_PART_CLOCK = 6,
-    FDVV_PARTS = 7,
+    FDVV_PART_THERMISTOR = 7,
+    FDVV_PARTS = 8,
 };
 
 /* outcome of one part of the self-test */
@@ -306,9 +311,11 @@ typedef struct {
     uint16_t host_timeout_ms; /* ms; 20 to 5000; longest */
     uint16_t tick_low_us; /* us; 100 to 1000; shortest tick */
     uint16_t tick_high_us; /* us; 100 to 1000; longest tick */
+    uint16_t thermistor_lag_ms; /* ms; 0 to 60000; longest lag of the thermistor behind the coil, at least 500; 0: none is fitted */
+    uint16_t thermistor_share_q8; /* 64 to 256; least rise of the thermistor per rise of the coil, once the lag has passed */
     uint16_t spare; /*  */
 } fdvv_board_limits;
-typedef char fdvv_board_limits_has_28_bytes[sizeof(fdvv_board_limits) == 28 ? 1 : -1];
+typedef char fdvv_board_limits_has_32_bytes[sizeof(fdvv_board_limits) == 32 ? 1 : -1];
 #define FDVV_BOARD_LIMITS_RANGES(X) \
     X(heat_time_ms, 100, 600000) \
     X(duty_gain_q16, 64, 65535) \
@@ -321,6 +328,8 @@ typedef char fdvv_board_limits_has_28_bytes[sizeof(fdvv_board_limits) == 28 ? 1 
     X(host_timeout_ms, 20, 5000) \
     X(tick_low_us, 100, 1000) \
     X(tick_high_us, 100, 1000) \
+    X(thermistor_lag_ms, 0, 60000) \
+    X(thermistor_share_q8, 64, 256) \
     X(spare, 0, 0) \
 
 
@@ -667,6 +676,18 @@ typedef char fdvv_vibrate_request_has_2_bytes[sizeof(fdvv_vibrate_request) == 2 
     X(spare, 0, 0) \
 
 
+/* how warm is the coil (reply) */
+typedef struct {
+    uint16_t heat_K; /* K; 0 to 65535; most that the coil's rise can be, rounded down */
+    uint16_t thermistor_K; /* K; 0 to 65535; its last reading as a rise of the coil above a room of 15 C; 65535: none fitted, or not read yet */
+    uint16_t thermistor_counts; /* counts; 0 to 65535; of its converter, at the last reading */
+    uint16_t spare; /*  */
+} fdvv_read_coil_reply;
+typedef char fdvv_read_coil_reply_has_8_bytes[sizeof(fdvv_read_coil_reply) == 8 ? 1 : -1];
+#define FDVV_READ_COIL_REPLY_RANGES(X) \
+    X(spare, 0, 0) \
+
+
 /* reply to a request that was not carried out (sent as id + 0x80) (reply) */
 typedef struct {
     uint8_t request; /* 0 to 255; id */
@@ -742,7 +763,8 @@ typedef char fdvv_key_request_has_12_bytes[sizeof(fdvv_key_request) == 12 ? 1 : 
     X(READ_COUNTERS, 0x10, 0, 32) \
     X(ANNOUNCE, 0x11, 4, 0) \
     X(VIBRATE, 0x12, 2, 0) \
-    X(READ_LIMITS, 0x17, 0, 28) \
+    X(READ_LIMITS, 0x17, 0, 32) \
+    X(READ_COIL, 0x18, 0, 8) \
     X(REFUSED, 0x7f, 0, 4) \
     X(RECORDS, 0xc0, 20, 0) \
     X(FAULTED, 0xc1, 8, 0) \
@@ -768,6 +790,7 @@ enum {
     FDVV_MSG_ANNOUNCE = 0x11, /* the next press is meant to be this fast */
     FDVV_MSG_VIBRATE = 0x12, /* play a waveform of the active program now */
     FDVV_MSG_READ_LIMITS = 0x17, /* report what the board was built for */
+    FDVV_MSG_READ_COIL = 0x18, /* how warm is the coil */
     FDVV_MSG_REFUSED = 0x7f, /* reply to a request that was not carried out (sent as id + 0x80) */
     FDVV_MSG_RECORDS = 0xc0, /* telemetry; only count of the records are sent */
     FDVV_MSG_FAULTED = 0xc1, /* a fault was latched; read_fault has the evidence */

@@ -100,7 +100,19 @@ typedef struct {
       -(in->board & FDVV_BOARD_VIBRATION), 0, 0)                                                                \
     /* Is the mode invalid? */                                                                                  \
     X(INTERNAL, ALWAYS, NEVER, STOP, mode,                                                                      \
-      FDVV_MODES - 1 - me->mode, me->mode, FDVV_MODES - 1)
+      FDVV_MODES - 1 - me->mode, me->mode, FDVV_MODES - 1)                                                      \
+    /* Is the thermistor of the coil open, or its wire? */                                                      \
+    X(THERMISTOR_OPEN, ALWAYS, INACTIVE, STOP, counts,                                                          \
+      -(FDVV_THERMISTOR(me, faults) & FDVV_THERMISTOR_IS_OPEN), FDVV_THERMISTOR(me, value), FDVV_THERMISTOR(me, bound))\
+    /* Is it shorted? */                                                                                        \
+    X(THERMISTOR_SHORT, ALWAYS, INACTIVE, STOP, counts,                                                         \
+      -(FDVV_THERMISTOR(me, faults) & FDVV_THERMISTOR_IS_SHORT), FDVV_THERMISTOR(me, value), FDVV_THERMISTOR(me, bound))\
+    /* Did its reading change by more than a coil can? */                                                       \
+    X(THERMISTOR_JUMP, ALWAYS, INACTIVE, STOP, K,                                                               \
+      -(FDVV_THERMISTOR(me, faults) & FDVV_THERMISTOR_JUMPS), FDVV_THERMISTOR(me, value), FDVV_THERMISTOR(me, bound))\
+    /* Does it stay cold while the coil warms? */                                                               \
+    X(THERMISTOR_COLD, ALWAYS, INACTIVE, STOP, K,                                                               \
+      -(FDVV_THERMISTOR(me, faults) & FDVV_THERMISTOR_IS_COLD), FDVV_THERMISTOR(me, value), FDVV_THERMISTOR(me, bound))
 
 #define BIT(fault) ((uint32_t)1 << (fault))
 
@@ -308,22 +320,6 @@ void fdvv_supervisor_fault(fdvv_supervisor *supervisor, uint8_t fault, int32_t v
 
 #define HOTTEST_K 65533 /* with the two kelvins that are added to it, the most that 16 bits hold */
 
-/* part / whole for part < whole < 2^31, rounded down, by long division. */
-static FDVV_COLD uint32_t fraction_q32(uint32_t part, uint32_t whole)
-{
-    uint32_t quotient = 0;
-    uint8_t bit;
-    for (bit = 0; bit < 32; bit++) {
-        part <<= 1;
-        quotient <<= 1;
-        if (part >= whole) {
-            part -= whole;
-            quotient |= 1;
-        }
-    }
-    return quotient;
-}
-
 void fdvv_supervisor_init(fdvv_supervisor *supervisor, const fdvv_board_limits *limits)
 {
     static const fdvv_supervisor at_boot = {0};
@@ -353,8 +349,11 @@ static uint32_t raised_K(const fdvv_supervisor *me, uint32_t rise_K)
 static FDVV_COLD void set_heat_model(fdvv_supervisor *me, const fdvv_settings *settings)
 {
     uint32_t board_us = me->limits->heat_time_ms * 1000, time_us = settings->heat_time_ms * 1000;
-    me->heating_q32 = fraction_q32(settings->tick_us, lower(time_us, board_us)) + 1;
-    me->cooling_q32 = fraction_q32(settings->tick_us, higher(time_us, board_us) + settings->tick_us);
+#ifndef FDVV_NO_THERMISTOR
+    fdvv_thermistor_set(&me->thermistor, me->limits, settings, me->heating_q32);
+#endif
+    me->heating_q32 = fdvv_fraction_q32(settings->tick_us, lower(time_us, board_us)) + 1;
+    me->cooling_q32 = fdvv_fraction_q32(settings->tick_us, higher(time_us, board_us) + settings->tick_us);
     me->rise_K = (uint16_t)higher(settings->full_duty_rise_K, me->limits->full_duty_rise_K);
     me->nominal_supply_mV = me->limits->nominal_supply_mV;
     if (me->limits->supply_high_mV > me->nominal_supply_mV) {
@@ -488,16 +487,35 @@ void fdvv_supervisor_heat(fdvv_supervisor *supervisor, int16_t duty_q15, uint16_
         set_heat_K_q48(supervisor, heat_K_q48(supervisor) - part_q48(heat_q16 - end_q16, supervisor->cooling_q32));
 }
 
+#ifndef FDVV_NO_THERMISTOR
+void fdvv_supervisor_thermistor(fdvv_supervisor *supervisor, uint16_t counts, uint16_t elapsed_ticks)
+{
+    fdvv_thermistor *thermistor = &supervisor->thermistor;
+    if (!thermistor->is_fitted)
+        return;
+    thermistor->load_K_q16 += supervisor->end_K_q16;
+    if (elapsed_ticks > 1) /* missed ticks had the duty of the one before */
+        thermistor->load_K_q16 += long_product(thermistor->end_K_q16, elapsed_ticks - 1u);
+    thermistor->end_K_q16 = supervisor->end_K_q16;
+    thermistor->ticks = (uint16_t)lower(thermistor->ticks + higher(elapsed_ticks, 1), UINT16_MAX);
+    if (thermistor->ticks < FDVV_THERMISTOR_TICKS)
+        return;
+    supervisor->heat_K_q16 =
+        fdvv_thermistor_sample(thermistor, counts, supervisor->heat_K_q16 + 1, supervisor->heating_q32);
+    supervisor->heat_rest_q48 = 0;
+}
+#endif
+
 void fdvv_supervisor_keep_heat(const fdvv_supervisor *supervisor, fdvv_kept_heat *kept)
 {
     kept->heat_K_q16 = supervisor->heat_K_q16 + (1 << 16);
     kept->check = ~kept->heat_K_q16;
 }
 
-FDVV_COLD void fdvv_supervisor_resume_heat(fdvv_supervisor *supervisor, const fdvv_kept_heat *kept, uint8_t is_power_on)
+FDVV_COLD void fdvv_supervisor_resume_heat(fdvv_supervisor *supervisor, const fdvv_kept_heat *kept)
 {
     if (kept->check == ~kept->heat_K_q16)
         supervisor->heat_K_q16 = kept->heat_K_q16;
-    else if (!is_power_on)
-        supervisor->heat_K_q16 = (uint32_t)supervisor->limits->heat_limit_K << 16;
+    else /* no force, and no fault */
+        supervisor->heat_K_q16 = ((uint32_t)supervisor->limits->heat_limit_K << 16) - 1;
 }

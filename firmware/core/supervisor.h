@@ -3,6 +3,7 @@
 #define FDVV_SUPERVISOR_H
 
 #include "inputs.h"
+#include "thermistor.h"
 
 typedef char fdvv_settings_are_whole_dozens_of_words[sizeof(fdvv_settings) % 48 == 0 ? 1 : -1];
 
@@ -40,6 +41,9 @@ typedef struct {
     uint32_t settings_sum;    /* checksum of the settings as they were set */
     const fdvv_board_limits *limits;
     fdvv_evidence evidence;   /* of the latched fault */
+#ifndef FDVV_NO_THERMISTOR
+    fdvv_thermistor thermistor;
+#endif
 } fdvv_supervisor;
 
 /* The heat over a reset, in memory that start-up leaves alone. */
@@ -80,12 +84,16 @@ int16_t fdvv_supervisor_limit_cN64(fdvv_supervisor *supervisor, const fdvv_setti
  * had the duty of the last call. */
 void fdvv_supervisor_heat(fdvv_supervisor *supervisor, int16_t duty_q15, uint16_t supply_mV, uint16_t elapsed_ticks);
 
+/* After fdvv_supervisor_heat, with the same ticks: where a thermistor is fitted, bound the heat by its reading, once in
+ * FDVV_THERMISTOR_TICKS. */
+void fdvv_supervisor_thermistor(fdvv_supervisor *supervisor, uint16_t counts, uint16_t elapsed_ticks);
+
 /* After every tick: keep the heat, and a kelvin for what the coil may get until the watchdog resets a stopped board. */
 void fdvv_supervisor_keep_heat(const fdvv_supervisor *supervisor, fdvv_kept_heat *kept);
 
-/* After a reset: go on with the heat that was kept. If it is damaged, start at the limit of the board, at which there is
- * no force; if the power was switched on and nothing was kept, start cold. */
-void fdvv_supervisor_resume_heat(fdvv_supervisor *supervisor, const fdvv_kept_heat *kept, uint8_t is_power_on);
+/* After a reset: go on with the heat that was kept. Where none was, as after a power cut, the coil may be as warm as a
+ * coil of this board can be: start just below the limit of the board, at which there is no force. */
+void fdvv_supervisor_resume_heat(fdvv_supervisor *supervisor, const fdvv_kept_heat *kept);
 
 /* Return 0 if the settings are valid, else 1 + the number of the first field that is out of range, inconsistent with
  * another one, or looser than the limits of the board. */

@@ -46,6 +46,7 @@ static void run(uint32_t ticks)
     for (uint32_t i = 0; i < ticks; i++) {
         fdvv_supervisor_host_seen(&core.supervisor, inputs[i].time_us);
         fdvv_core_tick(&core, &inputs[i], &outputs[i]);
+        fdvv_core_after_tick(&core, &inputs[i]);
     }
 }
 

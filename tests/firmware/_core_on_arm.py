@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from fdvv.firmware.core import INPUTS, OUTPUTS, RecordArray
 from fdvv.firmware.limits import limits_like
-from fdvv.protocol.tables import Settings
+from fdvv.protocol.tables import BoardLimits, Settings
 
 from ._m0 import BOARD, REPOSITORY, SHARED, require_tools
 
@@ -77,7 +77,14 @@ def compile_core(folder: Path, optimise: str, processor: Processor = M0) -> byte
 class CoreOnArm:
     """One device's core on an emulated Cortex-M, armed with a program as Core.arm leaves it."""
 
-    def __init__(self, code: bytes, settings: Settings, image: bytes, processor: Processor = M0) -> None:
+    def __init__(
+        self,
+        code: bytes,
+        settings: Settings,
+        image: bytes,
+        processor: Processor = M0,
+        limits: BoardLimits | None = None,
+    ) -> None:
         self._unicorn: Any = import_module("unicorn")
         self._arm: Any = import_module("unicorn.arm_const")
         self._uc: Any = self._unicorn.Uc(
@@ -91,7 +98,7 @@ class CoreOnArm:
         self._data, self._functions = places[:5], places[5:10]
         self._loop = places[10:]  # where the table has it
         self._uc.mem_write(self._data[0], settings.pack())
-        self._uc.mem_write(self._data[4], limits_like(settings).pack())
+        self._uc.mem_write(self._data[4], (limits or limits_like(settings)).pack())
         self._uc.mem_write(self._data[1], image)
         self._call(self._functions[0])
         self.refusal = self._call(self._functions[1], len(image), int.from_bytes(image[4:8], "little"))

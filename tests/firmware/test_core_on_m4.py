@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import pytest
-from benchmarks.force_loop_cost import CountingCore, cycles_of, dear_costs, press_costs
+from benchmarks.force_loop_cost import CountingCore, counted, cycles_of, dear_costs, press_costs
 
 from fdvv.firmware.core import Core, RecordArray
 from fdvv.protocol.tables import LoopFault, Refusal
@@ -51,7 +51,7 @@ def pressed(cell: str) -> LoopPress:
 
 def replay(code: bytes, taken: LoopPress) -> RecordArray:
     """Return what the emulated core does with the readings of a press."""
-    core = CoreOnArm(code, SETTINGS, taken.image, M4)
+    core = CoreOnArm(code, SETTINGS, taken.image, M4, taken.core.limits)
     assert core.refusal == Refusal.NONE
     core.close_loop(loop_constants())
     core.announce(ANNOUNCED_mm_s16)
@@ -115,6 +115,13 @@ def test_the_dearest_of_many_ticks_stays_within_its_cycles(folder: Path, closed:
     say(f"loop {'closed' if closed else 'open'}: at most {plain} cycles a tick, {dear} of a large program")
     assert plain <= WORST_CYCLES
     assert dear <= WORST_CYCLES_DEAREST
+
+
+def test_the_thermistor_is_read_once_in_a_hundred_ticks_behind_their_outputs(folder: Path) -> None:
+    rests = np.array([cost.cycles for cost in counted(folder, pressed("sound"), True).rests()])
+    say(f"after a tick: {np.median(rests):.0f} cycles, {rests.max()} with the thermistor")
+    assert np.count_nonzero(rests > 400) == rests.size // 100
+    assert rests.max() <= 1000
 
 
 def test_blocks_count_each_instruction_that_runs_and_those_whose_condition_fails(folder: Path) -> None:

@@ -11,6 +11,7 @@ from functools import lru_cache
 
 from fdvv.firmware.core import CoreRequest
 from fdvv.protocol.tables import BoardLimits, Evidence, Fault, Mode, Refusal, Settings
+from tests.safety._thermistor import Thermistor
 
 WATCHDOG, BROWN_OUT, OUTPUT, VIBRATION = 1, 2, 4, 8
 BOUNDLESS = 2**31 - 1
@@ -27,6 +28,7 @@ class Inputs:
     elapsed_ticks: int = 1
     supply_mV: int = 12_000
     force_counts: int = 0
+    thermistor_counts: int = 0
     board: int = 0
     displacement_um16: int = 0
     force_cN64: int = 0
@@ -49,6 +51,7 @@ class Scene:
     settings_right: bool
     checksums: tuple[int, int]
     mode: int
+    thermistor: Thermistor
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,7 @@ def board_bit(bit: int) -> Callable[[Scene], bool]:
     return lambda scene: bool(scene.inputs.board & bit)
 
 
-RULES = (
+FIRST_RULES = (
     Rule(
         Fault.POSITION_LOW,
         False,
@@ -184,6 +187,18 @@ RULES = (
         lambda s: (s.mode, Mode.FAULT),
     ),
 )
+BEAD_RULES = tuple(
+    Rule(
+        fault,
+        False,
+        "gone",
+        True,
+        lambda s, fault=fault: s.thermistor.fault is fault,  # type: ignore[misc]
+        lambda s: s.thermistor.evidence,
+    )
+    for fault in (Fault.THERMISTOR_OPEN, Fault.THERMISTOR_SHORT, Fault.THERMISTOR_JUMP, Fault.THERMISTOR_COLD)
+)
+RULES: tuple[Rule, ...] = FIRST_RULES + BEAD_RULES
 RULE_OF = {rule.fault: rule for rule in RULES}
 
 ALLOWED = {
@@ -237,6 +252,7 @@ class Supervisor:
     cooling_q32: int = 0
     rise_K: int = 0
     slope_q8: int = 0
+    thermistor: Thermistor = field(default_factory=Thermistor)
 
     @property
     def rendering(self) -> bool:
@@ -247,6 +263,7 @@ class Supervisor:
         """Mean these settings."""
         self.meant = checksum(settings)
         self.last_um16 = None
+        self.thermistor.set(self.limits, settings, self.heating_q32)
         quick, slow = sorted(1000 * source.heat_time_ms for source in (settings, self.limits))
         self.heating_q32 = settings.tick_us * 2**32 // quick + 1
         self.cooling_q32 = settings.tick_us * 2**32 // (slow + settings.tick_us)
@@ -327,6 +344,7 @@ class Supervisor:
             settings_right=sums[0] == sums[1],
             checksums=(signed(sums[0]), signed(sums[1])),
             mode=self.mode,
+            thermistor=self.thermistor,
         )
 
     def _becomes_reason(self, fault: Fault) -> bool:
@@ -386,17 +404,23 @@ class Supervisor:
         else:
             self.heat_K_q48 += way_K_q16 * self.cooling_q32
 
+    def read_thermistor(self, counts: int, elapsed_ticks: int) -> None:
+        """Bound the heat by its reading, where it is fitted and due."""
+        if self.thermistor.fitted and self.thermistor.tick(self.end_K_q16, max(1, elapsed_ticks)):
+            heat = (self.heat_K_q48 >> 32) + 1
+            self.heat_K_q48 = self.thermistor.sample(counts, heat, self.heating_q32) << 32
+
     def kept(self) -> tuple[int, int]:
         """Return what a board keeps over a reset: the heat and a kelvin, and its complement."""
         heat = ((self.heat_K_q48 >> 32) + 2**16) % 2**32
         return heat, 2**32 - 1 - heat
 
-    def resume(self, heat_K_q16: int, check: int, is_power_on: bool) -> None:
-        """Go on after a reset."""
+    def resume(self, heat_K_q16: int, check: int) -> None:
+        """Go on after a reset; with nothing kept, as warm as a coil can be."""
         if heat_K_q16 + check == 2**32 - 1:
             self.heat_K_q48 = heat_K_q16 * 2**32
-        elif not is_power_on:
-            self.heat_K_q48 = self.limits.heat_limit_K * 2**48
+        else:
+            self.heat_K_q48 = (self.limits.heat_limit_K * 2**16 - 1) * 2**32
 
     def _warm(self, ticks: int) -> None:
         part_q32 = ticks * self.heating_q32

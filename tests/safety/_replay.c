@@ -4,7 +4,7 @@
 
 #include "supervisor.h"
 
-enum { INIT, SETTINGS, ASK, HOST, CHECK, FAULT, LIMIT, HEAT, RESUME, POKE_MODE, POKE_FAULTS };
+enum { INIT, SETTINGS, ASK, HOST, CHECK, FAULT, LIMIT, HEAT, THERMISTOR, RESUME, POKE_MODE, POKE_FAULTS };
 
 typedef struct {
     uint32_t call, settings;           /* which call; number of the settings */
@@ -36,13 +36,16 @@ static int32_t play(fdvv_supervisor *me, const step *it, const fdvv_settings *se
     case FAULT: fdvv_supervisor_fault(me, (uint8_t)it->a, it->b, it->c); return 0;
     case LIMIT: return fdvv_supervisor_limit_cN64(me, settings);
     case HEAT: fdvv_supervisor_heat(me, (int16_t)it->a, (uint16_t)it->b, (uint16_t)it->c); return 0;
+    case THERMISTOR:
+        fdvv_supervisor_thermistor(me, (uint16_t)it->a, (uint16_t)it->b);
+        return me->thermistor.counts;
     case RESUME: /* a restart: keep, spoil by b and c, start anew */
         fdvv_supervisor_keep_heat(me, &kept);
         kept.heat_K_q16 ^= (uint32_t)it->b;
         kept.check ^= (uint32_t)it->c;
         fdvv_supervisor_init(me, me->limits);
         fdvv_supervisor_settings(me, settings);
-        fdvv_supervisor_resume_heat(me, &kept, (uint8_t)it->a);
+        fdvv_supervisor_resume_heat(me, &kept);
         return 0;
     case POKE_MODE: me->mode = (uint8_t)it->a; return 0;
     case POKE_FAULTS: me->faults = (uint16_t)it->a; return 0;
@@ -83,18 +86,39 @@ static void *contents(const char *name, long *bytes)
     return memory;
 }
 
-/* Files of settings, of steps and of limits; 0: all went as expected, 1: it did not. */
+typedef struct {
+    fdvv_settings settings;
+    fdvv_board_limits limits;
+    fdvv_settings tightened;
+    uint32_t refused;
+} check;
+
+static int check_goes(const check *it)
+{
+    fdvv_settings settings = it->settings;
+    if (fdvv_settings_check(&settings, &it->limits) != it->refused)
+        return 0;
+    fdvv_settings_tighten(&settings, &it->limits);
+    return !memcmp(&settings, &it->tightened, sizeof settings);
+}
+
+/* Files of settings, of steps, of limits and of checks; 0: all went as expected, 1: it did not. */
 int main(int count, char **names)
 {
-    long settings_bytes, steps_bytes, limits_bytes;
+    long settings_bytes, steps_bytes, limits_bytes, checks_bytes;
+    const check *checks;
     fdvv_settings *settings;
     fdvv_board_limits *limits;
     step *steps;
-    if (count != 4)
+    if (count != 5)
         return 2;
     settings = contents(names[1], &settings_bytes);
     steps = contents(names[2], &steps_bytes);
     limits = contents(names[3], &limits_bytes);
+    checks = contents(names[4], &checks_bytes);
+    for (count = (int)(checks_bytes / (long)sizeof(check)); count; count--)
+        if (!check_goes(&checks[count - 1]))
+            return 1;
     count = (int)(steps_bytes / (long)sizeof(step));
     return safety_replay(steps, count, settings, limits) != count;
 }

@@ -342,20 +342,175 @@ def boards(script: Script) -> None:
 
 
 def restarts(script: Script) -> None:
-    """Restart cold and warm, after the power was switched on and not, the memory whole and damaged."""
-    for is_power_on in (False, True):
-        for spoilt in ((0, 0), (1, 0), (0, 2**30), (-1, 0), (0, -1)):
-            for ticks in (0, 60_000):
-                script.start(SENSED)
+    """Restart cold and warm, the memory whole and damaged."""
+    for spoilt in ((0, 0), (1, 0), (0, 2**30), (-1, 0), (0, -1)):
+        for ticks in (0, 60_000):
+            script.start(SENSED)
+            for _ in range(3):
+                script.heat(32767, 1 + ticks)
+            script.resume(SENSED, spoilt)
+            script.ask(SENSED, CoreRequest.BOOTED)
+            script.host(0)
+            script.ask(SENSED, CoreRequest.ARM)
+            script.limit(SENSED)
+            script.heat(0)
+            script.tick(SENSED, Inputs(sum=1))
+
+
+BEADED = Settings(tick_us=1000, heat_time_ms=2000, full_duty_rise_K=400)
+"""Settings of a coil that warms within the scenes of its thermistor."""
+HOT = replace(BEADED, derate_start_K=500, heat_limit_K=600)
+"""The same, with room for other faults than over_heat."""
+
+
+def bead_board(settings: Settings, **others: int) -> BoardLimits:
+    """Return a board with a thermistor that is built for these settings."""
+    return replace(limits_like(settings), thermistor_lag_ms=1000, thermistor_share_q8=200, **others)
+
+
+def thermistors(script: Script) -> None:
+    """Warm, cool, restart, rewrite with a bead that follows; break its wire at every bound; leave it cold."""
+    for lag_ms, share_q8, rise_K in ((500, 64, 400), (1000, 200, 300), (60_000, 256, 1)):
+        board = bead_board(BEADED, full_duty_rise_K=rise_K)
+        board = replace(board, thermistor_lag_ms=lag_ms, thermistor_share_q8=share_q8)
+        script.start(BEADED, board)
+        follow(script, BEADED, [(20_000, 300), (0, 300), (32767, 250), (-9000, 120)])
+        script.mean(replace(BEADED, tick_us=250))
+        follow(script, BEADED, [(20_000, 150), (0, 150)])
+        script.resume(BEADED, (1, 0))
+        follow(script, BEADED, [(0, 1200)])
+    broken_beads(script)
+    colds(script)
+    late_beads(script)
+
+
+def follow(script: Script, settings: Settings, loads: list[tuple[int, int]], counts: int = 2100) -> None:
+    """Hold each duty for so many ticks, the bead reading a little warmer while there is one."""
+    at = counts
+    for duty, ticks in loads:
+        for i in range(ticks):
+            at = max(300, at - 2) if duty and i % 3 == 0 else min(counts, at + (i % 2))
+            script.heat(duty)
+            script.thermistor(at)
+    script.tick(settings, Inputs(sum=script.oracle.last_sum + 1, thermistor_counts=at))
+    script.limit(settings)
+
+
+def broken_beads(script: Script) -> None:
+    """Come to every bound of counts and change, cold and warm, then clear while it is so and after."""
+    faults = (Fault.THERMISTOR_OPEN, Fault.THERMISTOR_SHORT, Fault.THERMISTOR_JUMP, Fault.THERMISTOR_COLD)
+    odd = (
+        63,
+        64,
+        65,
+        127,
+        128,
+        129,
+        3899,
+        3900,
+        3901,
+        4095,
+        65535,
+        0,
+        700,
+        1500,
+        1960,
+        1965,
+        1970,
+        1975,
+        2245,
+    )
+    for counts in (*odd, *range(1900, 1990, 6), *range(2200, 2320, 14)):
+        script.start(BEADED, replace(bead_board(BEADED), thermistor_lag_ms=(60_000, 1000)[counts % 2]))
+        script.ask(BEADED, CoreRequest.BOOTED)
+        script.host(0)
+        if counts % 2:
+            for _ in range(2):
+                script.heat(28_000, 350)
+        samples(script, 2100, 2)
+        script.ask(BEADED, CoreRequest.ARM)
+        script.limit(BEADED)
+        back = ((2100, 1), (2100, 1)) if counts % 5 == 0 else ((counts, counts % 5), (1200, 2), (2100, 3))
+        for now, count in ((counts, 1), *back):
+            samples(script, now, count)
+            for number in faults:
+                script.ask(BEADED, CoreRequest.CLEAR, number)
+            script.ask(BEADED, CoreRequest.ARM)
+    exact_beads(script)
+
+
+def exact_beads(script: Script) -> None:
+    """Change by exactly what a coil can; be exactly as cold as a bead may; leave an odd load."""
+    for first, second in ((2504, 228), (228, 2504)):
+        script.start(BEADED, replace(bead_board(HOT), thermistor_lag_ms=1725))
+        samples(script, first, 1)
+        samples(script, second, 1)
+        assert script.oracle.thermistor.fault is Fault.NONE
+    for duty, last, counts, is_cold in ((15_167, 25, 2175, False), (31_352, 7, 2331, True)):
+        script.start(HOT, bead_board(HOT))
+        for sample in range(last):
+            for _ in range(100):
+                script.heat(duty)
+                script.thermistor(counts if sample == last - 1 else 2100)
+        script.tick(HOT, Inputs(sum=1))
+        thermistor = script.oracle.thermistor
+        assert thermistor.follower - thermistor.reading == 10 * 2**16 + is_cold
+        assert (thermistor.fault is Fault.THERMISTOR_COLD) is is_cold
+    odd = replace(HOT, full_duty_rise_K=401)
+    script.start(odd, replace(bead_board(odd), heat_time_ms=600_000))
+    for duty, elapsed, ticks in ((16_369, 101, 40), (16_369, 2, 200), (0, 0, 201)):
+        for _ in range(ticks):
+            script.heat(duty, elapsed)
+            script.thermistor(2100, elapsed)
+    follow(script, odd, [(0, 600)])
+
+
+def samples(script: Script, counts: int, count: int, elapsed: int = 1) -> None:
+    """Wait for so many samples."""
+    for _ in range(count * 100 // elapsed):
+        script.tick(
+            BEADED, Inputs(sum=script.oracle.last_sum + 1, elapsed_ticks=elapsed, thermistor_counts=counts)
+        )
+
+
+def colds(script: Script) -> None:
+    """Warm a coil whose bead stays as warm as it was, in rooms of different warmth, or whose wire is open."""
+    for counts in (2100, 1500, 900, 500, 4000):
+        for settings in (HOT, replace(HOT, full_duty_rise_K=401), replace(HOT, full_duty_rise_K=4000)):
+            script.start(settings, bead_board(HOT))
+            for _ in range(25):
+                for _ in range(100):
+                    script.heat(28_000)
+                    script.thermistor(counts)
+                script.tick(settings, Inputs(sum=script.oracle.last_sum + 1, thermistor_counts=counts))
+                script.ask(settings, CoreRequest.CLEAR, Fault.THERMISTOR_COLD)
+
+
+def late_beads(script: Script) -> None:
+    """Miss ticks under load, so many that the load does not fit, and jump where nobody looked for long."""
+    for elapsed in (0, 1, 2, 49, 50, 99, 100, 101, 199, 200, 201, 40_000, 65_535):
+        for duty in (0, 20_000, -32768):
+            settings = replace(BEADED, full_duty_rise_K=20_000, late_ticks=1000)
+            script.start(settings, bead_board(BEADED))
+            for counts in (2100, 2100, 1500, 2100, 900):
                 for _ in range(3):
-                    script.heat(32767, 1 + ticks)
-                script.resume(SENSED, is_power_on, spoilt)
-                script.ask(SENSED, CoreRequest.BOOTED)
-                script.host(0)
-                script.ask(SENSED, CoreRequest.ARM)
-                script.limit(SENSED)
-                script.heat(0)
-                script.tick(SENSED, Inputs(sum=1))
+                    script.heat(duty, elapsed)
+                    script.thermistor(counts, elapsed)
+            script.mean(settings)
+            script.heat(0)
+            script.thermistor(900, 100)
+            script.tick(settings, Inputs(sum=script.oracle.last_sum + 1, thermistor_counts=900))
+    for time_ms, elapsed in ((100, 200), (100, 420), (100, 1000), (2000, 500), (2000, 1000)):
+        settings = replace(HOT, heat_time_ms=time_ms, full_duty_rise_K=20_000)
+        slow = replace(bead_board(settings), full_duty_rise_K=16_383, heat_time_ms=600_000)
+        script.start(settings, slow)
+        for _ in range(2):
+            script.heat(-32768, elapsed)
+            script.thermistor(2100, elapsed)
+        follow(script, settings, [(0, 1500)])
+    script.start(BEADED, limits_like(BEADED))
+    script.thermistor(0, 100)  # none is fitted
+    script.tick(BEADED, Inputs(sum=1))
 
 
 def chance(script: Script, seed: int, ticks: int) -> None:
@@ -424,6 +579,9 @@ def random_limits(rng: random.Random, settings: Settings) -> BoardLimits:
         full_duty_rise_K=rng.choice([1, like.full_duty_rise_K]),
         nominal_supply_mV=settings.nominal_supply_mV + rng.choice([0, 0, -3000]),
     )
+    if rng.random() < 0.5:
+        lag_ms, share_q8 = rng.choice([500, 3000, 60_000]), rng.choice([64, 200, 256])
+        most = replace(most, thermistor_lag_ms=lag_ms, thermistor_share_q8=share_q8)
     return most if rng.random() < 0.9 else replace(most, host_timeout_ms=20)
 
 
@@ -442,6 +600,7 @@ def _random_inputs(rng: random.Random, settings: Settings, last_um16: int) -> In
         supply_mV=_near(rng, settings.supply_low_mV + 500, supply_bound, 65_535),
         board=rng.choice([WATCHDOG, BROWN_OUT, OUTPUT, VIBRATION, 15]) if rng.random() < 0.003 else 0,
         displacement_um16=last_um16 + moved,
+        thermistor_counts=_near(rng, rng.randint(1950, 2050), rng.choice([64, 3900, 1500]), 65_535),
         force_cN64=_near(rng, 50, settings.over_force_cN64, 32_767) * rng.choice([-1, 1]),
         commanded_cN64=rng.randint(-32_768, 32_767),
         state=rng.randint(0, 255),
@@ -459,5 +618,17 @@ def _question(rng: random.Random, script: Script, settings: Settings) -> None:
         script.found(rng.choice([Fault.IMAGE_CORRUPT, Fault.VIBRATION_BOARD]), rng.randint(-9, 9), 0)
 
 
-DIRECTED = (questions, bounds, several, elsewhere, stuck, jumps, forces, host, settings_scenes, heat)
+DIRECTED = (
+    questions,
+    bounds,
+    several,
+    elsewhere,
+    stuck,
+    jumps,
+    forces,
+    host,
+    settings_scenes,
+    heat,
+    thermistors,
+)
 """The scenes that are thought out."""

@@ -25,6 +25,7 @@ CALLS = {
             "fault",
             "limit",
             "heat",
+            "thermistor",
             "resume",
             "poke_mode",
             "poke_faults",
@@ -119,19 +120,26 @@ class Script:
         self.oracle.heat(duty_q15, supply_mV, elapsed_ticks)
         self._keep("heat", None, (duty_q15, supply_mV, elapsed_ticks))
 
-    def resume(self, settings: Settings, is_power_on: bool = False, spoilt: tuple[int, int] = (0, 0)) -> None:
+    def thermistor(self, counts: int, elapsed_ticks: int = 1) -> None:
+        """Give the reading of a tick."""
+        self.oracle.read_thermistor(counts, elapsed_ticks)
+        self._keep("thermistor", None, (counts, elapsed_ticks, 0), self.oracle.thermistor.counts)
+
+    def resume(self, settings: Settings, spoilt: tuple[int, int] = (0, 0)) -> None:
         """Start anew with what was kept, some bits of heat and check turned over."""
         heat, check = self.oracle.kept()
         self.oracle = self._fresh(self.oracle.limits)
         self.oracle.settings(settings)
-        self.oracle.resume(heat ^ spoilt[0], check ^ spoilt[1], is_power_on)
-        self._keep("resume", settings, (int(is_power_on), *spoilt))
+        self.oracle.resume(heat ^ spoilt[0], check ^ spoilt[1])
+        self._keep("resume", settings, (0, *spoilt))
 
     def tick(self, settings: Settings, inputs: Inputs, duty_q15: int = 0) -> int:
         """Run what the core runs of the supervisor in a tick; return the limit."""
         self.check(settings, inputs)
         limit = self.limit(settings)
         self.heat(duty_q15 if limit else 0, max(1, inputs.elapsed_ticks), inputs.supply_mV)
+        if self.oracle.limits.thermistor_lag_ms:
+            self.thermistor(inputs.thermistor_counts, max(1, inputs.elapsed_ticks))
         return limit
 
     def found(self, number: int, value: int, bound: int) -> None:
@@ -176,7 +184,7 @@ class Script:
                 CALLS[call],
                 max(0, len(self.all_settings) - 1),
                 arguments,
-                (*given, it.board),
+                (*given, it.thermistor_counts, it.board),
                 it.displacement_um16,
                 it.force_cN64,
                 it.commanded_cN64,

@@ -42,11 +42,25 @@ class Result(ctypes.Structure):
 
 
 def boards() -> Iterator[BoardLimits]:
-    """Yield the boards of the shipped rigs, then one with the quickest and one with the slowest coil."""
-    for name in RIGS:
-        yield limits_of(load_rig(name))
+    """Yield the boards of rigs(), then those with the quickest and slowest coil."""
+    yield from rigs()
     yield replace(limits_of(load_rig("voltage")), heat_time_ms=100, full_duty_rise_K=16_383)
     yield replace(limits_of(load_rig("voltage")), heat_time_ms=600_000, full_duty_rise_K=1)
+
+
+def rigs() -> Iterator[BoardLimits]:
+    """Yield the boards of the shipped rigs, then those with the slowest and quickest thermistor."""
+    for name in RIGS:
+        yield limits_of(load_rig(name))
+    for name, lag_ms, share_q8 in (("voltage", 60_000, 128), ("recommended", 500, 256)):
+        yield replace(limits_of(load_rig(name)), thermistor_lag_ms=lag_ms, thermistor_share_q8=share_q8)
+
+
+def strong_rigs() -> Iterator[BoardLimits]:
+    """Yield each of these as it is, and with a force that only the supervisor holds below the limit."""
+    for limits in rigs():
+        yield limits
+        yield replace(limits, force_limit_cN64=32_000, duty_gain_q16=65_535)
 
 
 @pytest.fixture(scope="module")
@@ -57,13 +71,16 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     return ctypes.CDLL(str(compile_c(folder / "libheat.so", *flags, sources=sources, after=("-lm",))))
 
 
-def play(library: ctypes.CDLL, seed: int, scenes: int, limits: BoardLimits) -> tuple[int, Result]:
+def play(
+    library: ctypes.CDLL, seed: int, scenes: int, limits: BoardLimits, is_guarded: bool = False
+) -> tuple[int, Result]:
     """Play scenes; return how many went well before one did not, and their margins."""
     result = Result()
     done = library.safety_heat(
         ctypes.c_uint32(seed),
         ctypes.c_int(scenes),
         ctypes.c_double(SCENE_s),
+        ctypes.c_int(is_guarded),
         ctypes.create_string_buffer(limits.pack(), BoardLimits.length_bytes()),
         ctypes.byref(result),
     )
@@ -72,9 +89,39 @@ def play(library: ctypes.CDLL, seed: int, scenes: int, limits: BoardLimits) -> t
 
 def test_the_model_is_never_cooler_than_the_coil_in_random_minutes(library: ctypes.CDLL) -> None:
     for limits in boards():
-        done, result = play(library, 1, 100, limits)
-        assert done == 100
+        done, result = play(library, 1, 60, limits)
+        assert done == 60
         assert result.hottest_K > (limits.heat_time_ms <= 60_000) * 0.25 * limits.full_duty_rise_K
+
+
+def test_no_coil_is_beyond_the_limit_in_random_minutes_with_restarts_and_power_cuts(
+    library: ctypes.CDLL,
+) -> None:
+    hottest_K = 0.0
+    for limits in strong_rigs():
+        done, result = play(library, 7, 30, limits, is_guarded=True)
+        assert done == 30
+        assert result.hottest_K <= limits.heat_limit_K
+        hottest_K = max(hottest_K, result.hottest_K / limits.heat_limit_K)
+    assert hottest_K > 0.95
+
+
+@pytest.mark.parametrize(("name", "whole_s"), [("voltage", 24.4), ("recommended", 3.5)])
+def test_a_cold_coil_has_its_force_back_soon_after_a_power_cut(
+    library: ctypes.CDLL, name: str, whole_s: float
+) -> None:
+    library.safety_recovery_s.restype = ctypes.c_double
+    settings, limits = settings_of(load_rig(name)), limits_of(load_rig(name))
+    found_s = library.safety_recovery_s(settings.pack(), limits.pack(), ctypes.c_int(2165))  # 22 C
+    assert found_s == pytest.approx(whole_s, abs=0.5)
+
+
+def report(done: int, result: Result, start: float) -> None:
+    """Print what a long run found."""
+    sys.stdout.write(
+        f"{done} minutes, {result.ticks} ticks, least margin {result.least_margin_K:.2e} K, mean "
+        f"{result.mean_margin_K:.1f} K, at most {result.hottest_K:.1f} K, {time.perf_counter() - start:.0f} s\n"
+    )
 
 
 @pytest.mark.slow
@@ -83,12 +130,21 @@ def test_a_million_random_minutes_leave_the_model_hotter(library: ctypes.CDLL) -
     for number, limits in enumerate(boards()):
         start = time.perf_counter()
         done, result = play(library, 1_000_000 * (number + 1), 200_000, limits)
-        took_s = time.perf_counter() - start
-        sys.stdout.write(
-            f"{done} minutes, {result.ticks} ticks, least margin {result.least_margin_K:.2e} K, mean "
-            f"{result.mean_margin_K:.1f} K, hottest {result.hottest_K:.0f} K, {took_s:.0f} s\n"
-        )
+        report(done, result, start)
         assert done == 200_000
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(7200)
+def test_a_million_random_minutes_with_power_cuts_leave_no_coil_beyond_the_limit(
+    library: ctypes.CDLL,
+) -> None:
+    for number, limits in enumerate(strong_rigs()):
+        start = time.perf_counter()
+        done, result = play(library, 1_000_000 * (number + 1), 100_000, limits, is_guarded=True)
+        report(done, result, start)
+        assert done == 100_000
+        assert result.hottest_K <= limits.heat_limit_K
 
 
 def coil_K(limits: BoardLimits, tick_s: float, outputs: RecordArray, start_K: float = 0.0) -> FloatArray:
@@ -131,7 +187,7 @@ def test_settings_that_hide_the_heat_are_refused() -> None:
 
 def test_the_largest_load_that_a_board_allows_never_takes_its_coil_over_the_limit() -> None:
     for rig in RIGS:
-        board = limits_of(load_rig(rig))
+        board = replace(limits_of(load_rig(rig)), thermistor_lag_ms=0)  # by its model alone
         for time_ms in (100, board.heat_time_ms, 600_000):
             settings = replace(
                 settings_of(load_rig(rig)),

@@ -12,7 +12,8 @@ import pytest
 
 from tests.safety._build import CORE, DRIVERS, LIBRARY, REPOSITORY, SANITISED, compile_c
 
-MEASURED = ("supervisor", "settings", "image_check", "crc32")
+MEASURED = ("supervisor", "thermistor", "settings", "image_check", "crc32")
+BESIDE = ("arithmetic", "image")
 RUNS = ("test_supervisor.py", "test_settings.py", "test_image_check.py")
 
 
@@ -26,7 +27,7 @@ def build(folder: Path, *flags: str) -> Path:
     """Compile each source by itself, so that counters are reported by file, and link."""
     objects = tuple(
         compile_c(folder / f"{name}.o", *flags, "-fPIC", "-c", sources=(CORE / f"{name}.c",))
-        for name in (*MEASURED, "image")
+        for name in (*MEASURED, *BESIDE)
     )
     return compile_c(folder / "libsafety.so", *flags, "-fPIC", "-shared", sources=(*DRIVERS, *objects))
 
@@ -73,7 +74,7 @@ def test_the_sanitiser_sees_a_byte_read_beyond_an_image(tmp_path: Path) -> None:
     broken = tmp_path / "image_check.c"
     broken.write_text(text.replace("at + bytes <= check->size_bytes", "at + bytes <= check->size_bytes + 4u"))
     assert broken.read_text() != text
-    others = tuple(CORE / f"{name}.c" for name in (*MEASURED, "image") if name != "image_check")
+    others = tuple(CORE / f"{name}.c" for name in (*MEASURED, *BESIDE) if name != "image_check")
     library = compile_c(
         tmp_path / "libsafety.so", *SANITISED, "-fPIC", "-shared", sources=(*DRIVERS, *others, broken)
     )

@@ -1,4 +1,4 @@
-"""Faults planted in the supervisor are caught: the scenes of _scenes.py are dense enough to be trusted."""
+"""Faults planted in supervisor, thermistor and settings are caught: their tests can be trusted."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import os
 import random
 import subprocess
 import sys
+import time
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -15,24 +16,29 @@ import pytest
 
 from tests.safety import _scenes
 from tests.safety._build import CORE, compile_c
+from tests.safety._checks import checks_of_settings
 from tests.safety._equivalents import EQUIVALENT
 from tests.safety._mutants import Mutant, mutants
 from tests.safety._script import Script
 
-SUPERVISOR = CORE / "supervisor.c"
+SOURCES = {name: CORE / f"{name}.c" for name in ("supervisor", "thermistor", "settings")}
+SHARES = {"supervisor": 44, "thermistor": 12, "settings": 12}
+"""Mutants planted by default."""
 REPLAY = Path(__file__).with_name("_replay.c")
 SECONDS = 5
 """A mutant that has not ended by then hangs, which a watchdog sees: caught."""
 
 
 class Bench(NamedTuple):
-    """What every mutant is linked with and played."""
+    """What every mutant is linked with, by the name of its source, and played."""
 
     folder: Path
-    others: tuple[Path, ...]
-    settings: Path
-    steps: Path
-    limits: Path
+    objects: dict[str, Path]
+    files: tuple[Path, ...]
+
+    def others(self, name: str) -> list[Path]:
+        """Return all objects but that of this source."""
+        return [path for other, path in self.objects.items() if other != name]
 
 
 @pytest.fixture(scope="module")
@@ -42,20 +48,35 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Bench:
     for scene in _scenes.DIRECTED:
         scene(script)
     _scenes.chance(script, seed=1, ticks=2000)
-    for name, data in zip(("settings", "steps", "limits"), script.packed(), strict=True):
+    packed = dict(zip(("settings", "steps", "limits"), script.packed(), strict=True)) | checks_of_settings()
+    for name, data in packed.items():
         (folder / name).write_bytes(data)
-    replay = compile_c(folder / "replay.o", "-O1", "-c", "-DREPLAY_MAIN", sources=(REPLAY,))
-    checks = compile_c(folder / "settings.o", "-O1", "-c", sources=(CORE / "settings.c",))
-    return Bench(folder, (replay, checks), folder / "settings", folder / "steps", folder / "limits")
+    sources = {**SOURCES, "arithmetic": CORE / "arithmetic.c"}
+    objects = {
+        name: compile_c(folder / f"{name}.o", "-O1", "-c", sources=(source,))
+        for name, source in sources.items()
+    }
+    objects["replay"] = compile_c(folder / "replay.o", "-O1", "-c", "-DREPLAY_MAIN", sources=(REPLAY,))
+    return Bench(folder, objects, tuple(folder / name for name in packed))
 
 
-def verdict(bench: Bench, mutant: Mutant, number: int) -> str:
+def verdict(bench: Bench, name: str, mutant: Mutant, number: int) -> str:
     """Say 'caught', 'survived' or 'not C': it does not compile."""
     source = bench.folder / f"mutant{number}.c"
     program = source.with_suffix("")
     source.write_text(mutant.text)
     out = subprocess.run(
-        ["cc", "-std=c99", "-O0", "-Werror=return-type", f"-I{CORE}", "-o", program, source, *bench.others],
+        [
+            "cc",
+            "-std=c99",
+            "-O0",
+            "-Werror=return-type",
+            f"-I{CORE}",
+            "-o",
+            program,
+            source,
+            *bench.others(name),
+        ],
         capture_output=True,
         check=False,
     )
@@ -64,7 +85,7 @@ def verdict(bench: Bench, mutant: Mutant, number: int) -> str:
         return "not C"
     try:
         same = subprocess.run(
-            [program, bench.settings, bench.steps, bench.limits],
+            [program, *bench.files],
             capture_output=True,
             check=False,
             timeout=SECONDS,
@@ -76,40 +97,44 @@ def verdict(bench: Bench, mutant: Mutant, number: int) -> str:
     return "survived" if same.returncode == 0 else "caught"
 
 
-def survivors(bench: Bench, chosen: list[Mutant]) -> tuple[list[str], Counter[str]]:
+def survivors(bench: Bench, name: str, chosen: list[Mutant]) -> tuple[list[str], Counter[str]]:
     """Plant each; name those that no scene notices, count the verdicts."""
     with ThreadPoolExecutor(min(2, os.cpu_count() or 1)) as pool:
-        verdicts = list(pool.map(lambda pair: verdict(bench, pair[1], pair[0]), enumerate(chosen)))
+        verdicts = list(pool.map(lambda pair: verdict(bench, name, pair[1], pair[0]), enumerate(chosen)))
     alive = [mutant.name for mutant, found in zip(chosen, verdicts, strict=True) if found == "survived"]
     return alive, Counter(verdicts)
 
 
-def candidates() -> list[Mutant]:
-    """Return all mutants but those that behave as the original does."""
-    return [mutant for mutant in mutants(SUPERVISOR.read_text()) if mutant.name not in EQUIVALENT]
+def candidates(name: str) -> list[Mutant]:
+    """Return all mutants of a source but those that behave as the original does."""
+    return [mutant for mutant in mutants(SOURCES[name].read_text()) if mutant.name not in EQUIVALENT[name]]
 
 
 def test_the_code_itself_passes(bench: Bench) -> None:
-    whole = Mutant(0, "", "", SUPERVISOR.read_text())
-    assert verdict(bench, whole, 0) == "survived"
+    whole = Mutant(0, "", "", SOURCES["settings"].read_text())
+    assert verdict(bench, "settings", whole, 0) == "survived"
 
 
-def test_a_sample_of_mutants_is_caught(bench: Bench) -> None:
-    alive, counts = survivors(bench, random.Random(1).sample(candidates(), 44))
+@pytest.mark.parametrize("name", SOURCES)
+def test_a_sample_of_mutants_is_caught(bench: Bench, name: str) -> None:
+    alive, counts = survivors(bench, name, random.Random(1).sample(candidates(name), SHARES[name]))
     assert alive == []
-    assert counts["caught"] >= 40
+    assert counts["caught"] >= 0.9 * SHARES[name] - 1
 
 
-def test_each_equivalent_is_a_mutant_that_exists_and_has_its_reason() -> None:
-    names = {mutant.name for mutant in mutants(SUPERVISOR.read_text())}
-    assert set(EQUIVALENT) <= names
-    assert all(len(reason.split()) > 3 for reason in EQUIVALENT.values())
+@pytest.mark.parametrize("name", SOURCES)
+def test_each_equivalent_is_a_mutant_that_exists_and_has_its_reason(name: str) -> None:
+    names = {mutant.name for mutant in mutants(SOURCES[name].read_text())}
+    assert set(EQUIVALENT[name]) <= names
+    assert all(len(reason.split()) > 3 for reason in EQUIVALENT[name].values())
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
-def test_every_mutant_is_caught(bench: Bench) -> None:
-    alive, counts = survivors(bench, candidates())
+@pytest.mark.parametrize("name", SOURCES)
+def test_every_mutant_is_caught(bench: Bench, name: str) -> None:
+    start = time.perf_counter()
+    alive, counts = survivors(bench, name, candidates(name))
     assert alive == []
-    found = f"{counts['caught']} caught, {counts['not C']} not C, {len(EQUIVALENT)} equivalent"
-    sys.stdout.write(f"{found}\n")
+    found = f"{counts['caught']} caught, {counts['not C']} not C, {len(EQUIVALENT[name])} equivalent"
+    sys.stdout.write(f"{name}.c: {found}, {time.perf_counter() - start:.0f} s\n")

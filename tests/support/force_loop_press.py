@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -13,15 +13,16 @@ from fdvv.compensation.force_loop.stability import LoopController
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.device.twin import TwinDevice
 from fdvv.firmware.core import INPUTS, OUTPUTS, Core, RecordArray
+from fdvv.firmware.limits import limits_like
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
-from fdvv.protocol.tables import CellSpec, Settings
+from fdvv.protocol.tables import BoardLimits, CellSpec, Settings
 from fdvv.twin.files import load_rig
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import plan
 from fdvv.twin.image import image_of
 from fdvv.twin.plant import RigPlant
-from fdvv.twin.settings import settings_of
+from fdvv.twin.settings import limits_of, settings_of
 
 RIG, CLEAR = load_rig("recommended"), load_builtin("mx-clear")
 SETTINGS = settings_of(RIG)
@@ -75,6 +76,13 @@ def loop_constants() -> npt.NDArray[np.float32]:
     return np.frombuffer(force_loop_gains(KNOWN, cell, 1e-4, CONTROLLER).pack(), np.float32)
 
 
+def board_for(settings: Settings) -> BoardLimits:
+    """Return a board for the rig, thermistor included, that takes these settings."""
+    bead = limits_of(RIG)
+    names = ("thermistor_lag_ms", "thermistor_share_q8")
+    return replace(limits_like(settings), **{name: getattr(bead, name) for name in names})
+
+
 def press(
     cell: str = "sound",
     *,
@@ -89,7 +97,7 @@ def press(
     image : of the program, MX Clear's if None. closed : the loop is.
     """
     program = clear_image() if image is None else image
-    core = Core(settings, program)
+    core = Core(settings, program, board_for(settings))
     core.close_loop(loop_constants() if closed else None)
     core.announce(ANNOUNCED_mm_s16)
     core.arm()

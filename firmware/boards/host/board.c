@@ -98,6 +98,7 @@ void fdvv_host_tick(fdvv_host *host, const fdvv_inputs *inputs, fdvv_outputs *ou
     host->counters.ticks += inputs->elapsed_ticks;
     host->counters.late += (uint32_t)(inputs->elapsed_ticks - 1);
     fdvv_core_tick(&host->core, inputs, outputs);
+    fdvv_core_after_tick(&host->core, inputs);
     if (host->slot != FDVV_NONE) {
         outputs->slot = host->slot;
         host->slot = FDVV_NONE;

@@ -30,7 +30,7 @@ typedef struct {
     uint32_t sent;      /* bytes that the device has written to the link since it was connected */
 } tick_reply;
 
-typedef char tick_request_has_28_bytes[sizeof(tick_request) == 28 ? 1 : -1];
+typedef char tick_request_has_32_bytes[sizeof(tick_request) == 32 ? 1 : -1];
 typedef char tick_reply_has_24_bytes[sizeof(tick_reply) == 24 ? 1 : -1];
 
 typedef struct {

@@ -22,8 +22,9 @@ static struct {
     uint16_t armed;     /* tick that will start the next burst */
     uint16_t supply_mV;
     uint16_t force_counts;
+    uint16_t thermistor_counts;
     uint8_t reads;
-    uint8_t is_force;   /* the other input: supply and force alternate */
+    uint8_t turn;       /* of the other input: supply and force alternate, and at times the thermistor */
 } acquire;
 
 static volatile uint16_t burst[BOARD_READS_MAX];
@@ -56,6 +57,8 @@ static void start_adc(void)
     PORT_PINCFG(PIN_POSITION) = PORT_PINCFG_PMUXEN;
     PORT_PINCFG(PIN_SUPPLY) = PORT_PINCFG_PMUXEN;
     PORT_PINCFG(PIN_FORCE) = PORT_PINCFG_PMUXEN;
+    PORT_B_PMUX(PIN_B_THERMISTOR) = PORT_MUX_B;
+    PORT_B_PINCFG(PIN_B_THERMISTOR) = PORT_PINCFG_PMUXEN;
     uint32_t linearity = (NVM_CALIBRATION(0) >> 27) | ((NVM_CALIBRATION(1) & 7u) << 5);
     ADC_CALIB = (uint16_t)(linearity | (((NVM_CALIBRATION(1) >> 3) & 7u) << 8));
     ADC_REFCTRL = ADC_REFCTRL_HALF_SUPPLY; /* with gain 1/2: ratiometric from 0 to the supply */
@@ -146,13 +149,19 @@ void board_acquire_start(uint16_t tick_us, uint8_t reads)
     arm();
 }
 
+static uint32_t other_input(void)
+{
+    if (acquire.turn == BOARD_THERMISTOR_TICKS - 1) return AIN_THERMISTOR;
+    return acquire.turn & 1u ? AIN_FORCE : AIN_SUPPLY;
+}
+
 static void convert_other(void)
 {
     ADC_CTRLB = ADC_CTRLB_12_BIT_DIV4; /* no longer free-running */
     sync_adc();
     ADC_SWTRIG = ADC_SWTRIG_FLUSH;
     sync_adc();
-    select_input(acquire.is_force ? AIN_FORCE : AIN_SUPPLY);
+    select_input(other_input());
     ADC_INTFLAG = ADC_INTFLAG_RESRDY;
     ADC_SWTRIG = ADC_SWTRIG_START;
 }
@@ -162,12 +171,12 @@ static void read_other(void)
     while (!(ADC_INTFLAG & ADC_INTFLAG_RESRDY)) {
     }
     uint32_t counts = ADC_RESULT;
-    if (acquire.is_force) {
-        acquire.force_counts = (uint16_t)counts;
-    } else {
-        acquire.supply_mV = (uint16_t)((counts * SUPPLY_GAIN_Q13) >> 13);
+    switch (other_input()) {
+    case AIN_SUPPLY: acquire.supply_mV = (uint16_t)((counts * SUPPLY_GAIN_Q13) >> 13); break;
+    case AIN_FORCE: acquire.force_counts = (uint16_t)counts; break;
+    default: acquire.thermistor_counts = (uint16_t)counts;
     }
-    acquire.is_force ^= 1u;
+    acquire.turn = (uint8_t)((acquire.turn + 1u) % BOARD_THERMISTOR_TICKS);
 }
 
 static void summarize(board_readings *readings)
@@ -196,6 +205,7 @@ uint8_t board_acquire(board_readings *readings)
     readings->time_us = acquire.time_us;
     readings->supply_mV = acquire.supply_mV;
     readings->force_counts = acquire.force_counts;
+    readings->thermistor_counts = acquire.thermistor_counts;
     arm();
     return 1;
 }

@@ -90,6 +90,8 @@ enum { NVMCTRL_CTRLB_ONE_WAIT_STATE = 1 << 1, NVMCTRL_CTRLB_MANW = 1 << 7 };
 #define PORT_IN REG32(0x41004420)
 #define PORT_PMUX(pin) REG8(0x41004430 + (pin) / 2)
 #define PORT_PINCFG(pin) REG8(0x41004440 + (pin))
+#define PORT_B_PMUX(pin) REG8(0x410044B0 + (pin) / 2)
+#define PORT_B_PINCFG(pin) REG8(0x410044C0 + (pin))
 enum {
     PORT_PINCFG_PMUXEN = 1 << 0,
     PORT_PINCFG_INEN = 1 << 1,

@@ -16,6 +16,8 @@
         250, /* host_timeout_ms */ \
         250, /* tick_low_us */ \
         1000, /* tick_high_us */ \
+        0, /* thermistor_lag_ms */ \
+        256, /* thermistor_share_q8 */ \
         0, /* spare */ \
     }
 

@@ -3,7 +3,7 @@
  * Timer 0 overflows once per tick. Its event increments timer 1 and starts converter 0, which is free-running with a
  * reading per 1.08 us. The DMA controller stores the first `reads` readings of the position and stops. Then the program
  * has converter 1 read the load cell, so that its reading is the youngest, and returns them; until the next tick
- * converter 1 reads the supply. If the program is late, a tick has no readings, but timer 1 counts it. */
+ * converter 1 reads the supply, and at times converter 0 the thermistor. If the program is late, a tick has no readings, but timer 1 counts it. */
 #include "board.h"
 #include "chip.h"
 #include "pins.h"
@@ -21,7 +21,9 @@ static struct {
     uint16_t tick;      /* of the last readings returned */
     uint16_t armed;     /* tick that will start the next burst */
     uint16_t supply_mV;
+    uint16_t thermistor_counts;
     uint8_t reads;
+    uint8_t since;      /* ticks since the thermistor was read */
 } acquire;
 
 static volatile uint16_t burst[BOARD_READS_MAX];
@@ -83,6 +85,8 @@ static void start_adc(void)
     start_converter(ADC1_BASE, GCLK_ID_ADC1, 16);
     PORT_PMUX(PIN_POSITION) = PORT_MUX_B;
     PORT_PINCFG(PIN_POSITION) = PORT_PINCFG_PMUXEN;
+    PORT_PMUX(PIN_THERMISTOR) = PORT_MUX_B;
+    PORT_PINCFG(PIN_THERMISTOR) = PORT_PINCFG_PMUXEN;
     PORT_B_PMUX(PIN_B_FORCE) = PORT_MUX_B | (PORT_MUX_B << 4); /* and PIN_B_SUPPLY, in the same register */
     PORT_B_PINCFG(PIN_B_FORCE) = PORT_PINCFG_PMUXEN;
     PORT_B_PINCFG(PIN_B_SUPPLY) = PORT_PINCFG_PMUXEN;
@@ -192,6 +196,22 @@ static uint16_t millivolts(uint32_t counts)
     return (uint16_t)((counts * SUPPLY_GAIN_Q11) >> 11);
 }
 
+/* Between the burst and arm(). */
+static uint16_t read_thermistor(void)
+{
+    uint16_t counts;
+    ADC_CTRLB(ADC0_BASE) = 0; /* no longer free-running */
+    sync_adc(ADC0_BASE);
+    ADC_SWTRIG(ADC0_BASE) = ADC_SWTRIG_FLUSH;
+    sync_adc(ADC0_BASE);
+    convert(ADC0_BASE, AIN_THERMISTOR);
+    counts = result(ADC0_BASE);
+    ADC_INPUTCTRL(ADC0_BASE) = AIN_POSITION | ADC_INPUTCTRL_GROUND;
+    ADC_CTRLB(ADC0_BASE) = ADC_CTRLB_FREERUN;
+    sync_adc(ADC0_BASE);
+    return counts;
+}
+
 uint8_t board_acquire(board_readings *readings)
 {
     if (!(DMAC_CHINTFLAG & DMAC_CHINTFLAG_TCMPL)) return 0;
@@ -205,6 +225,11 @@ uint8_t board_acquire(board_readings *readings)
     acquire.tick = acquire.armed;
     readings->time_us = acquire.time_us;
     readings->supply_mV = acquire.supply_mV;
+    if (++acquire.since == BOARD_THERMISTOR_TICKS) {
+        acquire.since = 0;
+        acquire.thermistor_counts = read_thermistor();
+    }
+    readings->thermistor_counts = acquire.thermistor_counts;
     arm();
     return 1;
 }

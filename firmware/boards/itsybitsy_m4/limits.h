@@ -16,6 +16,8 @@
         250, /* host_timeout_ms */ \
         100, /* tick_low_us */ \
         1000, /* tick_high_us */ \
+        6000, /* thermistor_lag_ms */ \
+        207, /* thermistor_share_q8 */ \
         0, /* spare */ \
     }
 

@@ -10,6 +10,7 @@
 enum {
     PIN_SETPOINT = 2,   /* (A0) DAC0: current setpoint, half the supply is 0 */
     PIN_POSITION = 4,   /* (A4) ADC0/AIN4 */
+    PIN_THERMISTOR = 6, /* (A5) ADC0/AIN6, 10 kOhm to the supply, 100 nF to ground */
     PIN_SDA = 12,       /* (SDA) SERCOM2 */
     PIN_SCL = 13,       /* (SCL) SERCOM2 */
     PIN_KEY = 18,       /* (D7) high while the key is down; to the LED strip's board */
@@ -26,7 +27,7 @@ enum {
     PIN_B_SUPPLY = 9    /* (A3) ADC1/AIN1, supply through 220 kOhm over 22 kOhm */
 };
 
-enum { AIN_POSITION = 4, AIN_FORCE = 0, AIN_SUPPLY = 1 };
+enum { AIN_POSITION = 4, AIN_THERMISTOR = 6, AIN_FORCE = 0, AIN_SUPPLY = 1 };
 
 #define PIN_BIT(pin) (1u << (pin))
 

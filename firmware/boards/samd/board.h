@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-enum { BOARD_READS_MAX = 64, BOARD_MESSAGE_BYTES = 33, BOARD_MESSAGES = 4 };
+enum { BOARD_READS_MAX = 64, BOARD_THERMISTOR_TICKS = 64, BOARD_MESSAGE_BYTES = 33, BOARD_MESSAGES = 4 };
 
 /* cause of the last reset */
 enum { BOARD_RESET_OTHER, BOARD_RESET_WATCHDOG, BOARD_RESET_BROWN_OUT };
@@ -18,6 +18,7 @@ typedef struct {
     uint16_t elapsed_ticks; /* since the last readings: 1 unless ticks were missed */
     uint16_t supply_mV;
     uint16_t force_counts;
+    uint16_t thermistor_counts; /* read once in BOARD_THERMISTOR_TICKS */
 } board_readings;
 
 /* clocks.c: from the DFLL of 48 MHz, which is locked to USB's start of frame. */

@@ -50,6 +50,9 @@ static uint8_t selftest(fdvv_selftest_reply *reply)
                settings->force_gain_q14 ? FDVV_VERDICT_NOT_TESTED : FDVV_VERDICT_ABSENT, inputs.force_counts);
     set_result(reply, FDVV_PART_VIBRATION_BOARD, verdict_of(board_wire_answers()), (uint16_t)board_wire_errors());
     set_result(reply, FDVV_PART_CLOCK, verdict_of(inputs.time_us != 0), tick_us);
+    set_result(reply, FDVV_PART_THERMISTOR,
+               FDVV_THERMISTOR(&core.supervisor, is_fitted) ? verdict_of(FDVV_THERMISTOR(&core.supervisor, is_known)) : FDVV_VERDICT_ABSENT,
+               inputs.thermistor_counts);
     return 1;
 }
 
@@ -90,6 +93,7 @@ static void set_inputs(const board_readings *readings)
     inputs.elapsed_ticks = readings->elapsed_ticks;
     inputs.supply_mV = readings->supply_mV;
     inputs.force_counts = readings->force_counts;
+    inputs.thermistor_counts = readings->thermistor_counts;
     inputs.board = board_errors();
 }
 
@@ -112,6 +116,7 @@ static uint8_t serve_tick(void)
     fdvv_core_tick(&core, &inputs, &outputs);
     board_key(outputs.key); /* 0 unless rendering, so never down in mode fault */
     board_drive(outputs.duty_q15, outputs.enable);
+    fdvv_core_after_tick(&core, &inputs);
     fdvv_supervisor_keep_heat(&core.supervisor, &kept_heat);
     board_watchdog_clear();
     update_counters(&readings);
@@ -185,7 +190,7 @@ static void start(void)
     describe();
     fdvv_settings_tighten(&settings, &limits);
     fdvv_core_init(&core, &settings, &limits);
-    fdvv_supervisor_resume_heat(&core.supervisor, &kept_heat, cause == BOARD_RESET_OTHER);
+    fdvv_supervisor_resume_heat(&core.supervisor, &kept_heat);
     fdvv_supervisor_ask(&core.supervisor, &core.settings, FDVV_ASK_BOOTED, 0);
     fdvv_link_init(&link, &core, &board);
     vibration_silence();

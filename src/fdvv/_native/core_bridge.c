@@ -5,17 +5,17 @@
 #include <stddef.h>
 
 /* Sizes and offsets, for Python to compare with its own. */
-void fdvv_bridge_layout(int64_t layout[18]) {
-    const int64_t values[18] = {
+void fdvv_bridge_layout(int64_t layout[19]) {
+    const int64_t values[19] = {
         sizeof(fdvv_core), sizeof(fdvv_inputs), sizeof(fdvv_outputs),
         offsetof(fdvv_inputs, time_us), offsetof(fdvv_inputs, sum), offsetof(fdvv_inputs, lowest),
         offsetof(fdvv_inputs, highest), offsetof(fdvv_inputs, elapsed_ticks), offsetof(fdvv_inputs, supply_mV),
-        offsetof(fdvv_inputs, force_counts), offsetof(fdvv_inputs, board),
+        offsetof(fdvv_inputs, force_counts), offsetof(fdvv_inputs, thermistor_counts), offsetof(fdvv_inputs, board),
         offsetof(fdvv_outputs, duty_q15), offsetof(fdvv_outputs, enable), offsetof(fdvv_outputs, slot),
         offsetof(fdvv_outputs, stop_us), offsetof(fdvv_outputs, key), offsetof(fdvv_outputs, mode),
         offsetof(fdvv_outputs, record),
     };
-    for (int i = 0; i < 18; i++) layout[i] = values[i];
+    for (int i = 0; i < 19; i++) layout[i] = values[i];
 }
 
 /* Check a whole image; detail is the offset of what is invalid. */
@@ -54,6 +54,7 @@ void fdvv_bridge_run(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *o
     for (int64_t i = 0; i < count; i++) {
         if (host_heard) fdvv_supervisor_host_seen(&core->supervisor, inputs[i].time_us);
         fdvv_core_tick(core, inputs + i, outputs + i);
+        fdvv_core_after_tick(core, inputs + i);
     }
 }
 

@@ -42,6 +42,8 @@ static void heat_coil(fdvv_rig *r, double span_s) {
     const fdvv_rig_model *m = &r->model;
     double copper = m->resistance_ohm * (1.0 + m->copper_1_K * r->heat_K);
     r->heat_K += span_s / m->heat_s * (copper * m->heat_K_W * r->y[AMPS] * r->y[AMPS] - r->heat_K);
+    if (m->thermistor_kind > 0.0)
+        r->bead_K += span_s / m->thermistor_lag_s * (m->thermistor_share * r->heat_K - r->bead_K);
 }
 
 /* -- vibration -- */
@@ -127,12 +129,31 @@ static uint16_t read_supply_mV(const fdvv_rig *r) {
     return (uint16_t)adc_count(1000.0 * volts + 0.5, 65535.0);
 }
 
+/* Uniform from -1 to 1. */
+static double draw(fdvv_rig *r) {
+    r->thermistor_draw = r->thermistor_draw * 1664525u + 1013904223u;
+    return (double)r->thermistor_draw / 2147483648.0 - 1.0;
+}
+
+/* A divider of pull-up and thermistor, ratiometric, 12 bits. */
+static uint16_t read_thermistor(fdvv_rig *r, double noise) {
+    const fdvv_rig_model *m = &r->model;
+    double warm_1_K = 1.0 / (m->room_C + r->bead_K + 273.15) - 1.0 / 298.15;
+    double ohm = m->thermistor_25_ohm * exp(m->thermistor_beta_K * warm_1_K);
+    if (m->thermistor_kind <= 0.0) return 0;
+    if (m->thermistor_kind > 1.0) return m->thermistor_kind > 2.0 ? 0 : 4095;
+    return (uint16_t)adc_count(4096.0 * ohm / (ohm + m->pull_up_ohm) + noise + 0.5, 4095.5);
+}
+
 static void read_sensors(fdvv_rig *r, const fdvv_rig_noise *noise, fdvv_inputs *inputs) {
     r->sensed_N = read_finger(r, noise->force_N);
     inputs->time_us += (uint32_t)(1e6 * r->model.step_s * (double)r->grid.steps_per_tick + 0.5);
     inputs->elapsed_ticks = 1;
     inputs->supply_mV = read_supply_mV(r);
     inputs->force_counts = read_keycap(r, noise->keycap);
+    if (r->model.thermistor_kind > 0.0) /* the sum of six: nearly normal, of a standard deviation of sqrt(2) */
+        inputs->thermistor_counts = read_thermistor(
+            r, r->model.thermistor_noise / sqrt(2.0) * (draw(r) + draw(r) + draw(r) + draw(r) + draw(r) + draw(r)));
     inputs->board = 0;
 }
 
@@ -284,6 +305,7 @@ void fdvv_rig_look(fdvv_rig *r, fdvv_inputs *inputs) {
     inputs->elapsed_ticks = 1;
     inputs->supply_mV = read_supply_mV(r);
     inputs->force_counts = read_keycap(r, 0.0);
+    inputs->thermistor_counts = read_thermistor(r, 0.0);
 }
 
 static uint8_t load_wave(fdvv_synth_bank *bank, uint16_t at, const uint8_t *samples, uint16_t count) {

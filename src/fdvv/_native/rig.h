@@ -73,6 +73,14 @@ typedef struct {
     double keycap_gain;
     double keycap_offset;       /* relative to full scale */
     double keycap_steps;        /* of its ADC over both signs */
+    double thermistor_kind;     /* 0 none, 1 sound, 2 open, 3 shorted */
+    double thermistor_share;    /* of the coil's rise, where it ends */
+    double thermistor_lag_s;
+    double thermistor_25_ohm;
+    double thermistor_beta_K;
+    double pull_up_ohm;
+    double thermistor_noise;    /* counts, rms */
+    double room_C;
     double step_s;
 } fdvv_rig_model;
 
@@ -121,7 +129,7 @@ typedef struct {
     double error, error_1_s;       /* of the referent (or force) to that line at target_s */
     double tracking_1_s, target_s; /* rate at which the error decays; start of the line */
     double stop_m, servo_m, servo_target_m, servo_next_s;
-    double heat_K;
+    double heat_K, bead_K;         /* of the coil, and of the thermistor at its bobbin */
     double magnet_1_ohm, magnet_A, magnet_target_A, magnet_keep, magnet_mean, magnet_slope, amplifier_V, amplifier_keep;
     double vibration_s, sample_s;  /* start of the voice; time of its next sample */
     double hysteresis_N, sensed_N, keycap, keycap_input, keycap_keep, keycap_lag_steps, energy_J;
@@ -130,6 +138,7 @@ typedef struct {
     uint16_t count;                /* of the vibration board's DAC */
     uint8_t waiting, slot, enable, drive_mode; /* drive_mode: FDVV_RIG_GESTURE, … */
     int past_steps;                /* valid rows of past */
+    uint32_t thermistor_draw;      /* state of the noise of its converter */
 } fdvv_rig;
 
 /* Start at rest: cap up, coil cold, stop at the position for stop_us. Returns 0, or 1 if the grid is invalid. */

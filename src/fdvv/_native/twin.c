@@ -22,6 +22,7 @@ void fdvv_twin_run(fdvv_core *core, fdvv_rig *rig, int64_t ticks, const fdvv_twi
         fdvv_outputs out;
         fdvv_supervisor_host_seen(&core->supervisor, inputs->time_us);
         fdvv_core_tick(core, inputs, &out);
+        fdvv_core_after_tick(core, inputs);
         if (rows) {
             fdvv_rig_write_tick(rig, tick_rows + k * FDVV_RIG_TICK_COLUMNS);
             outputs[k] = out;

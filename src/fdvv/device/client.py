@@ -32,6 +32,7 @@ from fdvv.protocol.tables import (
     Message,
     PingReply,
     PingRequest,
+    ReadCoilReply,
     ReadCountersReply,
     ReadFaultReply,
     ReadForceLoopReply,
@@ -132,6 +133,10 @@ class Client:
     def read_limits(self) -> BoardLimits:
         """Return what the board was built for."""
         return self._request(Message.READ_LIMITS, BoardLimits)
+
+    def read_coil(self) -> ReadCoilReply:
+        """Return how warm the coil may be, and what its thermistor reads."""
+        return self._request(Message.READ_COIL, ReadCoilReply)
 
     def write_settings(self, settings: Settings) -> None:
         """Replace calibration and limits; while idle, and the device forgets its programs.

@@ -60,6 +60,18 @@ class Device(Protocol):
         """Have the participant press once at a mean speed; every call is a fresh, varied press."""
 
 
+WHAT_TO_LOOK_AT = {
+    Fault.THERMISTOR_OPEN: "the coil's thermistor RT1 or its wire is open; it measures 10 kohm at 25 C",
+    Fault.THERMISTOR_SHORT: "the coil's thermistor RT1 or its wire is shorted; it measures 10 kohm at 25 C",
+    Fault.THERMISTOR_JUMP: "the reading of the coil's thermistor RT1 jumped; look for a loose wire",
+    Fault.THERMISTOR_COLD: (
+        "the coil's thermistor RT1 stays cold while the coil should warm; glue it to the winding again, "
+        "or look why the coil gets no current"
+    ),
+}
+"""The part behind a fault whose name does not say enough."""
+
+
 @dataclass(frozen=True)
 class FaultReport:
     """Why a device fell to zero force.
@@ -87,8 +99,12 @@ class FaultReport:
         return (
             f"{self.fault.name.lower()}: {self.value}, allowed {self.bound}, "
             f"at {self.displacement_mm:.3f} mm and {self.commanded_cN:.1f} cN, "
-            f"{self.time_s:.3f} s on the device's clock"
+            f"{self.time_s:.3f} s on the device's clock{self._part}"
         )
+
+    @property
+    def _part(self) -> str:
+        return f" ({WHAT_TO_LOOK_AT[self.fault]})" if self.fault in WHAT_TO_LOOK_AT else ""
 
 
 @runtime_checkable

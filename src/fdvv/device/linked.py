@@ -10,7 +10,7 @@ import numpy as np
 
 from fdvv.device.client import Client
 from fdvv.device.contract import DeviceInfo
-from fdvv.device.plant import CellPerson, Inputs, Outputs, Person, Plant, Truth
+from fdvv.device.plant import CellPerson, Inputs, Outputs, Person, Plant, RigPerson, Truth
 from fdvv.device.remote import Remote
 from fdvv.device.telemetry import IntArray, TickColumns
 from fdvv.errors import DeviceError
@@ -133,7 +133,7 @@ class LinkedDevice(Remote):
     def __init__(self, board: Board, person: Person) -> None:
         self._person = person
         if isinstance(board, BuiltBoard):
-            board.build(limits_like(person.settings))
+            board.build(person.limits if isinstance(person, RigPerson) else limits_like(person.settings))
         self.port = LockstepPort(board, person.rest(person.settings), person.settings.tick_us)
         try:
             super().__init__(Client(self.port))

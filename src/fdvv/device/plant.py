@@ -6,10 +6,10 @@ import struct
 from typing import NamedTuple, Protocol, runtime_checkable
 
 from fdvv.model.press import Press
-from fdvv.protocol.tables import NONE, CellSpec, ForceLoopGains, Settings
+from fdvv.protocol.tables import NONE, BoardLimits, CellSpec, ForceLoopGains, Settings
 from fdvv.twin.trace import Trace
 
-_INPUTS = struct.Struct("<IIHHHHHBx")
+_INPUTS = struct.Struct("<IIHHHHHHBxxx")
 _OUTPUTS = struct.Struct("<hBBHBB6xh4x")
 INPUTS_BYTES, OUTPUTS_BYTES = _INPUTS.size, _OUTPUTS.size
 
@@ -24,6 +24,7 @@ class Inputs(NamedTuple):
     elapsed_ticks: int = 1
     supply_mV: int = 12000
     force_counts: int = 0
+    thermistor_counts: int = 2200  # a cold coil
     board: int = 0
 
     def pack(self) -> bytes:
@@ -88,6 +89,15 @@ class Person(Protocol):
 
     def rest(self, settings: Settings) -> Plant:
         """Leave the button alone."""
+
+
+@runtime_checkable
+class RigPerson(Person, Protocol):
+    """A person at a rig that says which board is built for it."""
+
+    @property
+    def limits(self) -> BoardLimits:
+        """The limits of that board, which take the settings."""
 
 
 @runtime_checkable

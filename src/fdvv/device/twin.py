@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,10 +12,11 @@ from fdvv.device.contract import DeviceInfo, check_speed, check_table, check_tra
 from fdvv.device.plant import Inputs
 from fdvv.errors import DeviceError, ModelError
 from fdvv.firmware.core import Core
+from fdvv.firmware.limits import limits_like
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.messages import CN64_PER_cN, travel_mm_of
-from fdvv.protocol.tables import CellSpec, ForceLoopGains, Mode, Settings
+from fdvv.protocol.tables import BoardLimits, CellSpec, ForceLoopGains, Mode, Settings
 from fdvv.twin.finger import Finger, bare
 from fdvv.twin.gesture import Gesture, vary
 from fdvv.twin.image import image_of
@@ -23,7 +25,7 @@ from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.plant import RigPlant
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_kernel import LoopConstants
-from fdvv.twin.settings import cell_of, limits_of, settings_of
+from fdvv.twin.settings import cell_of, limits_of, settings_of, thermistor_limits
 from fdvv.twin.simulate import simulate_program
 from fdvv.twin.trace import Trace
 from fdvv.units import m_from_mm, mm_from_m
@@ -197,6 +199,10 @@ class SimulatedPerson:
     @property
     def load_cell(self) -> CellSpec | None:
         return cell_of(self._plant.rig)
+
+    @property
+    def limits(self) -> BoardLimits:
+        return replace(limits_like(self.settings), **thermistor_limits(self._plant.rig))
 
     @property
     def ticks(self) -> int:

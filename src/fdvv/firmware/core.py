@@ -21,13 +21,23 @@ RecordArray = np.ndarray[Any, np.dtype[np.void]]
 INPUTS = np.dtype(
     [
         *((name, "<u4") for name in ("time_us", "sum")),
-        *((name, "<u2") for name in ("lowest", "highest", "elapsed_ticks", "supply_mV", "force_counts")),
+        *(
+            (name, "<u2")
+            for name in (
+                "lowest",
+                "highest",
+                "elapsed_ticks",
+                "supply_mV",
+                "force_counts",
+                "thermistor_counts",
+            )
+        ),
         ("board", "u1"),
     ],
     align=True,
 )
 """Readings of one tick: device clock, sum of the position readings, lowest and highest of them, ticks since
-the last call, supply, keycap force sensor, bits of what the board found wrong."""
+the last call, supply, keycap force sensor, thermistor of the coil, bits of what the board found wrong."""
 OUTPUTS = np.dtype(
     [
         ("duty_q15", "<i2"),
@@ -79,7 +89,7 @@ def doors() -> ctypes.CDLL:
 
 def layout(lib: ctypes.CDLL) -> list[int]:
     """Ask for the size of the core, then sizes and offsets of its records."""
-    numbers = np.zeros(18, np.int64)
+    numbers = np.zeros(19, np.int64)
     lib.fdvv_bridge_layout(address(numbers))
     return [int(number) for number in numbers]
 

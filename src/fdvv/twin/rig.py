@@ -102,6 +102,31 @@ class LoadCell(Section):
 
 
 @dataclass(frozen=True)
+class Thermistor(Section):
+    """An optional thermistor in the coil's bobbin: it follows the coil with a lag, and stays a little colder.
+
+    The heat that it takes up is counted as the coil's.
+    """
+
+    fitted: str = choice("no", "whether there is one", ("yes", "no"))
+    condition: str = choice("sound", "of it and its wire", ("sound", "open", "short"))
+    lag_s: float = setting(4.0, "time constant of its way to the coil", "s", (2.0, 8.0), (0.5, 40.0))
+    share_ratio: float = setting(0.9, "its rise at the end, of the coil's", "", (0.8, 1.0), (0.3, 1.0))
+    resistance_ohm: float = setting(1e4, "at 25 C", "ohm", (9.9e3, 1.01e4), (9e3, 1.1e4), "class")
+    beta_K: float = setting(
+        3435.0,
+        "from 25 to 85 C; R = R25 exp(beta (1/T - 1/298 K))",
+        "K",
+        (3400.0, 3470.0),
+        (3e3, 4e3),
+        "class",
+    )
+    pull_up_ohm: float = setting(1e4, "from it to the reference", "ohm", (9.9e3, 1.01e4), (9e3, 1.1e4))
+    noise_counts: float = setting(0.5, "noise of a reading of 12 bits, rms", "", (0.3, 1.0), (0.0, 20.0))
+    room_C: float = setting(22.0, "the room, and the coil when cold", "C", (15.0, 30.0), (-20.0, 60.0))
+
+
+@dataclass(frozen=True)
 class Controller(Section):
     """The loop: average, direction, speed, table, command. Run by the firmware's own core (_settings.py)."""
 
@@ -165,6 +190,7 @@ class Rig:
     keycap_sensor: KeycapSensor = field(default_factory=KeycapSensor)
     controller: Controller = field(default_factory=Controller)
     load_cell: LoadCell = field(default_factory=LoadCell)
+    thermistor: Thermistor = field(default_factory=Thermistor)
 
     def __post_init__(self) -> None:
         if self.position_sensor.burst_s > self.controller.tick_s:

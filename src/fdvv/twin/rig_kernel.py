@@ -31,6 +31,7 @@ STEP_s = 1e-5
 ROW_s = 1e-4
 HUNT_CROSSLEY = 1.5
 """Loss per alpha in F = k d (1 + 1.5 alpha d') (Hunt and Crossley 1975)."""
+THERMISTOR_KINDS = {"sound": 1.0, "open": 2.0, "short": 3.0}
 KEYCAP_KINDS = {"none": 0.0, "force": 1.0, "acceleration": 2.0}
 
 
@@ -167,6 +168,7 @@ def plant_of(rig: Rig, finger: Finger, step_s: float = STEP_s) -> ctypes.Structu
         **_exciter_part(rig),
         **_sensing_part(rig),
         **_keycap_part(rig),
+        **_thermistor_part(rig),
         "step_s": step_s,
     }
     return fill("fdvv_rig_model", parts)
@@ -299,6 +301,20 @@ def _keycap_part(rig: Rig) -> dict[str, float]:
         "keycap_steps": 2.0**cap.converter_bits,
         "keycap_gain": 1.0,
         "keycap_offset": 0.0,
+    }
+
+
+def _thermistor_part(rig: Rig) -> dict[str, float]:
+    bead = rig.thermistor
+    return {
+        "thermistor_kind": THERMISTOR_KINDS[bead.condition] if bead.fitted == "yes" else 0.0,
+        "thermistor_share": bead.share_ratio,
+        "thermistor_lag_s": bead.lag_s,
+        "thermistor_25_ohm": bead.resistance_ohm,
+        "thermistor_beta_K": bead.beta_K,
+        "pull_up_ohm": bead.pull_up_ohm,
+        "thermistor_noise": bead.noise_counts,
+        "room_C": bead.room_C,
     }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from fdvv.errors import ModelError
 from fdvv.firmware.limits import limits_like
@@ -35,15 +36,30 @@ def settings_of(rig: Rig) -> Settings:
         raise ModelError(f"the firmware cannot hold the settings of this rig: {error}") from error
 
 
+LAG_RATIO, SHARE_RATIO = 1.5, 0.9
+"""A thermistor may lag so much longer than the rig's, and warm so much less: beads are bedded by hand."""
+
+
 def limits_of(rig: Rig) -> BoardLimits:
     """Return the limits of a board that is built for this rig; ModelError as for settings_of."""
-    limits = limits_like(settings_of(rig))
+    limits = replace(limits_like(settings_of(rig)), **thermistor_limits(rig))
     hottest_K = limits.full_duty_rise_K * (limits.supply_high_mV / limits.nominal_supply_mV) ** 2
     if hottest_K > HOTTEST_K or limits.full_duty_rise_K == RISE_K:
         raise ModelError(
             f"a coil that would end {hottest_K:.0f} K warmer is beyond the thermal model's {RISE_K} K"
         )
     return limits
+
+
+def thermistor_limits(rig: Rig) -> dict[str, int]:
+    """Return the fields of BoardLimits that say which thermistor a rig has; none without one."""
+    bead = rig.thermistor
+    if bead.fitted != "yes":
+        return {}
+    return {
+        "thermistor_lag_ms": math.ceil(1000 * LAG_RATIO * bead.lag_s),
+        "thermistor_share_q8": max(64, math.floor(256 * SHARE_RATIO * bead.share_ratio)),
+    }
 
 
 def cell_of(rig: Rig) -> CellSpec | None:

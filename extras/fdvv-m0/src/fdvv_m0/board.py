@@ -58,6 +58,7 @@ class EmulatedBoard:
         others = {
             "supply_counts": min(round(inputs.supply_mV / self.emulator.supply_mV_counts), COUNTS_MAX),
             "force_counts": inputs.force_counts,
+            "thermistor_counts": inputs.thermistor_counts,
         }
         burst = (inputs.sum, inputs.lowest, inputs.highest, self.emulator.reads)
         self._inputs = TickInputs.of_burst(*burst, **others)

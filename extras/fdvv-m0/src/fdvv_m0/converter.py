@@ -14,7 +14,7 @@ ADC_EVCTRL, ADC_INTFLAG, ADC_RESULT = 0x42004014, 0x42004018, 0x4200401A
 ADC_PERIPHERAL, FREERUN, FLUSH, START, START_BY_EVENT, READY = 0x1E, 1 << 2, 1, 2, 1, 1
 CONVERSION_CLOCKS = 8  # 1 + 12 / 2 + 1: data sheet, single-ended, 12 bits; the last 1 is the longer case
 PRESCALE_SHIFT = 2  # CTRLB.PRESCALER 0 divides by 4
-SUPPLY_INPUT, FORCE_INPUT = 4, 5
+SUPPLY_INPUT, FORCE_INPUT, THERMISTOR_INPUT = 4, 5, 10
 DMAC_CTRL, BASEADDR, CHCTRLA, CHCTRLB, CHINTFLAG = 0x41004800, 0x41004834, 0x41004840, 0x41004844, 0x4100484E
 DMA_ENABLE, TRIGGER_ADC, COMPLETE, VALID, HALFWORDS, COUNT_UP = 2, 0x27, 2, 1, 1 << 8, 1 << 11
 
@@ -72,7 +72,11 @@ class Converter:
         self._is_running = False
         source = self._bus.get(ADC_INPUTCTRL, 4) & 31
         inputs = self._inputs()
-        others = {SUPPLY_INPUT: inputs.supply_counts, FORCE_INPUT: inputs.force_counts}
+        others = {
+            SUPPLY_INPUT: inputs.supply_counts,
+            FORCE_INPUT: inputs.force_counts,
+            THERMISTOR_INPUT: inputs.thermistor_counts,
+        }
         self._bus.put(ADC_RESULT, 2, others.get(source, inputs.reading(0)))
         self._bus.put(ADC_INTFLAG, 1, READY)
 

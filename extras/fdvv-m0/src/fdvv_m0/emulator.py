@@ -25,9 +25,10 @@ class M0Emulator:
     """Runs the firmware of the ItsyBitsy M0, instruction by instruction, on modelled time.
 
     elf is what `make firmware` builds. tick_inputs is called at the instant of each tick with what the pins
-    do, and gives what the converter finds from then on. is_cached False takes every flash access as slow. The
-    bootloader is left out: the program starts at once. Raises DeviceError if the emulator is not installed or
-    the program does what the chip would not bear, InputError for an unusable elf.
+    do, and gives what the converter finds from then on. is_cached False takes every flash access as slow.
+    The bootloader is left out: the program starts at once, with the heat of a cold coil kept from before,
+    as after a reset; `forget` is what a power cut does to that. Raises DeviceError if the emulator is not
+    installed or the program does what the chip would not bear, InputError for an unusable elf.
 
     duty, pulse, messages and key line as logs: pwm_log, wire_log, key_log, costs; all times in us since power
     on, emulated.
@@ -60,7 +61,17 @@ class M0Emulator:
         self.wire_log: list[WireMessage] = []
         self.key_log: list[KeyChange] = []
         self.costs: list[TickCost] = []
+        self._keep(0, 2**32 - 1)
         self._start("power on")
+
+    def forget(self) -> None:
+        """Lose the heat that is kept over resets, as a power cut does."""
+        self._keep(0, 0)
+
+    def _keep(self, *words: int) -> None:
+        at = self._program.symbols.get("kept_heat")
+        if at is not None:
+            self._bus.ram_write(at, struct.pack("<2I", *words))
 
     # -- the parts -------------------------------------------------------------------------------------------
 

@@ -53,6 +53,7 @@ ADC0, ADC1, ADC_INPUTCTRL, ADC_CTRLB, ADC_SWTRIG = 0x43001C00, 0x43002000, 4, 6,
 ADC_EVCTRL, ADC_INTFLAG, ADC_RESULT = 2, 0x2E, 0x40
 FREERUN, ADC_ENABLE, START_BY_EVENT, FLUSH, START, READY = 2, 2, 2, 1, 2, 1
 CONVERSION_CLOCKS, POSITION, FORCE, SUPPLY = 13, 4 | 0x18 << 8, 0x18 << 8, 1 | 0x18 << 8
+THERMISTOR = 6 | 0x18 << 8
 DMA_CTRL, DMA_BASE, DMA_CHANNEL, DMA_FLAG = 0x4100A000, 0x4100A034, 0x4100A040, 0x4100A04E
 DMA_ENABLE, DMA_BY_ADC0, COMPLETE, DESCRIPTOR = 2, 68 << 8 | 2 << 20, 2, 1 | 1 << 8 | 1 << 11
 DAC_CTRLA, DAC_STATUS, DAC_DATA, ZERO = 0x43002400, 0x43002407, 0x43002410, 2048
@@ -241,13 +242,13 @@ class Timers:
 
 
 class Converters:
-    """Converter 0, started by the event and stored by DMA; converter 1, started by the program."""
+    """Converter 0, started by the event and stored by DMA, or by the program; converter 1, by the program."""
 
     def __init__(self, bus: Bus, clocks: Oscillators, inputs: Callable[[], TickInputs]) -> None:
         self._bus, self._clocks, self._inputs = bus, clocks, inputs
         self._run, self._is_running = 0, False
         self.burst_ready_cycle: int | None = None
-        bus.on_write(ADC0 + ADC_SWTRIG, self._flush)
+        bus.on_write(ADC0 + ADC_SWTRIG, self._trigger)
         bus.on_write(ADC1 + ADC_SWTRIG, self._convert)
         bus.on_write(DMA_CHANNEL, self._channel)
         for register in (ADC0 + ADC_INTFLAG, ADC1 + ADC_INTFLAG, DMA_FLAG):
@@ -266,11 +267,18 @@ class Converters:
         base = self._bus.get(DMA_BASE, 4)
         return int.from_bytes(self._bus.ram_read(base + 2, 2), "little") if base else 0
 
-    def _flush(self, _size: int, value: int) -> None:
-        if value != FLUSH:
-            raise DeviceError("converter 0 is started by the program")
+    def _trigger(self, _size: int, value: int) -> None:
         self._run += 1
         self._is_running = False
+        if value & START:
+            chosen = self._bus.get(ADC0 + ADC_INPUTCTRL, 2)
+            if chosen != THERMISTOR or self._bus.get(ADC0 + ADC_CTRLB, 2) & FREERUN:
+                raise DeviceError("the program starts converter 0 for another input than the thermistor")
+            self._bus.after(self._conversion_cycles(ADC0, 40), self._finish_thermistor)
+
+    def _finish_thermistor(self) -> None:
+        self._bus.put(ADC0 + ADC_RESULT, 2, self._inputs().thermistor_counts)
+        self._bus.put(ADC0 + ADC_INTFLAG, 1, READY)
 
     def _convert(self, _size: int, value: int) -> None:
         if value & START:

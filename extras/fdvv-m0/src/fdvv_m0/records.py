@@ -41,17 +41,18 @@ class TickOutputs:
 class TickInputs:
     """What the converter finds from a tick on: one position reading for all, or one for each, in counts.
 
-    supply_counts and force_counts are those of the converter's other two inputs. Raises ValueError for counts
-    that 12 bits cannot hold.
+    supply_counts, force_counts and thermistor_counts are those of the converter's other inputs. Raises
+    ValueError for counts that 12 bits cannot hold.
     """
 
     readings: int | tuple[int, ...]
     supply_counts: int = 2686  # 12 V through the divider: 12 V * 22 / 122 / 3.3 V * 4096
     force_counts: int = 0
+    thermistor_counts: int = 2200  # at 21 C
 
     def __post_init__(self) -> None:
         readings = self.readings if isinstance(self.readings, tuple) else (self.readings,)
-        for counts in (*readings, self.supply_counts, self.force_counts):
+        for counts in (*readings, self.supply_counts, self.force_counts, self.thermistor_counts):
             if not 0 <= counts <= COUNTS_MAX:
                 raise ValueError(f"a reading must lie in 0 to {COUNTS_MAX}, got {counts}")
 
@@ -59,7 +60,8 @@ class TickInputs:
     def of_burst(cls, total: int, lowest: int, highest: int, reads: int, **others: int) -> TickInputs:
         """Return inputs whose `reads` readings have this sum, and these extremes if that is possible.
 
-        others are supply_counts and force_counts. Raises ValueError for counts that 12 bits cannot hold.
+        others are supply_counts, force_counts and thermistor_counts. Raises ValueError for counts that 12
+        bits cannot hold.
         """
         inner = reads - 2
         rest = total - lowest - highest

@@ -13,6 +13,7 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import device_option, opened, remote
+from fdvv.device.client import Client
 from fdvv.device.open import KINDS
 from fdvv.device.remote import Remote, watch
 from fdvv.device.serial import serial_ports
@@ -130,10 +131,17 @@ def _firmware(found: Remote) -> dict[str, Any]:
         "serial": hello.serial,
         "mode": Mode(client.ping().mode).name.lower(),
         "fault": str(found.fault()),
+        **_coil(client),
         "force_loop": found.force_loop.state(),
         "load_cell": asdict(found.load_cell) if found.load_cell else None,
         "counters": asdict(client.counters()),
     }
+
+
+def _coil(client: Client) -> dict[str, Any]:
+    """Return the most that the coil may have warmed, and what its thermistor says, None without one."""
+    coil = client.read_coil()
+    return {"coil_K": coil.heat_K, "thermistor_K": None if coil.thermistor_K == 65535 else coil.thermistor_K}
 
 
 @device.command()

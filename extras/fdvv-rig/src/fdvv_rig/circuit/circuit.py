@@ -19,7 +19,7 @@ HEARS = ("input", "open", "analog")
 
 UNITS = {"ohm": "Ω", "F": "F", "A": "A", "V": "V"}
 
-TWO = ("resistor", "capacitor", "coil", "exciter", "fuse", "switch", "diode", "suppressor")
+TWO = ("resistor", "thermistor", "capacitor", "coil", "exciter", "fuse", "switch", "diode", "suppressor")
 """Kinds with two pins, drawn by their symbol."""
 
 

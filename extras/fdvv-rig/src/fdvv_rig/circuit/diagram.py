@@ -14,7 +14,13 @@ DOWN, UP, PLAIN = 3.4, 2.9, 0.9
 """Heights: of a part that hangs down, of one that stands up, of a pin."""
 BOX_FILL, INK, FAINT = "#e8eef7", "#1c2430", "#5a6676"
 ELEMENTS = {"resistor": "ResistorIEC", "coil": "Inductor2", "exciter": "ResistorIEC", "fuse": "FuseIEC"}
-ELEMENTS |= {"switch": "Button", "diode": "Diode", "suppressor": "Zener", "capacitor": "Capacitor"}
+ELEMENTS |= {
+    "thermistor": "Thermistor",
+    "switch": "Button",
+    "diode": "Diode",
+    "suppressor": "Zener",
+    "capacitor": "Capacitor",
+}
 CONTACTS = {"emergency stop": {"nc": True}, "clapper switch": {"nc": False}}
 POLAR_F, LETTER = 1e-5, 0.145
 PINS_PER_LINE = 9

@@ -15,7 +15,7 @@ SOURCE_ohm, LINK_ohm = 0.01, 0.02
 LEAK_S = 1e-12
 """Of every net to ground, so that a net without a path to anywhere shows: by its resistance."""
 FLOATS_ohm = 1e9
-LINKS = ("resistor", "coil", "exciter")
+LINKS = ("resistor", "thermistor", "coil", "exciter")
 CONTACTS = ("fuse", "switch")
 
 
