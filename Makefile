@@ -12,14 +12,14 @@ LIBRARY := $(if $(filter Darwin,$(shell uname -s)),libfdvv.dylib,libfdvv.so)
 # matrices here are small: threads of BLAS would only wait for each other
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help demo quick test test-slow test-browser check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools lowest newcomer clean
+.PHONY: help demo lock quick test test-slow test-browser check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools lowest newcomer clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
 setup: $(VENV)/.ready src/fdvv/_native/$(LIBRARY) ## Make the virtual environment and build the C kernels
 
-$(VENV)/.ready: pyproject.toml $(wildcard extras/*/pyproject.toml) constraints.txt hatch_build.py tools/setup.sh
+$(VENV)/.ready: pyproject.toml $(wildcard extras/*/pyproject.toml) requirements.lock hatch_build.py tools/setup.sh
 	bash tools/setup.sh "$(PYTHON)" "$(VENV)"
 	@touch $@
 
@@ -54,6 +54,10 @@ test: check ## Every check and every test of the default run
 
 test-slow: setup ## The long tests
 	$(BIN)/pytest -n 2 --timeout 300 --durations 25 -m "slow and not browser"
+
+lock: setup ## Write the hashes of what constraints.txt names, for every system, into requirements.lock
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-header \
+	  --no-emit-index-url --upgrade constraints.txt -o requirements.lock
 
 test-browser: setup web-tools ## Drive the studio in a real browser
 	$(BIN)/pytest -n 2 --timeout 180 -m browser

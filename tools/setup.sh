@@ -23,11 +23,15 @@ for extra in extras/*/; do
   # torch is 1 GB: the engines that need it are tested where it is installed
   [ "$extra" = extras/fdvv-botorch/ ] || here+=(-e "$extra")
 done
+# every package by its hash, the tools that build included: then nothing is left for a build to fetch
+lock=requirements.lock only_uv=$(mktemp)
+trap 'rm -f "$only_uv"' EXIT
+awk '/^[^ ]/ { on = /^uv==/ } on' "$lock" > "$only_uv"
 # uv installs ten times faster; where it cannot be had, pip does the same work
-if "${pip[@]}" uv 2>/dev/null && "$venv/bin/uv" pip install --quiet --compile-bytecode --python "$venv/bin/python" \
-    -c constraints.txt "${here[@]}"; then
-  "$venv/bin/uv" pip install --quiet --no-deps --python "$venv/bin/python" -e extras/fdvv-botorch
-  exit 0
+if "${pip[@]}" --require-hashes -r "$only_uv" 2>/dev/null; then
+  pip=("$venv/bin/uv" pip install --quiet --python "$venv/bin/python")
+  "${pip[@]}" --compile-bytecode --require-hashes -r "$lock"
+else
+  "${pip[@]}" --require-hashes -r "$lock"
 fi
-"${pip[@]}" -c constraints.txt "${here[@]}"
-"${pip[@]}" --no-deps -e extras/fdvv-botorch
+"${pip[@]}" --no-deps --no-build-isolation "${here[@]}" -e extras/fdvv-botorch
