@@ -119,9 +119,9 @@ REFUSED = {
     "a segment of nan": (("assign", "mx-blue", "mx-red:press", *ASSIGN, "--segment", "nan", "1"), "finite"),
     "an unknown device": (("compensate", "mx-blue", "--device", "serial"), "use one of twin"),
     "a missing rig": (("compensate", "mx-blue", "--rig", "gone.toml"), "'gone.toml' does not exist"),
-    "a rig nested too deeply": (("compensate", "mx-blue", "--rig", "deep.toml"), "deep.toml: TOML: is nest"),
+    "a rig nested too deeply": (("compensate", "mx-blue", "--rig", "deep.toml"), "whole file: TOML that is nested"),
     "a device in place of a file": (("fit", "/dev/zero"), "/dev/zero: whole file: is a device or a pipe"),
-    "a rig that is no TOML": (("compensate", "mx-blue", "--rig", "rig.toml"), "rig.toml: TOML"),
+    "a rig that is no TOML": (("compensate", "mx-blue", "--rig", "rig.toml"), "column 6: not valid TOML"),
     "a speed twice": (("compensate", "mx-blue", "--velocity", "50", "--velocity", "50"), "a speed repeats"),
     "the paper's presses for another method": (
         ("compensate", "mx-blue", "--presses", "3"), "--presses: option: belongs to the method paper"),

@@ -152,7 +152,7 @@ def test_a_request_of_another_length_is_refused(known: Bench, message: Message) 
     assert RefusedReply.unpack(reply.payload).detail == len(payload)
 
 
-@pytest.mark.parametrize("number", [0, 0x18, 0x7E, 0x7F, 0x80, 0xC0, 0xFF])
+@pytest.mark.parametrize("number", [0, 0x19, 0x7E, 0x7F, 0x80, 0xC0, 0xFF])
 def test_an_unknown_request_is_refused_by_its_number(known: Bench, number: int) -> None:
     reply = known.send(encode(Frame(number, 3)))[0]
     assert refusal(reply) is Refusal.UNKNOWN_MESSAGE

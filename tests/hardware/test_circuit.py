@@ -67,10 +67,14 @@ def test_the_m4s_pins_are_those_of_its_firmware() -> None:
     assert {(pin.signal, pin.chip, pin.name) for pin in pins if pin.signal} == firmware
 
 
+def port_of(signal: str) -> str:
+    return "B" if signal.startswith("PIN_B_") else "A"
+
+
 def test_the_controllers_pins_are_those_of_the_firmware() -> None:
     text = (BOARDS / "itsybitsy_m0" / "pins.h").read_text()
     declared = re.findall(r"(PIN_\w+) = (\d+),?\s*/\* \((\w+)\)", text)
-    firmware = {(name, f"PA{int(number):02d}", board) for name, number, board in declared}
+    firmware = {(name, f"P{port_of(name)}{int(number):02d}", board) for name, number, board in declared}
     pins = CIRCUIT.parts["U1"].kind.pins.values()
     assert {(pin.signal, pin.chip, pin.name) for pin in pins if pin.signal} == firmware
 

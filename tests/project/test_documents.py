@@ -13,7 +13,7 @@ import pytest
 from fdvv.errors import InputError, ModelError
 from fdvv.model.file import load_builtin, load_model, save_model
 from fdvv.model.model import FDVVModel
-from fdvv.project.documents import ChangeConflict, ChangeSaved, DocumentStore
+from fdvv.project.documents import MOST_OPEN, ChangeConflict, ChangeSaved, DocumentStore
 from fdvv.project.history import EditMade, PinMade, RedoMade, UndoMade, UnpinMade
 from fdvv.project.patch import patch_between, record_of
 
@@ -350,6 +350,30 @@ def test_one_process_at_a_time_holds_a_project(drafts: DocumentStore) -> None:
     drafts.close()
     assert other.open("a").revision == 0
     other.close()
+
+
+@pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="the system does not list open files")
+def test_buttons_used_long_ago_are_closed_and_go_on_where_they_were(drafts: DocumentStore) -> None:
+    names = [drafts.create(f"button {number}", CLEAR) for number in range(MOST_OPEN + 8)]
+    for name in names:
+        assert isinstance(edit(drafts, name, {"travel_mm": 4.2}), ChangeSaved)
+    for _ in range(3):
+        drafts.open(names[8])
+        drafts.open(names[-1])
+    held = [entry for entry in Path("/proc/self/fd").iterdir() if is_journal(entry)]
+    assert len(held) <= MOST_OPEN
+    for name in names:
+        state = drafts.open(name)
+        assert state.revision == 1
+        assert load_model(drafts.project / "buttons" / f"{name}.fdvv.json").travel_mm == 4.2
+
+
+def is_journal(entry: Path) -> bool:
+    try:
+        target = entry.readlink()
+    except OSError:
+        return False
+    return target.parent.name == "drafts" and not target.name.startswith(".")
 
 
 def test_threads_that_edit_at_once_lose_nothing(drafts: DocumentStore) -> None:

@@ -120,7 +120,8 @@ def report(done: int, result: Result, start: float) -> None:
     """Print what a long run found."""
     sys.stdout.write(
         f"{done} minutes, {result.ticks} ticks, least margin {result.least_margin_K:.2e} K, mean "
-        f"{result.mean_margin_K:.1f} K, at most {result.hottest_K:.1f} K, {time.perf_counter() - start:.0f} s\n"
+        f"{result.mean_margin_K:.1f} K, hottest {result.hottest_K:.1f} K, "
+        f"{time.perf_counter() - start:.0f} s\n"
     )
 
 

@@ -157,7 +157,7 @@ def test_a_parameter_left_out_keeps_its_default(tmp_path: Path) -> None:
         ),
         ("[controller]\nwindow_end_m = 0.0004\n", "window_end_m must exceed window_start_m"),
         ("[position_sensor]\nburst_s = 0.002\n", "burst_s must not exceed tick_s"),
-        ("[mover\n", "TOML: "),
+        ("[mover\n", "line 1, column 7: not valid TOML"),
     ],
 )
 def test_what_cannot_be_used_is_refused_with_file_key_bound_and_remedy(

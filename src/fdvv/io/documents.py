@@ -93,16 +93,19 @@ def read_record(path: Path, kind: Kind, record: type[Read], largest_bytes: int) 
     return read_document(text, path, kind, msgspec.json.Decoder(record).decode, lambda _place: None)
 
 
-def read_toml(text: bytes, source: object, remedy: str) -> dict[str, Any]:
-    """Read the text of a TOML file. InputError that names source and, where it can, the line."""
+def read_toml(data: bytes | str, source: object, remedy: str) -> dict[str, Any]:
+    """Read the text of a TOML file. InputError that names source and, where it can, line and column."""
     try:
-        return tomllib.loads(text.decode())
+        text = data if isinstance(data, str) else data.decode()
+        return tomllib.loads(text.removeprefix("\ufeff"))
     except UnicodeDecodeError as error:
         raise InputError(source, f"byte {error.start}", "is not UTF-8 text", "save it as UTF-8") from error
     except tomllib.TOMLDecodeError as error:
-        raise InputError(source, "TOML", str(error), remedy) from error
+        found = re.fullmatch(r"(.*) \(at (.*)\)", str(error), re.DOTALL)
+        reason, place = (found[1], found[2]) if found else (str(error), "whole file")
+        raise InputError(source, place, f"not valid TOML ({reason})", remedy) from error
     except RecursionError as error:
-        raise InputError(source, "TOML", "is nested too deeply", remedy) from error
+        raise InputError(source, "whole file", "TOML that is nested too deeply", remedy) from error
 
 
 def _place(data: bytes, reason: str) -> str:

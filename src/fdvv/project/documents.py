@@ -163,6 +163,8 @@ class Document:
 
 
 JOURNALS, TRASH, LOCK = "drafts", "trash", ".lock"
+MOST_OPEN = 32
+"""Buttons whose journals are held open, each a file descriptor; the one used longest ago is closed first."""
 
 
 @dataclass(frozen=True)
@@ -183,7 +185,9 @@ class DocumentStore:
     now_s : gives the time, s since 1970.
 
     Every change is on the disk when its call returns. Raises InputError on a name that is none or not there,
-    and if another process works on the project; OSError.
+    and if another process works on the project; OSError. The studio has a lock of its own beside that of this
+    class: it keeps devices and jobs to one studio from its start on, this one protects the buttons from any
+    other program that opens them, and only once something is kept.
     """
 
     def __init__(self, project: Path, now_s: Callable[[], float] = time.time) -> None:
@@ -281,13 +285,17 @@ class DocumentStore:
 
     def _document(self, name: str) -> Document:
         """Find a button at work, or open it: names are looked up, never trusted."""
-        if name not in self._open:
+        if name in self._open:
+            self._open[name] = self._open.pop(name)  # used last
+        else:
             if name not in self._names():
                 remedy = "choose one from the library"
                 raise InputError("studio", name[:80], "no such button of your own", remedy)
             self._hold()
             trash = self._trash(name) / f"{name}{MODEL_SUFFIX}"
             paths = (self._model_path(name), self._journal_path(name), trash)
+            while len(self._open) >= MOST_OPEN:
+                self._release(next(iter(self._open)))
             self._open[name] = Document(name, *paths, self._now_s())
         return self._open[name]
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import json
 import re
-import tomllib
 from collections.abc import Iterator
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -15,6 +14,7 @@ from typing import Any, get_args
 import msgspec
 
 from fdvv.errors import InputError
+from fdvv.io.documents import read_toml
 from fdvv.io.files import read_limited, write_atomic
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.plan_check import is_file, plan_problems
@@ -34,14 +34,10 @@ def read_plan(path: Path) -> tuple[StudyPlan, Path]:
     """Read the plan of a file, or of a study's folder, unchecked; return its file too. InputError."""
     path = path / STUDY_FILE if path.is_dir() else path
     data = read_limited(path, LIMIT_bytes, "name the file of a study, or begin with fdvv study new")
-    try:
-        text = data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise InputError(path, f"byte {error.start}", "is not UTF-8 text", "save it as UTF-8") from error
-    return read_plan_text(text, path), path
+    return read_plan_text(data, path), path
 
 
-def read_plan_text(text: str, source: object) -> StudyPlan:
+def read_plan_text(text: str | bytes, source: object) -> StudyPlan:
     """Read the TOML text of a study; `check_plan` checks whether it makes sense too.
 
     InputError names source, the place in it, and what to do: what is no TOML, an unknown or missing field, a
@@ -49,10 +45,7 @@ def read_plan_text(text: str, source: object) -> StudyPlan:
     """
     if len(text) > LIMIT_bytes:
         raise InputError(source, "whole file", f"longer than {LIMIT_bytes} characters", REMEDY)
-    try:
-        data = tomllib.loads(text.removeprefix("\ufeff"))
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise _not_toml(source, error) from error
+    data = read_toml(text, source, REMEDY)
     _check_head(data, source)
     try:
         return msgspec.convert(data, StudyPlan)
@@ -67,12 +60,6 @@ def check_plan(plan: StudyPlan, source: object) -> None:
         place, _, reason = problems[0].partition(": ")
         more = f" (and {len(problems) - 1} more: {' | '.join(problems[1:])})" if problems[1:] else ""
         raise InputError(source, place, reason + more, REMEDY)
-
-
-def _not_toml(source: object, error: Exception) -> InputError:
-    found = re.fullmatch(r"(.*) \(at (.*)\)", str(error), re.DOTALL)
-    reason, place = (found[1], found[2]) if found else (str(error), "whole file")
-    return InputError(source, place, f"not valid TOML ({reason})", REMEDY)
 
 
 def _check_head(data: dict[str, Any], source: object) -> None:
