@@ -119,7 +119,7 @@ REFUSED = {
     "a segment of nan": (("assign", "mx-blue", "mx-red:press", *ASSIGN, "--segment", "nan", "1"), "finite"),
     "an unknown device": (("compensate", "mx-blue", "--device", "serial"), "use one of twin"),
     "a missing rig": (("compensate", "mx-blue", "--rig", "gone.toml"), "'gone.toml' does not exist"),
-    "a rig nested too deeply": (("compensate", "mx-blue", "--rig", "deep.toml"), "whole file: TOML that is nested"),
+    "a rig nested too deeply": (("compensate", "mx-blue", "--rig", "deep.toml"), "TOML that is nested"),
     "a device in place of a file": (("fit", "/dev/zero"), "/dev/zero: whole file: is a device or a pipe"),
     "a rig that is no TOML": (("compensate", "mx-blue", "--rig", "rig.toml"), "column 6: not valid TOML"),
     "a speed twice": (("compensate", "mx-blue", "--velocity", "50", "--velocity", "50"), "a speed repeats"),

@@ -15,7 +15,7 @@ def test_the_table_is_that_of_the_tool() -> None:
 
 def test_no_reading_is_taken_for_colder_than_it_is_nor_for_much_warmer() -> None:
     counts = np.arange(64, 2500)
-    warm_K = np.array([temperature_C(count) - COLDEST_ROOM_C for count in counts])
+    warm_K = np.array([temperature_C(float(count)) - COLDEST_ROOM_C for count in counts])
     off_K = np.array([rise_K_q16(int(count)) / 65536 for count in counts]) - warm_K
     assert off_K.min() >= MARGIN_K - 0.05
     assert off_K[counts > 128].max() < MARGIN_K + 1.5

@@ -121,7 +121,7 @@ class Script:
         self._keep("heat", None, (duty_q15, supply_mV, elapsed_ticks))
 
     def thermistor(self, counts: int, elapsed_ticks: int = 1) -> None:
-        """Give the reading of a tick."""
+        """Hand over the reading of a tick."""
         self.oracle.read_thermistor(counts, elapsed_ticks)
         self._keep("thermistor", None, (counts, elapsed_ticks, 0), self.oracle.thermistor.counts)
 
