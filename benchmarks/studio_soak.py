@@ -3,7 +3,7 @@
 Run as ``python -m benchmarks.studio_soak [MINUTES] [PAGES]`` (10 and 20 by default) with Chromium installed.
 Every page wanders in turn through library, editor and press of built-in buttons, in a studio of its own.
 Printed are the memory of the studio's process after a tenth of the time and at the end, and how long calls
-took in the page, from question to answer. On the machine that runs it, browser included; the rig is simulated.
+took in the page, from question to answer, on the machine that runs both; the rig is simulated.
 """
 
 from __future__ import annotations

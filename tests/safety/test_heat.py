@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+import os
 import sys
 import time
 from collections.abc import Iterator
@@ -130,21 +131,21 @@ def report(done: int, result: Result, start: float) -> None:
 def test_a_million_random_minutes_leave_the_model_hotter(library: ctypes.CDLL) -> None:
     for number, limits in enumerate(boards()):
         start = time.perf_counter()
-        done, result = play(library, 1_000_000 * (number + 1), 200_000, limits)
+        done, result = play(library, 1_000_000 * (number + 1), 150_000, limits)
         report(done, result, start)
-        assert done == 200_000
+        assert done == 150_000
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(7200)
-def test_a_million_random_minutes_with_power_cuts_leave_no_coil_beyond_the_limit(
-    library: ctypes.CDLL,
-) -> None:
+@pytest.mark.timeout(14_400)
+@pytest.mark.skipif("FDVV_ROUNDS" not in os.environ, reason="by hand: FDVV_ROUNDS=100000, a million minutes")
+def test_many_random_minutes_with_power_cuts_leave_no_coil_beyond_the_limit(library: ctypes.CDLL) -> None:
+    scenes = int(os.environ["FDVV_ROUNDS"])
     for number, limits in enumerate(strong_rigs()):
         start = time.perf_counter()
-        done, result = play(library, 1_000_000 * (number + 1), 100_000, limits, is_guarded=True)
+        done, result = play(library, 1_000_000 * (number + 1), scenes, limits, is_guarded=True)
         report(done, result, start)
-        assert done == 100_000
+        assert done == scenes
         assert result.hottest_K <= limits.heat_limit_K
 
 
