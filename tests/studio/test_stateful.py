@@ -6,6 +6,7 @@ real process, what is asked is drawn from seeds, and how far it got is printed w
 
 from __future__ import annotations
 
+import base64
 import json
 import os
 import random
@@ -60,6 +61,7 @@ PROBE = {
     "velocities_mm_s": [100.0],
 }
 TUNE = {**PROBE, "type": "tune", "device": "twin", "observer": "person"}
+PRESS = "displacement_mm,force_cN\n" + "".join(f"{i / 50},{min(i, 40) + i / 5}\n" for i in range(200))
 CREATED: dict[str, tuple[dict[str, object], ...]] = {
     "optimize.create": (SCORED, {**SCORED, "preference": True, "engine": "preference", "simulated": False}),
     "jobs.start": ({"order": {**PROBE, "presses": 1}}, {"order": TUNE}),
@@ -67,6 +69,7 @@ CREATED: dict[str, tuple[dict[str, object], ...]] = {
     "press.trace": (
         {"name": "t", "text": json.dumps({"t_s": [0, 1, 2, 3], "displacement_mm": [0, 1, 2, 3]})},
     ),
+    "file.read": ({"files": [{"name": "a.csv", "content": base64.b64encode(PRESS.encode()).decode()}]},),
     "program.recipe": ({"recipe": "rapid-trigger", "base": "builtin:mx-clear", "parameters": {}},),
 }
 """Questions of a page whose fields depend on each other: drawn ones hardly ever fit."""

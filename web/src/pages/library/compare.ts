@@ -5,7 +5,7 @@ import { about } from "./about";
 import { alikeList } from "./alike";
 import { speedText } from "./columns";
 import { speeds } from "./curves";
-import { exportCsv, exportPng, exportSvg } from "./export";
+import { exportCsv, exportPng, exportSvg, MOST_SHARED, share } from "./export";
 import { landmarkTable } from "./landmarks";
 import { legend } from "./legend";
 import { Overlay } from "./overlay";
@@ -95,6 +95,13 @@ function takeAlong(store: LibraryStore, overlay: Overlay): HTMLElement {
     button({ label: "Fit", kind: "quiet", hint: "Fit the whole curves", act: () => overlay.plot.fit() }),
     button({ label: "PNG", kind: "quiet", disabled: nothing, act: () => exportPng(overlay) }),
     button({ label: "SVG", kind: "quiet", disabled: nothing, act: () => exportSvg(overlay) }),
+    button({
+      label: "Share",
+      kind: "quiet",
+      hint: "Save a page of one to six buttons that opens anywhere",
+      disabled: () => nothing() || store.shown().overlay.length > MOST_SHARED,
+      act: () => share(store.shown.peek()),
+    }),
     button({
       label: "CSV",
       kind: "quiet",

@@ -1,10 +1,11 @@
 /** The view as a picture or as numbers. */
 
 import { csv, download } from "../../draw";
+import { call } from "../../net";
 import { tell } from "../../ui";
 import { speedText } from "./columns";
 import { AXES, type Drawn, type Overlay } from "./overlay";
-import type { ViewName } from "./state";
+import type { Shown, ViewName } from "./state";
 
 const NAME = "fdvv-buttons";
 
@@ -24,6 +25,17 @@ export function exportPng(overlay: Overlay): void {
 
 export function exportCsv(overlay: Overlay, view: ViewName): void {
   download(`${NAME}.csv`, csv(columns(overlay.drawn(), view)), "text/csv");
+}
+
+/** Most that the server puts on a page. */
+export const MOST_SHARED = 6;
+
+/** Save a page of the compared buttons that needs nothing outside itself. */
+export function share({ overlay, velocity_mm_s }: Shown): void {
+  call("library.page", { ids: [...overlay], velocity_mm_s }).then(
+    ({ name, html }) => download(name, html, "text/html"),
+    tell,
+  );
 }
 
 function origin(): string {
