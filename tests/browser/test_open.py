@@ -88,7 +88,7 @@ def test_a_file_is_opened_and_kept_by_keys_alone(page: Page, tmp_path: Path) -> 
     page.wait_for_selector(".edit-points")
     expect(page).to_have_url(re.compile("#/edit/own%3AOf%20my%20own"))
     with page.expect_file_chooser():
-        page.keyboard.press("Control+o")
+        page.keyboard.press("o")
 
 
 def test_a_name_that_is_taken_is_refused_beside_it(page: Page, tmp_path: Path) -> None:
