@@ -31,7 +31,7 @@ def drag(page: Page, kinds: Sequence[str], *paths: Path) -> None:
     line = page.context.new_cdp_session(page)
     data = {"items": [], "files": [str(path) for path in paths], "dragOperationsMask": 1}
     for kind in kinds:
-        line.send("Input.dispatchDragEvent", {"type": kind, "x": 500, "y": 400, "data": data})
+        line.send("Input.dispatchDragEvent", {"type": kind, "x": 300, "y": 400, "data": data})
     line.detach()
 
 

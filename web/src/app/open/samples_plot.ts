@@ -5,7 +5,7 @@ import type { Held } from "./opening";
 
 const HEIGHT_px = 230;
 const RELEASE_DASH = [6, 4] as const;
-const DOT_px = 1.3;
+const DOT_px = 2.6;
 /** Of all strokes together: more than can be told apart. */
 const MOST_DOTS = 6000;
 
@@ -25,7 +25,7 @@ export function samplesPlot(button: Held): Plot {
       brush.line(x_mm.map(view.x.px), force_cN.map(view.y.px), {
         colour: series(speeds.indexOf(velocity_mm_s)).colour,
         dash: stroke === "release" ? RELEASE_DASH : [],
-        width_px: 2,
+        width_px: 1.5,
       });
   };
   return new Plot({
@@ -39,7 +39,7 @@ export function samplesPlot(button: Held): Plot {
 }
 
 function dot(brush: Brush, at: { readonly x_px: number; readonly y_px: number }): void {
-  brush.circle(at, DOT_px, { colour: palette().muted, opacity: 0.55 });
+  brush.circle(at, DOT_px, { colour: palette().muted, opacity: 0.3 });
 }
 
 /** What the curves take: samples beyond, of the stop, would leave them flat. */

@@ -1,7 +1,6 @@
 /** How the buttons of the overlay are distinguished: colour and dash; more than twelve are dimmed. */
 
 import { palette, SERIES_DASH, type Stroke } from "../../draw";
-import { svg } from "../../ui";
 
 export const DISTINCT = 12;
 const DASH_step = 3;
@@ -13,20 +12,4 @@ export function strokeOf(n: number): Stroke {
   const round = Math.floor(n / series.length);
   const dash = SERIES_DASH[(n + DASH_step * round) % SERIES_DASH.length] as readonly number[];
   return { colour: series[n % series.length] as string, dash, width_px: 2 };
-}
-
-/** A sample of the stroke, for legends and tables. */
-export function swatch(n: number): SVGElement {
-  const stroke = () => strokeOf(n);
-  const line = svg("line", {
-    x1: 1,
-    y1: 5,
-    x2: 33,
-    y2: 5,
-    stroke: () => stroke().colour,
-    "stroke-width": 2.5,
-    "stroke-opacity": () => stroke().opacity ?? 1,
-    "stroke-dasharray": () => (stroke().dash ?? []).join(" "),
-  });
-  return svg("svg", { class: "swatch", width: 34, height: 10, "aria-hidden": "true" }, line);
 }

@@ -79,6 +79,16 @@ export class LibraryStore {
     return at === undefined ? null : (this.rows.ids[at] ?? null);
   }
 
+  /** Return the name of a button; its id while the row is not here. */
+  nameOf(id: string): string {
+    return this.rows.names[this.rows.at(id)] ?? id;
+  }
+
+  /** Sort the list by how much its buttons feel like one. */
+  findLike(id: string | null): void {
+    if (id) this.ask({ like: id, text: "", sort: "match", descending: false });
+  }
+
   rescan(): void {
     call("library.rescan", {}).catch(tell);
   }
