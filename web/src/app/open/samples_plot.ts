@@ -6,7 +6,7 @@ import type { Held } from "./opening";
 const HEIGHT_px = 230;
 const RELEASE_DASH = [6, 4] as const;
 const DOT_px = 2.6;
-/** Of all strokes together: more than can be told apart. */
+/** Of all strokes together: more than the eye separates. */
 const MOST_DOTS = 6000;
 
 export function samplesPlot(button: Held): Plot {
