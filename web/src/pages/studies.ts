@@ -1,17 +1,15 @@
 /** Studies: declare, freeze, have people sit down, see how far they are, unseal. Never what a label hides. */
 
+import { mount, unmount } from "svelte";
 import type { Page } from "../app/types";
-import { h } from "../ui";
-import { studyList } from "./studies/list";
-import { studyPage } from "./studies/one";
-import "./studies/studies.css";
+import { onCleanup } from "../ui";
+import StudyList from "./studies/StudyList.svelte";
+import StudyPage from "./studies/StudyPage.svelte";
 
 export const page: Page = {
   title: "Studies",
-  mount(host, route) {
-    const place = h("div", { class: "sts-page" });
-    host.append(place);
-    if (route.id) studyPage(place, route.id);
-    else studyList(place);
+  mount(target, { id }) {
+    const made = id ? mount(StudyPage, { target, props: { study: id } }) : mount(StudyList, { target });
+    onCleanup(() => void unmount(made));
   },
 };
