@@ -12,13 +12,23 @@ export interface Shortcut {
   readonly always?: boolean;
 }
 
-/** All shortcuts that work now. */
+let working: readonly Shortcut[] = [];
+/** All shortcuts that work, to be shown. */
 export const shortcuts = signal<readonly Shortcut[]>([]);
 
 /** Add shortcuts for as long as the scope in which this is called lasts. */
 export function addShortcuts(...added: Shortcut[]): void {
-  shortcuts.update((list) => [...list, ...added]);
-  onCleanup(() => shortcuts.update((list) => list.filter((one) => !added.includes(one))));
+  work([...working, ...added]);
+  onCleanup(() => work(working.filter((one) => !added.includes(one))));
+}
+
+/**
+ * They work at once and are shown a moment later: while a component is made or goes nothing else may be drawn,
+ * and one that goes would read from the signal what was in it before.
+ */
+function work(next: readonly Shortcut[]): void {
+  working = next;
+  queueMicrotask(() => shortcuts.set(working));
 }
 
 /** Write what was pressed as shortcuts are written. */
@@ -47,9 +57,9 @@ export function listenForShortcuts(): void {
   document.addEventListener("keydown", (event) => {
     if (event.defaultPrevented) return;
     const pressed = pressedKeys(event);
-    const found = shortcuts
-      .peek()
-      .findLast((one) => one.act && one.keys === pressed && (one.always || !typing(event.target)));
+    const found = working.findLast(
+      (one) => one.act && one.keys === pressed && (one.always || !typing(event.target)),
+    );
     // a focused control keeps the keys that work it
     const own =
       event.target instanceof HTMLElement &&

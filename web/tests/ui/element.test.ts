@@ -107,10 +107,12 @@ describe("shortcuts", () => {
     expect(event("ArrowUp", { shiftKey: true })).toBe("Shift+ArrowUp");
   });
 
-  it("end with the scope that added them", () => {
+  it("end with the scope that added them", async () => {
     const end = scope(() => addShortcuts({ keys: "x", does: "nothing", act: () => undefined }));
+    await Promise.resolve();
     expect(shortcuts()).toHaveLength(1);
     end();
+    await Promise.resolve();
     expect(shortcuts()).toHaveLength(0);
   });
 });
