@@ -1,18 +1,17 @@
 /** Optimise: play a task with one design after the other, and find the button that one plays best with. */
 
+import { mount, unmount } from "svelte";
 import type { Page } from "../app/types";
-import { h } from "../ui";
-import { runList } from "./optimize/list";
-import { runPage } from "./optimize/run";
-import "./optimize/optimize.css";
+import { onCleanup } from "../ui";
+import RunList from "./optimize/RunList.svelte";
+import RunPage from "./optimize/RunPage.svelte";
 
 export const page: Page = {
   title: "Optimise",
-  mount(host, route) {
-    const place = h("div", { class: "opt-page" });
-    host.append(place);
-    const run = Number(route.id);
-    if (route.id && Number.isInteger(run)) runPage(place, run);
-    else runList(place);
+  mount(target, { id }) {
+    const run = Number(id);
+    const made =
+      id && Number.isInteger(run) ? mount(RunPage, { target, props: { run } }) : mount(RunList, { target });
+    onCleanup(() => void unmount(made));
   },
 };

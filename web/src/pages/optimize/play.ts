@@ -19,8 +19,9 @@ import {
   round,
   type Strip,
 } from "./game";
-import { SIMULATED } from "./table";
 
+/** No device is pressed: the simulated button, with key, mouse or touch. */
+export const SIMULATED = "";
 /** A clock that is not known yet is asked often, later now and then; this tells the server too that somebody is here. */
 const SOON_ms = 80;
 const LATER_ms = 500;

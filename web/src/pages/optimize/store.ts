@@ -39,6 +39,12 @@ export class RunStore extends Followed<OptimizeDetail> {
     );
   }
 
+  /** Whether the budget is used up. */
+  full(): boolean {
+    const row = this.detail()?.row;
+    return !!row && row.spent >= row.budget;
+  }
+
   /** Name of the first objective. */
   objective(): string {
     return this.detail()?.objectives[0]?.name ?? "asynchrony_ms";
@@ -71,6 +77,12 @@ export function named(name: string): { readonly label: string; readonly unit: st
     .sort((a, b) => b.length - a.length)[0];
   if (suffix === undefined) return { label: name.replaceAll("_", " "), unit: "" };
   return { label: name.slice(0, -suffix.length - 1).replaceAll("_", " "), unit: UNITS[suffix] as string };
+}
+
+/** Write a name with its unit for the head of a column or row. */
+export function headed(name: string): string {
+  const { label, unit } = named(name);
+  return unit ? `${label}, ${unit}` : label;
 }
 
 export function scoreText(score: OptimizeScore | undefined, unit: string): string {
