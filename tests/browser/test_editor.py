@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
+from fdvv.model.bump import find_bump
 from fdvv.model.curve import ForceCurve
 from fdvv.model.file import load_builtin, load_model
 from fdvv.model.model import FDVVModel
@@ -387,3 +388,30 @@ def test_escape_closes_found_buttons_only_where_they_are_searched(editor: Page) 
     expect(found).not_to_have_count(0)
     editor.get_by_role("searchbox").first.press("Escape")
     expect(found).to_have_count(0)
+
+
+def test_a_slider_drags_the_whole_button_as_one_step(editor: Page, tmp_path: Path) -> None:
+    """Lighter with the same bump, by mouse; longer, by the keyboard."""
+    before = load_builtin("mx-clear")
+    slider = editor.get_by_label("Force, same bump")
+    box = slider.bounding_box()
+    assert box is not None
+    y = box["y"] + box["height"] / 2
+    editor.mouse.move(box["x"] + box["width"] / 2, y)
+    editor.mouse.down()
+    for part in (0.45, 0.4, 0.35):
+        editor.mouse.move(box["x"] + part * box["width"], y)
+    editor.mouse.up()
+    expect(editor.get_by_role("button", name="Undo: scale: force, same bump")).to_be_enabled()
+    expect(slider).to_have_value("100")
+    saved(editor)
+    lighter = own_model(tmp_path / "project")
+    old, new = (find_bump(x := np.linspace(0.3, 3.9, 400), slowest(m).force_cN(x)) for m in (before, lighter))
+    assert old is not None
+    assert new is not None
+    assert new.peak_cN < 0.95 * old.peak_cN
+    assert new.drop_cN == pytest.approx(old.drop_cN, rel=0.15)
+    editor.get_by_label("Travel", exact=True).last.press("ArrowLeft")
+    expect(editor.get_by_role("button", name="Undo: scale: travel")).to_be_enabled()
+    saved(editor)
+    assert own_model(tmp_path / "project").travel_mm == pytest.approx(0.99 * before.travel_mm)

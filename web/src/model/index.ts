@@ -73,3 +73,4 @@ export {
   setModes,
   setOnset,
 } from "./vibrations";
+export { scaleBase, scaleBump, scaleForce, stretchTravel, type Whose } from "./whole";
