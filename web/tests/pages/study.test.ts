@@ -4,6 +4,7 @@
 import { beforeEach, describe, expect, it } from "vitest";
 import type { StudyTask } from "../../src/net/messages";
 import { Draft } from "../../src/pages/study/answer";
+import { read } from "../../src/pages/study/form";
 import { keepCard, keptCard } from "../../src/pages/study/keep";
 import { clock } from "../../src/pages/study/rest";
 import { languageName, type Word, word } from "../../src/pages/study/words";
@@ -126,4 +127,18 @@ describe("words", () => {
 
 it("what is left of a break is shown in minutes and seconds", () => {
   expect([180, 61.2, 59.01, 0, -3].map(clock)).toEqual(["3:00", "1:02", "1:00", "0:00", "0:00"]);
+});
+
+describe("what is filled in", () => {
+  const AGE = { name: "age", question: "How old?", required: true, choices: [], low: 18, high: 99 };
+  it("is a number within its range, written with a point or a comma", () => {
+    expect(read(AGE, " 18,5 ")).toBe(18.5);
+    expect([read(AGE, "17"), read(AGE, "100"), read(AGE, "old"), read(AGE, " ")]).toEqual(
+      Array(4).fill(undefined),
+    );
+  });
+  it("may be left out where it is not required", () => {
+    expect(read({ ...AGE, required: false }, "")).toBeNull();
+    expect(read({ ...AGE, low: null, high: null }, " text ")).toBe("text");
+  });
 });

@@ -12,6 +12,12 @@ type Ask = Channels["study"]["asks"];
 /** look: nobody sits here. card: it is to be written down. step: as the step says. stopped: see reason. */
 export type SessionStatus = "opening" | "look" | "card" | "step" | "stopped";
 
+export interface StudyView {
+  onReady(ready: StudyReady): void;
+  onFelt(): void;
+  onFrame(frame: StudyFrame): void;
+}
+
 const HERE_ms = 1000;
 
 export class StudySession implements FingerTarget {
@@ -34,9 +40,8 @@ export class StudySession implements FingerTarget {
   /** What was sent waits for its answer. */
   readonly waiting: Signal<boolean> = signal(false);
   readonly reason: Signal<string> = signal("");
-  onReady: (ready: StudyReady) => void = () => undefined;
-  onFelt: () => void = () => undefined;
-  onFrame: (frame: StudyFrame) => void = () => undefined;
+  /** The trial that is shown: it hears of what it feels at once. */
+  view: StudyView | null = null;
   private channel: LiveChannel<"study"> | null = null;
 
   constructor(
@@ -168,9 +173,9 @@ export class StudySession implements FingerTarget {
 
   private take(message: Tell): void {
     batch(() => this.taken(message));
-    if (message.type === "felt") this.onFelt();
-    else if (message.type === "ready") this.onReady(message);
-    else if (message.type === "frame") this.onFrame(message);
+    if (message.type === "felt") this.view?.onFelt();
+    else if (message.type === "ready") this.view?.onReady(message);
+    else if (message.type === "frame") this.view?.onFrame(message);
   }
 
   private taken(message: Tell): void {
