@@ -32,7 +32,10 @@ LONGEST_NAME_bytes = 200
 
 
 class DroppedFile(Message):
-    """A file of the person's. name : with its folders, separated by slashes."""
+    """A file of the person's.
+
+    name : with its folders, separated by slashes. content : its bytes, in base64.
+    """
 
     name: Annotated[str, Meta(min_length=1, max_length=1000)]
     content: bytes
@@ -61,7 +64,10 @@ class FileSamples(Message):
 
 
 class FileFit(Message):
-    """How closely a curve follows its samples. bump_kept_ratio : null where there is no bump."""
+    """How closely a curve follows its samples.
+
+    rmse_cN : of the samples. control_points : how many the curve has. bump_kept_ratio : null without a bump.
+    """
 
     stroke: str
     velocity_mm_s: Number
