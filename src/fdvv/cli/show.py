@@ -147,8 +147,8 @@ def show(
         return
     if button and Path(button).is_dir():
         if figure or report:
-            option = "--figure" if figure else "--report"
-            raise click.UsageError(f"{option} is of one button, and {button} is a folder")
+            option = "--figure draws" if figure else "--report shows"
+            raise click.UsageError(f"{option} one button, and {button} is a folder")
         _show_folder(Path(button), velocity_mm_s, as_json)
         return
     model = open_button(button)
