@@ -27,11 +27,10 @@ done
 lock=requirements.lock only_uv=$(mktemp)
 trap 'rm -f "$only_uv"' EXIT
 awk '/^[^ ]/ { on = /^uv==/ } on' "$lock" > "$only_uv"
-# uv installs ten times faster; where it cannot be had, pip does the same work
-if "${pip[@]}" --require-hashes -r "$only_uv" 2>/dev/null; then
-  pip=("$venv/bin/uv" pip install --quiet --python "$venv/bin/python")
-  "${pip[@]}" --compile-bytecode --require-hashes -r "$lock"
-else
+# uv installs ten times faster; where it cannot be had, or cannot reach what pip can, pip does the same work
+uv=("$venv/bin/uv" pip install --quiet --python "$venv/bin/python")
+if ! { "${pip[@]}" --require-hashes -r "$only_uv" && "${uv[@]}" --compile-bytecode --require-hashes -r "$lock"; } 2>/dev/null
+then
   "${pip[@]}" --require-hashes -r "$lock"
 fi
 "${pip[@]}" --no-deps --no-build-isolation "${here[@]}" -e extras/fdvv-botorch
