@@ -95,3 +95,11 @@ def test_a_snap_between_coarse_samples_is_not_doubted() -> None:
     x = np.arange(0, 4, 0.1)
     force = np.interp(x, [0, 0.2, 0.4, 1.5, 1.6, 1.7, 4], [0, 5, 40, 65, 25, 60, 80])
     assert list(distorted_active(MeasuredCurve(x, force, Stroke.PRESS))) == []
+
+
+def test_a_bench_that_begins_on_the_cap_is_no_fault(tmp_path: Path) -> None:
+    """Press and release begin and end where the cap already bears the probe with 40 cN."""
+    x = np.arange(201) / 50
+    press = 40 + 8 * x - 20 * np.maximum(0.0, 1 - np.abs(x - 2) / 0.5)
+    path = write(tmp_path, np.concatenate([x, x[::-1]]), np.concatenate([press, press[::-1] - 6]))
+    assert [str(fit.curve.stroke) for fit in fit_file(path).fits] == ["press", "release"]
