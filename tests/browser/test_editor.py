@@ -402,7 +402,8 @@ def test_a_slider_drags_the_whole_button_as_one_step(editor: Page, tmp_path: Pat
     for part in (0.45, 0.4, 0.35):
         editor.mouse.move(box["x"] + part * box["width"], y)
     editor.mouse.up()
-    expect(editor.get_by_role("button", name="Undo: scale: force, same bump")).to_be_enabled()
+    undo = editor.get_by_role("button", name=re.compile(r"^Undo: all curves: force ×0\.\d+, same bump$"))
+    expect(undo).to_be_enabled()
     expect(slider).to_have_value("100")
     saved(editor)
     lighter = own_model(tmp_path / "project")
@@ -411,7 +412,7 @@ def test_a_slider_drags_the_whole_button_as_one_step(editor: Page, tmp_path: Pat
     assert new is not None
     assert new.peak_cN < 0.95 * old.peak_cN
     assert new.drop_cN == pytest.approx(old.drop_cN, rel=0.15)
-    editor.get_by_label("Travel", exact=True).last.press("ArrowLeft")
-    expect(editor.get_by_role("button", name="Undo: scale: travel")).to_be_enabled()
+    editor.locator(".edit-whole input[type=range]").last.press("ArrowLeft")
+    expect(editor.get_by_role("button", name="Undo: stretch the travel to 3.96 mm")).to_be_enabled()
     saved(editor)
     assert own_model(tmp_path / "project").travel_mm == pytest.approx(0.99 * before.travel_mm)
