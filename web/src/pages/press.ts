@@ -3,6 +3,7 @@
 import { keepQuery, type Route } from "../app/route";
 import type { Page } from "../app/types";
 import { download } from "../draw";
+import { wavOf } from "../math/wav";
 import { call } from "../net";
 import type { PressList } from "../net/messages";
 import { addShortcuts, button, effect, h, onCleanup, scope, tell, untracked } from "../ui";
@@ -10,7 +11,6 @@ import { Chooser, type Pick } from "./press/choose";
 import { replayPanel } from "./press/replay";
 import { rendered } from "./press/sound";
 import { type Mode, type PressStage, pressStage } from "./press/stage";
-import { wavOf } from "./press/wav";
 import "./press/press.css";
 
 const RATE_Hz = 48_000;
@@ -69,7 +69,9 @@ function tools(stage: PressStage): HTMLElement {
     const velocity_mm_s = session.lastPress.peek()?.velocity_mm_s ?? 100;
     download(
       `${session.ready.peek()?.name ?? "click"}.wav`,
-      wavOf(await rendered(first, velocity_mm_s, RATE_Hz), RATE_Hz),
+      new Blob([wavOf(await rendered(first, velocity_mm_s, RATE_Hz), RATE_Hz, "float32")], {
+        type: "audio/wav",
+      }),
     );
   };
   return h(

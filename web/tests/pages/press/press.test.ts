@@ -1,9 +1,9 @@
 import { describe, expect, it } from "vitest";
+import { wavOf } from "../../../src/math/wav";
 import { whatOf } from "../../../src/pages/press/choose";
 import { Latency } from "../../../src/pages/press/latency";
 import { Rolling } from "../../../src/pages/press/rolling";
 import { loudness, Steady } from "../../../src/pages/press/sound";
-import { wavOf } from "../../../src/pages/press/wav";
 
 describe("the rows of a live press", () => {
   it("are given from a time on, oldest first, the last one always", () => {
@@ -82,7 +82,7 @@ describe("the click", () => {
   });
 
   it("is written as a file that says what it holds", async () => {
-    const bytes = new DataView(await wavOf(Float32Array.of(0, 0.5, -1), 48_000).arrayBuffer());
+    const bytes = new DataView(wavOf(Float32Array.of(0, 0.5, -1), 48_000, "float32"));
     expect(bytes.byteLength).toBe(56);
     expect(bytes.getUint32(24, true)).toBe(48_000);
     expect(bytes.getUint32(40, true)).toBe(12);
