@@ -128,9 +128,8 @@ def _safe_name(name: str) -> str:
     # the names of this folder and of the one above are no names of files
     name = name if name.strip(".") else "file"
     stem, suffix = PurePosixPath(name).stem, PurePosixPath(name).suffix[:20]
-    while len(f"{stem}{suffix}".encode()) > LONGEST_NAME_bytes:
-        stem = stem[:-1]
-    return f"{stem}{suffix}"
+    fits = stem.encode()[: LONGEST_NAME_bytes - len(suffix.encode())].decode(errors="ignore")
+    return f"{fits}{suffix}"
 
 
 def _button(studio: Studio, ask: FilesAsk, path: Path) -> FileButton:
