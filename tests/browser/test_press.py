@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from numpy.lib.stride_tricks import sliding_window_view
+from playwright.sync_api import expect
 
 from fdvv.model.file import load_builtin
 from fdvv.vibration.wave import vibration_samples
@@ -71,6 +73,34 @@ def test_the_space_bar_presses_as_long_as_it_is_held(page: Page, wire: Wire) -> 
     assert wire.events("actuation")[0]["displacement_mm"] == pytest.approx(actuation_mm, abs=0.05)
 
 
+def test_what_a_press_found_is_said_with_the_next_step(page: Page, wire: Wire) -> None:
+    verdict = page.get_by_label("Verdict")
+    expect(verdict).to_have_text(re.compile("Hold the space bar, or press the cap"))
+    page.keyboard.down(" ")
+    page.wait_for_selector(DOWN)
+    page.keyboard.up(" ")
+    expect(verdict).to_contain_text("let go")
+    found = re.search(
+        r"Clicked at (.*) mm under (.*) cN; it let go at (.*) mm. Simulated.", verdict.inner_text()
+    )
+    assert found is not None
+    places = [wire.events(kind)[0]["displacement_mm"] for kind in ("actuation", "reset")]
+    assert [float(found[1]), float(found[3])] == pytest.approx(places, abs=0.06)
+    force_cN = load_builtin("mx-clear").nearest("press", 0.5).force_cN(places[0])
+    assert float(found[2]) == pytest.approx(force_cN, abs=8)
+    verdict.get_by_role("link", name="Render it on a rig").click()
+    page.wait_for_url("**/#/live/compensate?button=builtin*mx-clear*")
+
+
+def test_the_button_that_is_worked_on_is_under_the_finger(page: Page, wire: Wire) -> None:
+    page.select_option("select >> nth=0", "button builtin:mx-red")
+    page.wait_for_selector(".press-view[aria-label^='mx-red']")
+    page.goto(f"{page.url.partition('#')[0]}#/library")
+    page.wait_for_selector("html[data-ready=library]")
+    page.goto(f"{page.url.partition('#')[0]}#/press")
+    page.wait_for_selector(".press-view[aria-label^='mx-red']")
+
+
 def test_the_finger_follows_the_mouse_down_and_up(page: Page, wire: Wire) -> None:
     page.mouse.move(*place(page, 0.1))
     page.mouse.down()
@@ -129,6 +159,7 @@ def test_the_click_that_is_saved_is_the_models_vibration(page: Page, wire: Wire)
     page.wait_for_selector(DOWN)
     page.keyboard.up(" ")
     presses(page, 1)
+    page.click("text=Advanced")
     with page.expect_download() as saved:
         page.click("text=Save the click")
     heard = np.frombuffer(saved.value.path().read_bytes()[HEAD_bytes:], "<f4").astype(float)
@@ -205,6 +236,7 @@ def test_a_page_that_is_hidden_is_not_simulated_for(page: Page, wire: Wire) -> N
 
 
 def test_a_fault_says_why_and_is_cleared(page: Page, wire: Wire) -> None:
+    page.click("text=Advanced")
     page.click("text=Break its sensor")
     page.wait_for_selector(".press-fault")
     assert "position_stuck" in page.inner_text(".press-fault")

@@ -34,6 +34,8 @@ const ROWS: readonly (keyof Landmarks)[] = [
   "work_mJ",
 ];
 const POINTS = 240;
+/** Enough for the stiffest design of the paper's space, 310 cN at any place. */
+export const STIFFEST_PUSH_cN = 350;
 
 export async function fetched(run: number, start: Design, found: Design): Promise<Models> {
   const model = async (design: Design, name: string) =>

@@ -3,7 +3,7 @@
 import { ClockSync, type LiveChannel, live } from "../../net";
 import type { Channels, PlayKept, PlayReady } from "../../net/messages";
 import { onCleanup, type Signal, signal } from "../../ui";
-import { Clicker } from "../press/stage";
+import { Clicker } from "../press/sound";
 import { delays, displayDelay, FrameClock } from "./delays";
 import {
   drawn,

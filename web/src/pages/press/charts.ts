@@ -1,7 +1,7 @@
 /** The rendered force: over displacement beside the target, and over time. */
 
-import { type Brush, Plot, palette, series, type View } from "../../draw";
-import { effect, h } from "../../ui";
+import { type Brush, Plot, palette, type Range, series, type View } from "../../draw";
+import { effect } from "../../ui";
 import type { PressSession } from "./session";
 
 /** How much of the past is drawn over displacement, and over time. */
@@ -84,77 +84,59 @@ function drawTrail(brush: Brush, view: View, session: PressSession): void {
   );
 }
 
+type Column = "force_cN" | "displacement_mm";
+
 /** Force and displacement over the last seconds. */
-export function timePlots(session: PressSession): HTMLElement {
+export function timePlots(session: PressSession): readonly Plot[] {
+  const travel_mm = () => session.ready()?.travel_mm ?? 4;
+  const force_cN = () => ({ low: -5, high: extent(session).most_cN });
+  const plots = [
+    timePlot(session, "force_cN", { label: "force", unit: "cN" }, force_cN, 92),
+    timePlot(
+      session,
+      "displacement_mm",
+      { label: "displacement", unit: "mm" },
+      () => ({ low: -0.3, high: travel_mm() + 0.6 }),
+      84,
+    ),
+  ];
   let drawn_s = 0;
-  const make = (
-    label: string,
-    axis: { label: string; unit: string },
-    range: () => [number, number],
-    which: "force_cN" | "displacement_mm",
-    n: number,
-    height_px: number,
-  ) =>
-    new Plot({
-      label,
-      x: { label: "time before now", unit: "s" },
-      y: axis,
-      whole: () => {
-        const [low, high] = range();
-        return { x: { low: -SHOWN_s, high: 0 }, y: { low, high } };
-      },
-      still: (brush, view) => {
-        const at = { x_px: view.box.left + 6, y_px: view.box.top + 7 };
-        brush.text(`${axis.label}, ${axis.unit}`, at, {
-          colour: palette().muted,
-          size_px: 11,
-          halo: palette().surface,
-        });
-      },
-      moving: (brush, view) => {
-        const rows = session.rows.since(session.rows.now_s() - SHOWN_s, 4);
-        const now_s = session.rows.now_s();
-        const { colour, dash } = series(n);
-        brush.line(
-          rows.t_s.map((t) => view.x.px(t - now_s)),
-          rows[which].map(view.y.px),
-          { colour, dash, width_px: 1.5 },
-        );
-      },
-      height_px,
-      small: true,
-    });
-  const travel = () => session.ready()?.travel_mm ?? 4;
-  const most = () => extent(session).most_cN;
-  const force = make(
-    "Force over the last seconds, simulated",
-    { label: "force", unit: "cN" },
-    () => [-5, most()],
-    "force_cN",
-    1,
-    92,
-  );
-  const place = make(
-    "Displacement over the last seconds, simulated",
-    { label: "displacement", unit: "mm" },
-    () => [-0.3, travel() + 0.6],
-    "displacement_mm",
-    2,
-    84,
-  );
   effect(() => {
     session.frame();
     const now_s = session.rows.now_s();
     if (calm() && now_s - drawn_s < CALM_s && now_s > drawn_s) return;
     drawn_s = now_s;
-    force.move();
-    place.move();
+    for (const plot of plots) plot.move();
   });
-  return h(
-    "div",
-    { class: "press-time" },
-    force.element,
-    place.element,
-    h("div", { class: "press-axis" }, "time before now, s"),
-  );
+  return plots;
+}
+
+function timePlot(
+  session: PressSession,
+  which: Column,
+  y: { label: string; unit: string },
+  range: () => Range,
+  height_px: number,
+): Plot {
+  const { colour, dash } = series(which === "force_cN" ? 1 : 2);
+  return new Plot({
+    label: `${y.label[0]?.toUpperCase()}${y.label.slice(1)} over the last seconds, simulated`,
+    x: { label: "time before now", unit: "s" },
+    y,
+    whole: () => ({ x: { low: -SHOWN_s, high: 0 }, y: range() }),
+    still: (brush, { box }) =>
+      brush.text(
+        `${y.label}, ${y.unit}`,
+        { x_px: box.left + 6, y_px: box.top + 7 },
+        { colour: palette().muted, size_px: 11, halo: palette().surface },
+      ),
+    moving: (brush, view) => {
+      const rows = session.rows.since(session.rows.now_s() - SHOWN_s, 4);
+      const now_s = session.rows.now_s();
+      const x = rows.t_s.map((t) => view.x.px(t - now_s));
+      brush.line(x, rows[which].map(view.y.px), { colour, dash, width_px: 1.5 });
+    },
+    height_px,
+    small: true,
+  });
 }

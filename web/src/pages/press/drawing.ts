@@ -2,7 +2,7 @@
 
 import { type Brush, CanvasBrush, linear, palette, type Scale, series } from "../../draw";
 import type { PressFrame, PressReady } from "../../net/messages";
-import { effect, h, onCleanup, shown } from "../../ui";
+import { effect, onCleanup, shown } from "../../ui";
 
 /** How far above the resting cap, and below the stop, there is room, mm. */
 const ABOVE_mm = 3.2;
@@ -27,7 +27,8 @@ export function stageScale(travel_mm: number, height_px: number): Scale {
 
 /** A canvas that draws what `see` gives with every frame of the screen on which something changed. */
 export function stageCanvas(see: () => Seen | null, drawn: () => void): HTMLCanvasElement {
-  const canvas = h("canvas", { "aria-hidden": "true" });
+  const canvas = document.createElement("canvas");
+  canvas.ariaHidden = "true";
   let asked = 0;
   const paint = () => {
     asked = 0;
@@ -78,7 +79,7 @@ function drawStage(brush: Brush, seen: Seen, width_px: number, height_px: number
     width_px: wide_px,
     height_px,
     left_px,
-    middle_px: left_px + wide_px * (seen.blind ? 0.5 : 0.42),
+    middle_px: left_px + wide_px * (seen.blind ? 0.5 : 0.4),
   };
   drawHousing(brush, place, seen.ready.travel_mm);
   drawCap(brush, place, cap_mm, (seen.frame?.key ?? 0) > 0, !seen.blind);
@@ -181,7 +182,7 @@ function drawForce(brush: Brush, p: Place, force_cN: number, cap_mm: number): vo
 /** Travel with its marks; the place of the cap's top beside it. */
 function drawRuler(brush: Brush, p: Place, ready: Seen["ready"], cap_mm: number): void {
   const { muted, text, accent, surface, danger } = palette();
-  const x = p.left_px + p.width_px * 0.79;
+  const x = p.left_px + p.width_px * 0.76;
   brush.line([x, x], [p.y.px(0), p.y.px(ready.travel_mm)], { colour: muted, width_px: 1.5 });
   for (let mm = 0; mm <= ready.travel_mm + 1e-6; mm += 0.5) {
     const [y, long] = [p.y.px(mm), Number.isInteger(mm)];

@@ -23,6 +23,14 @@ export interface Choice {
   readonly rig: string;
 }
 
+/** One press: where and under what force the key closed at first, where it opened at last, how deep the cap went. */
+export interface Stroke {
+  readonly clicked: { readonly displacement_mm: number; readonly force_cN: number } | null;
+  readonly reset_mm: number | null;
+  readonly deepest_mm: number;
+}
+const NO_STROKE: Stroke = { clicked: null, reset_mm: null, deepest_mm: 0 };
+
 export type SessionStatus = "empty" | "starting" | "running" | "paused" | "lost" | "over";
 
 /** A page that is looked at says so this often; the server waits three times as long. */
@@ -39,6 +47,8 @@ export class PressSession {
   readonly presses: Signal<number> = signal(0);
   readonly actuations: Signal<number> = signal(0);
   readonly lastPress: Signal<PressHappened | null> = signal<PressHappened | null>(null);
+  /** What happened in it; null before the first. */
+  readonly stroke: Signal<Stroke | null> = signal<Stroke | null>(null);
   readonly fault: Signal<string> = signal("");
   /** Why the force loop is open; empty while it is not, and on rigs without one. */
   readonly opened: Signal<string> = signal("");
@@ -50,6 +60,8 @@ export class PressSession {
   onReady: (ready: PressReady) => void = () => undefined;
   private readonly channel: LiveChannel<"press">;
   private choice: Choice | null = null;
+  /** The press that is not over yet. */
+  private going = NO_STROKE;
   private sequence = 0;
 
   constructor() {
@@ -136,6 +148,7 @@ export class PressSession {
 
   private takeReady(ready: PressReady): void {
     this.rows.clear();
+    this.going = NO_STROKE;
     batch(() => {
       this.ready.set(ready);
       this.target.set(ready.meant);
@@ -144,6 +157,7 @@ export class PressSession {
       this.presses.set(0);
       this.actuations.set(0);
       this.lastPress.set(null);
+      this.stroke.set(null);
     });
     this.onReady(ready);
   }
@@ -159,13 +173,20 @@ export class PressSession {
   }
 
   private takeEvent(event: PressHappened): void {
-    if (event.kind === "actuation") this.actuations.update((n) => n + 1);
+    const { displacement_mm } = event;
+    if (event.kind === "actuation") {
+      this.actuations.update((n) => n + 1);
+      const force_cN = this.rows.since(event.t_s).force_cN[0] ?? 0;
+      this.going = { ...this.going, clicked: this.going.clicked ?? { displacement_mm, force_cN } };
+    } else if (event.kind === "reset") this.going = { ...this.going, reset_mm: displacement_mm };
     else if (event.kind === "fault") this.fault.set(event.told);
     else if (event.kind === "loop") this.opened.set(event.told);
     else if (event.kind === "pressed") {
       this.opened.set("");
       this.presses.update((n) => n + 1);
       this.lastPress.set(event);
+      this.stroke.set({ ...this.going, deepest_mm: displacement_mm });
+      this.going = NO_STROKE;
     }
   }
 

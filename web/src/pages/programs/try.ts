@@ -1,15 +1,19 @@
 /** A finger on the program as it is being edited; the state it is in shows in the graph. */
 
+import { mount, unmount } from "svelte";
 import { conditionValue, kindOf } from "../../programs/condition";
 import { type ProgramDocument, transitionsOf } from "../../programs/document";
 import { button, computed, effect, h, onCleanup, panel, untracked } from "../../ui";
-import { type PressStage, pressStage } from "../press/stage";
+import Stage from "../press/Stage.svelte";
+import { PressStage } from "../press/stage";
 import type { ProgramBook } from "./book";
 
 /** Put the program under a simulated finger; call in a scope. `live` is called with the state of the press. */
 export function tryPanel(book: ProgramBook, live: (state: string | null) => void): HTMLElement {
   const host = h("div", {});
-  const stage = pressStage(host, { compact: true, extra: (held) => hostEvents(book, held) });
+  const stage = new PressStage();
+  const made = mount(Stage, { target: host, props: { stage, compact: true } });
+  onCleanup(() => void unmount(made));
   followEdits(book, stage);
   effect(() => {
     const [ready, frame] = [stage.session.ready(), stage.session.frame()];
@@ -20,6 +24,7 @@ export function tryPanel(book: ProgramBook, live: (state: string | null) => void
     "Press it",
     h("p", { class: "muted", role: "status" }, () => standing(book)),
     host,
+    hostEvents(book, stage),
   );
   found.classList.add("try");
   return found;

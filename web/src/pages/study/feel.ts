@@ -1,7 +1,9 @@
 /** What is under the finger: how it is drawn, its click, and hands that press it. No force is drawn. */
 
 import { onCleanup } from "../../ui";
-import { Clicker, FingerInput, stageScale } from "../press/stage";
+import { stageScale } from "../press/drawing";
+import { FingerInput } from "../press/finger_input";
+import { Clicker } from "../press/sound";
 import type { StudySession } from "./session";
 
 /** How fast the space bar presses, and with what push at the bottom. */

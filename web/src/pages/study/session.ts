@@ -3,7 +3,7 @@
 import { type LiveChannel, live } from "../../net";
 import type { Channels, StudyAbout, StudyFrame, StudyReady, StudyStep } from "../../net/messages";
 import { batch, onCleanup, type Signal, signal } from "../../ui";
-import type { FingerTarget } from "../press/stage";
+import type { FingerTarget } from "../press/finger_input";
 import { Draft } from "./answer";
 import { type Card, forget, holder, keepCard, keptCard } from "./keep";
 

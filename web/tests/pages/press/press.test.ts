@@ -1,9 +1,11 @@
 import { describe, expect, it } from "vitest";
+import { parseRoute } from "../../../src/app/route";
 import { wavOf } from "../../../src/math/wav";
-import { whatOf } from "../../../src/pages/press/choose";
 import { Latency } from "../../../src/pages/press/latency";
+import { choiceOf, type Pick, pickOf } from "../../../src/pages/press/picks";
 import { Rolling } from "../../../src/pages/press/rolling";
 import { loudness, Steady } from "../../../src/pages/press/sound";
+import { sentence } from "../../../src/pages/press/verdict";
 
 describe("the rows of a live press", () => {
   it("are given from a time on, oldest first, the last one always", () => {
@@ -91,8 +93,38 @@ describe("the click", () => {
 });
 
 describe("what is pressed", () => {
+  const pick = (item: string): Pick => ({ item, mode: "intended", rig: "recommended" });
+
   it("keeps every part of an id", () => {
-    expect(whatOf("button own:my key: two")).toEqual({ button: "own:my key: two" });
-    expect(whatOf("program shipped:multi-level")).toEqual({ program: "shipped:multi-level" });
+    expect(choiceOf(pick("button own:my key: two")).what).toEqual({ button: "own:my key: two" });
+    expect(choiceOf(pick("program shipped:multi-level")).what).toEqual({ program: "shipped:multi-level" });
+  });
+
+  it("is what was chosen last on the page, else the button of the address, else the one worked on", () => {
+    const at = (hash: string) => pickOf(parseRoute(hash), "own:Mine").item;
+    expect(at("#/press/builtin:mx-red?press=program+shipped%3Abutton")).toBe("program shipped:button");
+    expect(at("#/press/builtin:mx-red")).toBe("button builtin:mx-red");
+    expect(at("#/press")).toBe("button own:Mine");
+    expect(pickOf(parseRoute("#/press"), "").item).toBe("button builtin:mx-clear");
+  });
+});
+
+describe("the sentence about a press", () => {
+  const clicked = { displacement_mm: 1.93, force_cN: 61.4 };
+
+  it("says where it clicked, under what force, and where it let go", () => {
+    const said = sentence({ clicked, reset_mm: 1.62, deepest_mm: 3.9 });
+    expect(said).toBe("Clicked at 1.9 mm under 61 cN; it let go at 1.6 mm.");
+  });
+
+  it("says that a key stayed down, and when it came up in a later press", () => {
+    expect(sentence({ clicked, reset_mm: null, deepest_mm: 3.9 })).toMatch(/it stayed down\.$/);
+    expect(sentence({ clicked: null, reset_mm: 0.5, deepest_mm: 2 })).toBe(
+      "Pressed to 2 mm: it let go at 0.5 mm.",
+    );
+  });
+
+  it("says what to do after a press without a click", () => {
+    expect(sentence({ clicked: null, reset_mm: null, deepest_mm: 1.2 })).toMatch(/push harder/);
   });
 });
