@@ -36,7 +36,7 @@ def own(gallery: Page) -> Iterator[Page]:
     """A copy of the shipped program `button`, open to be edited."""
     card = gallery.locator("article", has=gallery.get_by_role("link", name="button", exact=True))
     card.get_by_role("button", name="Copy and edit").click()
-    gallery.wait_for_selector(".verdict.accepted")
+    gallery.wait_for_selector(".verdict.good")
     yield gallery
     # what a test leaves unsaved would be asked about when the page closes
     gallery.locator(".save-state.saved, .save-state.refused").wait_for()
@@ -70,7 +70,7 @@ def test_every_shipped_program_opens_with_its_graph_and_is_accepted(
     for name in names:
         gallery.goto(f"{studio.base}/#/programs/shipped:{name}")
         gallery.get_by_role("heading", level=1, name=load_shipped(name).name, exact=True).wait_for()
-        gallery.wait_for_selector(".verdict.accepted")
+        gallery.wait_for_selector(".verdict.good")
         expect(gallery.locator(".node")).to_have_count(len(load_shipped(name).states))
         gallery.locator(".node.start").wait_for()
     assert not gallery.locator(".save-state.saved").count()
@@ -99,11 +99,11 @@ def test_a_state_and_its_ways_are_drawn_by_mouse_checked_saved_and_there_after_a
         own.mouse.move(*middle(state(own, end)), steps=5)
         own.mouse.up()
         own.locator(f".words[data-state='{begin}'][aria-pressed=true]").wait_for()
-    own.wait_for_selector(".verdict.accepted")
+    own.wait_for_selector(".verdict.good")
     edited(own)
 
     own.reload()
-    own.wait_for_selector(".verdict.accepted")
+    own.wait_for_selector(".verdict.good")
     expect(own.locator(".node")).to_have_count(3)
     kept = load_program(tmp_path / "project" / KEPT)
     assert [s.name for s in kept.states] == ["up", "down", "state"]
@@ -146,11 +146,11 @@ def test_a_planted_fault_is_listed_located_and_undone(own: Page) -> None:
     finding.click()
     assert state(own, "down").get_attribute("aria-pressed") == "true"
     own.keyboard.press("Control+z")
-    own.wait_for_selector(".verdict.accepted")
+    own.wait_for_selector(".verdict.good")
     own.keyboard.press("Control+Shift+z")
-    own.wait_for_selector(".verdict.refused")
+    own.wait_for_selector(".verdict.warning")
     own.get_by_role("button", name="Undo").click()
-    own.wait_for_selector(".verdict.accepted")
+    own.wait_for_selector(".verdict.good")
 
 
 def test_a_point_of_the_forces_is_pulled_by_mouse_and_nudged_by_keys(own: Page, tmp_path: Path) -> None:
@@ -207,7 +207,7 @@ def test_the_forces_of_another_button_are_taken(own: Page, tmp_path: Path) -> No
 def test_what_another_tab_saved_is_not_overwritten(own: Page, context: BrowserContext) -> None:
     other = context.new_page()
     other.goto(own.url)
-    other.wait_for_selector(".verdict.accepted")
+    other.wait_for_selector(".verdict.good")
     for page in (own, other):
         page.bring_to_front()
         state(page, "up").focus()
@@ -226,7 +226,7 @@ def test_a_recipe_makes_a_program_at_once(gallery: Page, tmp_path: Path) -> None
     recipe.get_by_label("Pull").fill("44")
     recipe.get_by_label("Pull").press("Enter")
     recipe.get_by_role("button", name="Create").click()
-    gallery.wait_for_selector(".verdict.accepted")
+    gallery.wait_for_selector(".verdict.good")
     kept = load_program(tmp_path / "project" / "programs" / "fast-tapping.fdvv-program.json")
     assert kept.surface("pull").force_cN[0][0] == -44
 
@@ -245,7 +245,7 @@ def test_a_file_is_uploaded_and_a_broken_one_refused_in_one_line(gallery: Page, 
 
     good = Path(__file__).resolve().parents[2] / "src/fdvv/program/library/rapid-trigger.fdvv-program.json"
     gallery.set_input_files("input[type=file]", good)
-    gallery.wait_for_selector(".verdict.accepted")
+    gallery.wait_for_selector(".verdict.good")
     with gallery.expect_download() as export:
         gallery.get_by_role("button", name="Export file").click()
     assert Path(export.value.path()).read_bytes() == good.read_bytes()
@@ -260,7 +260,7 @@ def test_a_deleted_program_is_taken_back(own: Page, studio: RunningStudio) -> No
     own.locator(".toast").get_by_role("button", name="Undo").click()
     card.wait_for()
     card.get_by_role("button", name="Open").click()
-    own.wait_for_selector(".verdict.accepted")
+    own.wait_for_selector(".verdict.good")
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
@@ -271,7 +271,7 @@ def test_nobody_is_kept_out(page: Page, studio: RunningStudio, theme: str) -> No
     page.wait_for_selector("article[aria-label='Recipe rapid-trigger']")
     assert audit(page) == []
     page.goto(f"{studio.base}/#/programs/shipped:dwell-ticks")
-    page.wait_for_selector(".verdict.accepted")
-    for choose in (".node.start", ".words", ".toolbar :text('Program')", ".way:text('tick')"):
+    page.wait_for_selector(".verdict.good")
+    for choose in (".node.start", ".words", ".toolbar :text('Program')", ".ways :text('tick')"):
         page.locator(choose).first.click()
         assert audit(page) == []

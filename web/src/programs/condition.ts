@@ -1,4 +1,10 @@
-import type { Condition, ConditionKind, ProgramDocument, VelocitySource } from "./document";
+import {
+  type Condition,
+  type ConditionKind,
+  type ProgramDocument,
+  transitionsOf,
+  type VelocitySource,
+} from "./document";
 
 /** What is known of a kind of condition. */
 export interface KindOfCondition {
@@ -155,4 +161,14 @@ export function firstCondition(document: ProgramDocument, from: string): Conditi
   return from === document.start
     ? condition("deeper_than_mm", part_mm(0.5))
     : condition("shallower_than_mm", part_mm(0.25));
+}
+
+/** Return the host events that a program waits for, rising. */
+export function eventsOf(document: ProgramDocument): readonly number[] {
+  const numbers = document.states
+    .flatMap(transitionsOf)
+    .flatMap(({ when, only_if }) => (only_if ? [when, only_if] : [when]))
+    .filter((held) => kindOf(held).kind === "host_event")
+    .map((held) => conditionValue(held) ?? 0);
+  return [...new Set(numbers)].sort((a, b) => a - b);
 }

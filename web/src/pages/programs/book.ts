@@ -6,7 +6,7 @@ import { type ProgramDocument, readDocument, writeDocument } from "../../program
 import { historyOf, type ProgramHistory } from "../../programs/history";
 import { type Choice, isThere, WHOLE } from "../../programs/path";
 import { problemsOf } from "../../programs/problems";
-import { computed, type Signal, signal } from "../../ui/signal.svelte";
+import { batch, computed, type Signal, signal } from "../../ui/signal.svelte";
 
 /** What a book needs of a server; all reject with one line for the person. */
 export interface ProgramServer {
@@ -76,6 +76,14 @@ export class ProgramBook {
   edit(label: string, change: (document: ProgramDocument) => ProgramDocument, nudge?: string): void {
     this.history.put(label, change(this.history.settled), { time_s: now_s(), nudge });
     this.changed();
+  }
+
+  /** Do an edit and choose what it made, or gave a new name. */
+  make(label: string, change: (document: ProgramDocument) => ProgramDocument, choice: Choice): void {
+    batch(() => {
+      this.edit(label, change);
+      this.choice.set(choice);
+    });
   }
 
   /** Choose what is looked at. */

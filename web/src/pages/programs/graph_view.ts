@@ -2,35 +2,37 @@
 
 import type { Point } from "../../programs/geometry";
 import type { Graph } from "../../programs/graph_layout";
-import { effect, onCleanup, signal } from "../../ui";
+import { onCleanup, signal } from "../../ui";
 
 const AIR = 26;
 const LARGEST = 1.25;
 const SMALLEST = 0.1;
 
-/** The window on a graph, kept in the `viewBox` of its root. */
+/** The window on a graph, for the `viewBox` of its root. */
 export class GraphView {
   private readonly size = signal({ width: 1, height: 1 });
   private readonly fingers = new Map<number, PointerEvent>();
   private readonly held = signal<{ readonly origin: Point; readonly zoom: number } | null>(null);
 
-  constructor(
-    private readonly root: SVGSVGElement,
-    private readonly graph: () => Graph,
-  ) {
+  private root!: SVGSVGElement;
+
+  constructor(private readonly graph: () => Graph) {}
+
+  /** Look at the graph that is drawn in an element, until the scope of the call ends. */
+  follow(root: SVGSVGElement): void {
+    this.root = root;
     const observer = new ResizeObserver(() => this.measure());
     observer.observe(root);
     onCleanup(() => observer.disconnect());
     root.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     this.listenForPinch();
-    effect(() => {
-      const { width, height } = this.size();
-      const { origin, zoom } = this.seen();
-      root.setAttribute(
-        "viewBox",
-        [origin.x, origin.y, width / zoom, height / zoom].map((n) => n.toFixed(2)).join(" "),
-      );
-    });
+  }
+
+  /** Return the part of the graph that is seen, as a `viewBox`. */
+  box(): string {
+    const { width, height } = this.size();
+    const { origin, zoom } = this.seen();
+    return [origin.x, origin.y, width / zoom, height / zoom].map((n) => n.toFixed(2)).join(" ");
   }
 
   /** Pixels of the screen per pixel of the graph. */

@@ -1,24 +1,16 @@
-/** The graph of a program: nodes and arrows to choose, to drag and to draw. */
+/** What hands and keys do to the graph of a program: choose, drag and draw its nodes and arrows. */
 
 import { firstCondition } from "../../programs/condition";
-import { type ProgramDocument, transitionsOf } from "../../programs/document";
+import { type ProgramDocument, stateNamed, transitionsOf } from "../../programs/document";
 import { addState, addTransition, removeState, removeTransition } from "../../programs/edits";
 import { centreOf, contains, type Point } from "../../programs/geometry";
 import { type Graph, graphOf, neighbour, withMoved } from "../../programs/graph_layout";
 import type { Choice } from "../../programs/path";
-import { computed, effect, h, type Signal, signal, svg } from "../../ui";
+import { computed, effect, type Signal, signal } from "../../ui";
 import type { ProgramBook } from "./book";
-import { drawnGraph, keyOf } from "./graph_parts";
+import { keyOf } from "./graph_parts";
 import { GraphView } from "./graph_view";
-
-/** What the graph shows beyond the document. */
-export interface GraphOptions {
-  readonly book: ProgramBook;
-  /** Centres of nodes that a person has put somewhere. */
-  readonly moved: Signal<ReadonlyMap<string, Point>>;
-  /** The state in which a press is just now, or null. */
-  readonly live: () => string | null;
-}
+import { savedPositions, savePositions } from "./positions";
 
 const DRAG_px = 4;
 const STEP_px = 20;
@@ -42,143 +34,101 @@ type Hand =
   | { readonly kind: "view"; readonly client: Point; readonly origin: Point };
 
 /** The graph with its keys: see the list that is shown with "?". */
-export class GraphPanel {
-  readonly element: HTMLElement;
+export class GraphHand {
   /** The state from which an arrow is being drawn, by hand or by keys. */
   readonly drawing: Signal<string | null> = signal<string | null>(null);
+  /** Where the pointer is meanwhile. */
+  readonly pointer: Signal<Point | null> = signal<Point | null>(null);
+  /** Centres of nodes that a person has put somewhere. */
+  readonly moved: Signal<ReadonlyMap<string, Point>>;
   readonly graph: () => Graph;
   readonly view: GraphView;
-  private readonly root: SVGSVGElement;
-  private readonly scene: SVGGElement;
-  private readonly pointer: Signal<Point | null> = signal<Point | null>(null);
+  private root!: SVGSVGElement;
   private hand: Hand | null = null;
 
-  constructor(private readonly options: GraphOptions) {
-    // one computed value, not two: what draws the graph must never see it older than the document
-    let laidOut: { readonly document: ProgramDocument; readonly graph: Graph } | null = null;
-    this.graph = computed(() => {
-      const document = options.book.document();
-      if (laidOut?.document !== document) laidOut = { document, graph: graphOf(document) };
-      return withMoved(laidOut.graph, options.moved());
+  constructor(private readonly book: ProgramBook) {
+    this.moved = savedPositions(book.id);
+    effect(() => savePositions(book.id, this.moved()));
+    const laidOut = computed(() => graphOf(book.document()));
+    this.graph = computed(() => withMoved(laidOut(), this.moved()));
+    this.view = new GraphView(this.graph);
+  }
+
+  /** Work the graph that is drawn in an element, until the scope of the call ends. */
+  follow(root: SVGSVGElement): void {
+    this.root = root;
+    this.view.follow(root);
+    root.addEventListener("pointerdown", (event) => this.down(event));
+    root.addEventListener("pointermove", (event) => this.dragged(event));
+    root.addEventListener("pointerup", (event) => this.up(event));
+    root.addEventListener("pointercancel", () => this.drop());
+    root.addEventListener("keydown", (event) => this.key(event));
+    root.addEventListener("dblclick", (event) => {
+      // the pointer is captured, so the event's own target is the whole graph
+      const under = document.elementFromPoint(event.clientX, event.clientY);
+      if (!under?.closest("[data-key]")) this.addState(this.view.at(event));
     });
-    this.scene = svg("g");
-    this.root = svg(
-      "svg",
-      { class: "graph", role: "group", "aria-label": "States and the transitions between them" },
-      this.scene,
-    );
-    this.view = new GraphView(this.root, this.graph);
-    this.element = h(
-      "div",
-      { class: "graph-frame" },
-      this.root,
-      h("p", { class: () => `graph-hint${this.drawing() ? "" : " visually-hidden"}`, role: "status" }, () =>
-        this.hint(),
-      ),
-    );
-    effect(() => this.draw());
-    this.listen();
+  }
+
+  /** Reset every state to its automatic position. */
+  tidy(): void {
+    this.moved.set(new Map());
+    this.view.fit();
   }
 
   /** Put the keyboard on what is chosen. */
   focusChosen(): void {
-    this.focus(keyOf(this.options.book.choice.peek()));
+    this.focus(keyOf(this.book.choice.peek()));
   }
 
   /** Add a state beside the chosen one, and choose it. */
   addState(at: Point | null = null): string {
-    const { book } = this.options;
-    const [, name] = addState(book.document.peek());
-    book.edit(`add ${name}`, (held) => addState(held)[0]);
+    const [, name] = addState(this.book.document.peek());
     if (at) this.move(name, at);
-    book.choose({ kind: "state", state: name });
+    this.book.make(`add ${name}`, (held) => addState(held)[0], { kind: "state", state: name });
     return name;
   }
 
   /** Add an arrow between two states, and choose it. */
   connect(from: string, to: string): void {
-    const { book } = this.options;
-    book.edit(`add ${from} → ${to}`, (held) => addTransition(held, from, to, firstCondition(held, from)));
-    const state = book.document.peek().states.find((state) => state.name === from);
-    if (state) book.choose({ kind: "transition", state: from, index: transitionsOf(state).length - 1 });
-    this.drawing.set(null);
-    this.pointer.set(null);
+    this.book.edit(`add ${from} → ${to}`, (held) =>
+      addTransition(held, from, to, firstCondition(held, from)),
+    );
+    const state = stateNamed(this.book.document.peek(), from);
+    if (state) this.book.choose({ kind: "transition", state: from, index: transitionsOf(state).length - 1 });
+    this.drop();
   }
 
   /** Begin to draw an arrow by keys: the next state that is chosen with Enter is where it leads. */
   begin(): void {
-    const choice = this.options.book.choice.peek();
+    const choice = this.book.choice.peek();
     if (choice.kind === "state") this.drawing.set(choice.state);
   }
 
   /** Remove what is chosen. */
   remove(): void {
-    const { book } = this.options;
+    const { book } = this;
     const choice = book.choice.peek();
     if (choice.kind === "state")
       book.edit(`remove ${choice.state}`, (held) => removeState(held, choice.state));
     if (choice.kind !== "transition") return;
-    book.edit("remove a transition", (held) => removeTransition(held, choice.state, choice.index));
-    book.choose({ kind: "state", state: choice.state });
+    const without = (held: ProgramDocument) => removeTransition(held, choice.state, choice.index);
+    book.make("remove a transition", without, { kind: "state", state: choice.state });
     this.focusChosen();
   }
 
-  private hint(): string {
-    const from = this.drawing();
-    return from ? `Where does it lead from “${from}”? Choose a state, or press Escape.` : "";
-  }
-
-  private draw(): void {
-    const { book, live } = this.options;
-    const focused = this.root.contains(document.activeElement)
-      ? document.activeElement?.getAttribute("data-key")
-      : null;
-    const graph = this.graph();
-    const document_ = book.document();
-    this.scene.replaceChildren(
-      ...drawnGraph({ graph, document: document_, choice: book.choice, findings: book.findings, live }),
-    );
-    effect(() => this.drawLoose(graph));
-    if (focused) this.focus(focused);
-  }
-
-  /** The arrow that has no end yet. */
-  private drawLoose(graph: Graph): void {
-    const [from, at] = [this.drawing(), this.pointer()];
-    this.scene.querySelector(".loose")?.remove();
-    const node = graph.nodes.find((node) => node.state === from);
-    if (!node || !at) return;
-    const begin = centreOf(node.box);
-    this.scene.append(svg("line", { class: "loose", x1: begin.x, y1: begin.y, x2: at.x, y2: at.y }));
-  }
-
   private focus(key: string): void {
-    [...this.scene.querySelectorAll<SVGElement>("[data-key]")]
+    [...this.root.querySelectorAll<SVGElement>("[data-key]")]
       .find((held) => held.dataset.key === key)
       ?.focus();
   }
 
   private move(state: string, to: Point): void {
-    this.options.moved.update((held) =>
-      new Map(held).set(state, { x: Math.round(to.x), y: Math.round(to.y) }),
-    );
+    this.moved.update((held) => new Map(held).set(state, { x: Math.round(to.x), y: Math.round(to.y) }));
   }
 
   private stateAt(at: Point): string | null {
     return this.graph().nodes.find((node) => contains(node.box, at))?.state ?? null;
-  }
-
-  private listen(): void {
-    this.root.addEventListener("pointerdown", (event) => this.down(event));
-    this.root.addEventListener("pointermove", (event) => this.dragged(event));
-    this.root.addEventListener("pointerup", (event) => this.up(event));
-    this.root.addEventListener("pointercancel", () => this.drop());
-    this.root.addEventListener("keydown", (event) => this.key(event));
-    this.root.addEventListener("dblclick", (event) => {
-      // the pointer is captured, so the event's own target is the whole graph
-      const under = document.elementFromPoint(event.clientX, event.clientY);
-      if (!under?.closest("[data-key]")) this.addState(this.view.at(event));
-    });
   }
 
   private down(event: PointerEvent): void {
@@ -209,7 +159,7 @@ export class GraphPanel {
   private choose(event: Event, target: SVGElement): void {
     event.preventDefault();
     const [state, transition] = [target.dataset.state ?? "", target.dataset.way];
-    this.options.book.choose(
+    this.book.choose(
       transition === undefined
         ? { kind: "state", state }
         : { kind: "transition", state, index: Number(transition) },
@@ -282,7 +232,7 @@ export class GraphPanel {
     const next = neighbour(this.graph(), state, arrow.x, arrow.y);
     if (!next) return;
     const choice: Choice = { kind: "state", state: next };
-    if (!this.drawing.peek()) this.options.book.choose(choice);
+    if (!this.drawing.peek()) this.book.choose(choice);
     this.focus(keyOf(choice));
   }
 }
