@@ -222,7 +222,9 @@ def test_what_another_tab_saved_is_not_overwritten(own: Page, context: BrowserCo
 
 
 def test_a_recipe_makes_a_program_at_once(gallery: Page, tmp_path: Path) -> None:
-    recipe = gallery.locator("article[aria-label='Recipe fast-tapping']")
+    card = gallery.locator("article", has=gallery.get_by_role("link", name="fast-tapping", exact=True))
+    card.get_by_text("Create from parameters").click()
+    recipe = card.get_by_role("group", name="Recipe fast-tapping")
     recipe.get_by_label("Pull").fill("44")
     recipe.get_by_label("Pull").press("Enter")
     recipe.get_by_role("button", name="Create").click()
@@ -268,7 +270,7 @@ def test_nobody_is_kept_out(page: Page, studio: RunningStudio, theme: str) -> No
     """Nothing that axe-core calls serious, in the gallery and in the builder, whatever is chosen."""
     page.emulate_media(color_scheme=theme)  # type: ignore[arg-type]
     page.goto(f"{studio.base}/#/programs")
-    page.wait_for_selector("article[aria-label='Recipe rapid-trigger']")
+    page.get_by_text("Create from parameters").first.click()
     assert audit(page) == []
     page.goto(f"{studio.base}/#/programs/shipped:dwell-ticks")
     page.wait_for_selector(".verdict.good")

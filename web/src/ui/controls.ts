@@ -176,10 +176,6 @@ export function panel(title: string, ...content: Child[]): HTMLElement {
   );
 }
 
-export function toolbar(label: string, ...content: Child[]): HTMLElement {
-  return h("div", { class: "toolbar", role: "toolbar", "aria-label": label }, content);
-}
-
 /** What to say where there is nothing yet, and what to do next. */
 export function empty(title: string, text: string, ...actions: Child[]): HTMLElement {
   return h(

@@ -15,8 +15,6 @@ export type Props = {
   readonly [attribute: string]: unknown;
 };
 
-const SVG = "http://www.w3.org/2000/svg";
-
 /** Set an attribute, or the live property where the attribute is only its beginning. */
 function assign(element: Element, name: string, value: Value): void {
   if (name === "value" || name === "checked" || name === "indeterminate") {
@@ -75,17 +73,5 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   element.append(...nodes(children));
   fill(element, props);
   props.ref?.(element);
-  return element;
-}
-
-/** Make an SVG element, as h does. */
-export function svg<K extends keyof SVGElementTagNameMap>(
-  tag: K,
-  props: Props = {},
-  ...children: Child[]
-): SVGElementTagNameMap[K] {
-  const element = document.createElementNS(SVG, tag);
-  element.append(...nodes(children));
-  fill(element, props);
   return element;
 }

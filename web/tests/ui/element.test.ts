@@ -1,16 +1,6 @@
 // @vitest-environment jsdom
 import { describe, expect, it } from "vitest";
-import {
-  addShortcuts,
-  h,
-  numberField,
-  pressedKeys,
-  scope,
-  shortcuts,
-  shown,
-  signal,
-  svg,
-} from "../../src/ui";
+import { addShortcuts, h, numberField, pressedKeys, scope, shortcuts, shown, signal } from "../../src/ui";
 
 function enter(field: HTMLElement, text: string): HTMLInputElement {
   const input = field.querySelector("input") as HTMLInputElement;
@@ -36,10 +26,6 @@ describe("elements", () => {
     expect([made.textContent, made.getAttribute("aria-label"), made.disabled]).toEqual(["b", "b", true]);
     busy.set(false);
     expect(made.disabled).toBe(false);
-  });
-
-  it("make SVG in its own namespace", () => {
-    expect(svg("circle", { r: 3 }).namespaceURI).toBe("http://www.w3.org/2000/svg");
   });
 });
 
