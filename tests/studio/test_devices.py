@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import threading
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +15,12 @@ from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError, InputError
 from fdvv.model.file import load_builtin
-from fdvv.rendering.compensate import compensate
+from fdvv.rendering.compensate import CompensationResult, compensate
 from fdvv.studio.api import device as part
 from fdvv.studio.api.device import DevicePress, ScopeFrame, WatchScope
 from fdvv.studio.contract import Empty
-from fdvv.studio.device_session import DeviceConnect, DeviceSession, DeviceStatus, DeviceUpload, PressSeen
+from fdvv.studio.device_findings import PressSeen
+from fdvv.studio.device_session import DeviceConnect, DeviceSession, DeviceStatus, DeviceUpload
 from fdvv.studio.jobs.jobs import Jobs
 from fdvv.studio.studio import Studio
 from fdvv.twin.files import load_rig
@@ -80,16 +83,72 @@ def test_the_scope_shows_a_press_on_the_firmware(studio: Studio, page: Page) -> 
     assert len(seen.intended_press_cN) == len(seen.displacement_mm) == len(seen.felt_release_cN)
 
 
-def test_a_learned_table_closes_the_loop_of_its_rig_and_a_buttons_own_force_opens_it(studio: Studio) -> None:
-    session = studio.part(DeviceSession)
+def test_a_learned_table_closes_the_loop_of_its_rig_and_a_buttons_own_force_opens_it(
+    studio: Studio, learned: CompensationResult
+) -> None:
+    session, model = studio.part(DeviceSession), load_builtin("mx-clear")
     part.connect.function(studio, DeviceConnect("host"))
-    model = load_builtin("mx-clear")
-    learned = compensate(TwinDevice(load_rig("recommended")), model, [100.0], RigAware(rounds=0))
     session.upload(CLEAR, model, learned)
     assert session.held().device.loop == learned.outcome.tuning.loop  # type: ignore[attr-defined]
     assert part.press.function(studio, DevicePress(100.0)).fault == ""
     session.upload(CLEAR, model, None)
     assert session.held().device.loop is None  # type: ignore[attr-defined]
+
+
+@pytest.fixture
+def learned() -> CompensationResult:
+    model = load_builtin("mx-clear")
+    return compensate(TwinDevice(load_rig("recommended")), model, [100.0], RigAware(rounds=0))
+
+
+def with_cell_off_by(monkeypatch: pytest.MonkeyPatch, offset_N: float) -> None:
+    """Connect a simulated rig whose load cell reads this much too high."""
+    rig = load_rig("recommended")
+    off = replace(rig, load_cell=replace(rig.load_cell, offset_N=offset_N))
+    monkeypatch.setattr("fdvv.studio.device_session.load_rig", lambda _name: off)
+
+
+def test_a_loop_that_its_cell_opened_stays_open_until_the_cell_is_sound(
+    studio: Studio, learned: CompensationResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with_cell_off_by(monkeypatch, -0.5)
+    session = studio.part(DeviceSession)
+    part.connect.function(studio, DeviceConnect("host"))
+    session.upload(CLEAR, load_builtin("mx-clear"), learned)
+    with pytest.raises(DeviceError, match="the force loop opened, cell_wrong"):
+        part.press.function(studio, DevicePress(100.0))
+    assert part.status.function(studio, Empty()).loop == "failed, cell_wrong"
+    found = part.check_cell.function(studio, Empty())
+    assert not found.sound
+    assert found.reads_cN == pytest.approx(-50.0, abs=3.0)
+    assert "Keep your hands off" in found.sentence
+    assert part.status.function(studio, Empty()).loop == "failed, cell_wrong"
+
+
+def test_a_sound_cell_closes_the_loop_that_was_open_and_the_next_press_is_held(
+    studio: Studio, page: Page, learned: CompensationResult
+) -> None:
+    session = studio.part(DeviceSession)
+    part.connect.function(studio, DeviceConnect("host"))
+    session.upload(CLEAR, load_builtin("mx-clear"), learned)
+    session.do(lambda remote: remote.client.open_force_loop())
+    assert part.status.function(studio, Empty()).loop == "open"
+    found = part.check_cell.function(studio, Empty())
+    assert (found.sound, found.sentence.endswith("the force loop is closed again.")) == (True, True)
+    assert part.status.function(studio, Empty()).loop == "closed"
+    part.press.function(studio, DevicePress(100.0))
+    seen = page.wait(PressSeen)
+    assert not seen.noticed
+    assert re.fullmatch(
+        r"Mean error [01]\.\d cN in one press at 100 mm/s, simulated; .* not notice it", seen.sentence
+    )
+
+
+def test_a_rig_without_a_cell_has_none_to_check(studio: Studio) -> None:
+    found = part.connect.function(studio, DeviceConnect("host", "voltage"))
+    assert found.loop == ""
+    with pytest.raises(DeviceError, match="no load cell to check"):
+        part.check_cell.function(studio, Empty())
 
 
 def test_a_device_falls_to_zero_force_when_nobody_looks_on(studio: Studio, page: Page) -> None:

@@ -15,6 +15,9 @@ from fdvv.protocol.tables import CellSpec, Fault, ForceLoopGains, Settings
 SPEED_LIMITS_mm_s = (0.5, 500.0)
 """From a machine that probes statically, as the paper's did, to more than a finger does."""
 
+FREE_CELL_cN = 3.0
+"""A sound load cell reads no more than this under a cap that nothing touches."""
+
 
 @dataclass(frozen=True)
 class DeviceInfo:

@@ -162,6 +162,11 @@ class LinkedDevice(Remote):
         super().upload_program(image)
         self._person.load(image)
 
+    def free_cell_cN(self) -> float:
+        if isinstance(self._person, CellPerson):
+            self._person.lift()
+        return super().free_cell_cN()
+
     @property
     def board_name(self) -> str:
         """Name the board, and how it runs where its firmware names a real one."""

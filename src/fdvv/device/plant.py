@@ -111,6 +111,9 @@ class CellPerson(Person, Protocol):
 
     loop: ForceLoopGains | None
 
+    def lift(self) -> None:
+        """Take the finger off the cap until the next press."""
+
     @property
     def load_cell(self) -> CellSpec | None:
         """The cell, from its data sheet; None if this rig has none."""

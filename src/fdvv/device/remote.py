@@ -37,6 +37,8 @@ DEEP_RATIO = 0.9
 LEAD_TICKS = 20
 """Kept before the cap leaves the top, and after it is back."""
 POLL_s = 0.02
+SETTLED_s, READ_s = 0.5, 0.3
+"""Until a cap without force lies still, and how long its load cell is then read."""
 
 
 def surface_image(surface: ForceSurface, travel_mm: float, paced: bool = False) -> bytes:
@@ -111,6 +113,14 @@ class Remote:
         """
         self.force_loop.close(gains)
         self.travel_mm = None
+
+    def free_cell_cN(self) -> float:
+        """Return what the load cell reads at zero force, hands off the cap. DeviceError without a cell."""
+        if self.load_cell is None:
+            raise DeviceError(f"{self.client.port.name}: this rig has no load cell to check")
+        self.stop()
+        pieces = [piece.force_cN for piece in watch(self, SETTLED_s + READ_s)]
+        return float(np.concatenate(pieces)[-round(READ_s / (self._settings.tick_us * 1e-6)) :].mean())
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         check_table(self.info(), surface, travel_mm)

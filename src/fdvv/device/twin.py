@@ -240,6 +240,9 @@ class SimulatedPerson:
     def load(self, image: bytes) -> None:
         self._plant.load(image)
 
+    def lift(self) -> None:
+        self._plant.lift()
+
     def rest(self, settings: Settings) -> SimulatedPerson:
         """Leave the button alone: the finger rests once its press is over."""
         return self

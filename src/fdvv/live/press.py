@@ -13,7 +13,7 @@ import numpy as np
 from msgspec import Struct, field
 from msgspec.structs import replace
 
-from fdvv.device.contract import FaultReport
+from fdvv.device.contract import FaultReport, FREE_CELL_cN
 from fdvv.errors import DeviceError
 from fdvv.firmware.core import CoreRequest
 from fdvv.live.press_replay import DisplacementPath, path_of
@@ -28,8 +28,6 @@ from fdvv.units import FloatArray
 TOP_mm, DEEP_mm = 0.1, 0.3
 """A press begins where the cap passes the first; it counts once it was deeper than the second."""
 STEP_mm = 0.02
-FREE_CELL_cN = 3.0
-"""A sound load cell reads no more than this under a cap that nothing touches."""
 DOWN_RATIO = 0.9
 """Of its depth: there a press counts as down; what follows may be a finger that holds."""
 

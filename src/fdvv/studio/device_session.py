@@ -5,28 +5,28 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import msgspec
 
 from fdvv.compensation.method import UNTUNED
+from fdvv.device.contract import FREE_CELL_cN
 from fdvv.device.open import open_device
 from fdvv.device.remote import Remote
 from fdvv.errors import DeviceError, FdvvError, InputError
 from fdvv.live.tick_bins import TickPiece
 from fdvv.model.model import FDVVModel
-from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.program.button import button_program
 from fdvv.program.compile import compile_program
 from fdvv.protocol.tables import Fault
 from fdvv.rendering.compensate import CompensationResult
-from fdvv.rendering.press_check import intended_press, rendered_press
 from fdvv.rendering.tuning import tune
 from fdvv.studio.contract import Message, Tell
+from fdvv.studio.device_findings import CellCheck, cell_check, press_seen
 from fdvv.studio.device_thread import DeviceThread, mode_of
 from fdvv.studio.devices import DeviceLocks, require_listed
 from fdvv.studio.jobs.inputs import RIGS, check_speeds
-from fdvv.studio.rounding import finite_row, rounded
 from fdvv.studio.studio import Studio
 from fdvv.twin.files import FIRST_RIG, current_rig_name, load_rig
 
@@ -61,6 +61,7 @@ class DeviceStatus(Message, tag="standing"):
     streams : it tells of every tick; else only presses are shown.
     programmed : name of the button that is its program; empty if it has none. travel_mm : of that.
     fault : why it fell to zero force; empty if it has not.
+    loop : "open" or "closed", or why the force loop opened by itself; empty without a load cell.
     missing_ticks, late_ticks, missing_frames, lost_records : since something was last done with it.
     """
 
@@ -75,25 +76,11 @@ class DeviceStatus(Message, tag="standing"):
     programmed: str = ""
     travel_mm: float | None = None
     fault: str = ""
+    loop: str = ""
     missing_ticks: int = 0
     late_ticks: int = 0
     missing_frames: int = 0
     lost_records: int = 0
-
-
-class PressSeen(Message, tag="press_seen"):
-    """Force over displacement of a press that was made, and what its button asks for.
-
-    displacement_mm : (n,) the grid of all columns. felt_* : None where the stroke was not.
-    """
-
-    velocity_mm_s: float
-    simulated: bool
-    displacement_mm: tuple[float, ...]
-    felt_press_cN: tuple[float | None, ...]
-    felt_release_cN: tuple[float | None, ...]
-    intended_press_cN: tuple[float, ...]
-    intended_release_cN: tuple[float, ...]
 
 
 def with_faults(known: DeviceStatus, remote: Remote) -> DeviceStatus:
@@ -103,6 +90,7 @@ def with_faults(known: DeviceStatus, remote: Remote) -> DeviceStatus:
         known,
         mode="fault" if report.fault is not Fault.NONE else mode_of(remote),
         fault="" if report.fault is Fault.NONE else str(report),
+        loop=remote.force_loop.state() if remote.load_cell else "",
         missing_ticks=telemetry.missing_ticks,
         late_ticks=telemetry.late_ticks,
         missing_frames=telemetry.missing_frames,
@@ -128,17 +116,20 @@ def put_button(
     device.upload_program(compile_program(program).image)  # type: ignore[attr-defined]  # all that are listed do
 
 
-def press_seen(press: Press, model: FDVVModel, velocity_mm_s: float) -> PressSeen:
-    rendered, wanted = rendered_press(press, model.travel_mm), intended_press(model, velocity_mm_s)
-    return PressSeen(
-        velocity_mm_s,
-        press.simulated,
-        rounded(rendered.displacement_mm),
-        finite_row(rendered.press_cN),
-        finite_row(rendered.release_cN),
-        rounded(wanted.press_cN),
-        rounded(wanted.release_cN),
-    )
+@dataclass(frozen=True)
+class UploadedButton:
+    """What a device was made to render, to do it again."""
+
+    model: FDVVModel
+    learned: CompensationResult | None
+    speeds_mm_s: list[float]
+
+    @property
+    def has_loop(self) -> bool:
+        return self.learned is not None and self.learned.outcome.tuning.loop is not None
+
+    def put(self, held: DeviceThread) -> None:
+        put_button(held, self.model, self.learned, self.speeds_mm_s)
 
 
 Subscriber = tuple[Callable[[TickPiece], None], Tell]
@@ -154,7 +145,7 @@ class DeviceSession:
         self._lock = threading.RLock()
         self._held: DeviceThread | None = None
         self._status = DeviceStatus()
-        self._model: FDVVModel | None = None
+        self._button: UploadedButton | None = None
         self._subscribers: list[Subscriber] = []
 
     def connect(self, ask: DeviceConnect, devices: tuple[str, ...]) -> DeviceStatus:
@@ -175,7 +166,7 @@ class DeviceSession:
     def disconnect(self) -> DeviceStatus:
         """Set zero force and close the device, if there is one."""
         with self._lock:
-            held, self._held, self._model = self._held, None, None
+            held, self._held, self._button = self._held, None, None
             device, self._status = self._status.device, DeviceStatus()
         if held:
             held.close()
@@ -193,8 +184,9 @@ class DeviceSession:
         """Make a button the device's program, with what was learned for it or its own force. FdvvError."""
         held = self.held()
         check_speeds(ask.velocities_mm_s)
-        held.do(lambda: put_button(held, model, learned, sorted(ask.velocities_mm_s)))
-        self._model = model
+        button = UploadedButton(model, learned, sorted(ask.velocities_mm_s))
+        held.do(lambda: button.put(held))
+        self._button = button
         return self.refresh(f"{model.name}{f', {ask.actuation}' if ask.actuation else ''}")
 
     def press(self, velocity_mm_s: float) -> DeviceStatus:
@@ -207,9 +199,28 @@ class DeviceSession:
             press = held.do(lambda: held.press(velocity_mm_s))
         finally:
             self.refresh()
-        if self._model:
-            self._tell(press_seen(press, self._model, velocity_mm_s))
+        if self._button:
+            self._tell(press_seen(press, self._button.model, velocity_mm_s))
         return self._status
+
+    def check_cell(self) -> CellCheck:
+        """Read the load cell of the free cap, at zero force; a sound one closes the loop that its button had.
+
+        DeviceError without a cell.
+        """
+        held, button = self.held(), self._button
+        if not held.remote:
+            raise DeviceError("there is no firmware in this device: its loop is closed anew for each press")
+        remote = held.remote
+        try:
+            reads_cN = held.do(remote.free_cell_cN)
+            closes = abs(reads_cN) <= FREE_CELL_cN and button is not None and button.has_loop
+            if button and closes:
+                remote.force_loop.forget()  # it may have opened by itself, which the host does not see
+                held.do(lambda: button.put(held))
+        finally:
+            self.refresh()
+        return cell_check(reads_cN, closes)
 
     def do(self, work: Callable[[Remote], None]) -> DeviceStatus:
         """Do something with a device that runs the firmware. DeviceError."""
@@ -264,7 +275,7 @@ class DeviceSession:
             bool(held.device.settings().force_gain_q14) or remote is None,
             info.tick_s,
             programmed=programmed,
-            travel_mm=self._model.travel_mm if self._model else None,
+            travel_mm=self._button.model.travel_mm if self._button else None,
         )
         return held.do(lambda: with_faults(common, remote)) if remote else common
 

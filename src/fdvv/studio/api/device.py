@@ -12,12 +12,12 @@ from fdvv.live.tick_bins import TickBinner, TickBins, TickPiece
 from fdvv.protocol.tables import Part, SelfTestResult
 from fdvv.rendering.actuation_file import load_actuation
 from fdvv.studio.contract import ChannelKind, Empty, Message, Tell, call
+from fdvv.studio.device_findings import CellCheck, PressSeen
 from fdvv.studio.device_session import (
     DeviceConnect,
     DeviceSession,
     DeviceStatus,
     DeviceUpload,
-    PressSeen,
 )
 from fdvv.studio.devices import device_names
 from fdvv.studio.jobs.file import result_file
@@ -169,6 +169,11 @@ def stop(session: DeviceSession, _ask: Empty) -> DeviceStatus:
 @call("device.clear_fault")
 def clear_fault(session: DeviceSession, _ask: Empty) -> DeviceStatus:
     return session.do(lambda remote: remote.clear_fault())
+
+
+@call("device.check_cell")
+def check_cell(session: DeviceSession, _ask: Empty) -> CellCheck:
+    return session.check_cell()
 
 
 @call("device.standing")
