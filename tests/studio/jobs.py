@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from fdvv.studio.jobs.events import JobEvent
+from fdvv.studio.jobs.events import JobEvent, PressEvent
 from fdvv.studio.jobs.file import JobRow
 from fdvv.studio.jobs.jobs import Jobs
 from fdvv.studio.jobs.orders import CompensateOrder, TuneOrder
@@ -66,6 +66,12 @@ class Follower:
         with self._news:
             assert self._news.wait_for(lambda: any(map(wanted, self.events)), PATIENCE_s), self.events[-3:]
             return next(event for event in self.events if wanted(event))
+
+    @property
+    def learned_from(self) -> int:
+        """Presses that were used to learn from, so far."""
+        pressed = (e for e in self.events if isinstance(e, PressEvent) and e.stage == "compensate")
+        return max((event.done for event in pressed), default=0)
 
     def over(self) -> JobRow:
         """Wait until the job is over for now; return its row."""

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TypeGuard
 
 import pytest
 
@@ -37,8 +38,9 @@ def jobs(studio: Studio) -> Jobs:
     return studio.part(Jobs)
 
 
-def pressed(event: object) -> bool:
-    return isinstance(event, PressEvent)
+def pressed(event: object) -> TypeGuard[PressEvent]:
+    """Whether this is a press that is learned from."""
+    return isinstance(event, PressEvent) and event.stage == "compensate"
 
 
 def begin(jobs: Jobs, order: CompensateOrder) -> Follower:
@@ -52,8 +54,8 @@ def test_work_tells_every_press_and_leaves_its_results_in_the_project(studio: St
     presses = [event for event in follower.events if isinstance(event, PressEvent)]
     # one press without compensation, one with it; this rig has no exciter
     learned_in = len(presses) - 2
-    assert [p.stage for p in presses] == ["compensate"] * learned_in + ["baseline", "probe"]
-    assert [(p.done, p.total) for p in presses[:-2]] == [(i + 1, learned_in) for i in range(learned_in)]
+    assert [p.stage for p in presses] == ["baseline", *["compensate"] * learned_in, "probe"]
+    assert [(p.done, p.total) for p in presses[1:-1]] == [(i + 1, learned_in) for i in range(learned_in)]
     assert follower.numbers == list(range(row.events))
     assert set(row.results) == {
         JobResult("actuation", "clear"),
@@ -98,8 +100,8 @@ def test_work_that_is_stopped_goes_on_where_it_stopped(jobs: Jobs) -> None:
     assert 0 < made < PRESSES
     jobs.resume("0001")
     row = follower.over()
-    assert (row.state, row.done) == ("done", PRESSES)
-    used = [event.done for event in follower.events if isinstance(event, PressEvent) and not event.skipped]
+    assert (row.state, follower.learned_from) == ("done", PRESSES)
+    used = [event.done for event in follower.events if pressed(event) and not event.skipped]
     # no press is made twice; one that was on file when it stopped may not have been reported
     assert used == sorted(set(used))
     assert set(range(1, PRESSES + 1)) - set(used) <= {made + 1}
@@ -164,7 +166,7 @@ def test_a_process_that_is_killed_loses_nothing_that_was_reported(jobs: Jobs) ->
     made = row.done
     jobs.resume("0001")
     row = follower.over()
-    assert (row.state, row.done) == ("done", PRESSES)
+    assert (row.state, follower.learned_from) == ("done", PRESSES)
     assert made > 0
 
 
@@ -202,7 +204,7 @@ def test_work_of_a_studio_that_was_killed_is_found_and_gone_on_with(tmp_path: Pa
     row = jobs.job("0001").row
     assert (row.state, row.line, row.resumable) == ("cancelled", BROKEN_OFF, True)
     follower = Follower(jobs, jobs.resume("0001").job)
-    assert (follower.over().state, follower.over().done) == ("done", PRESSES)
+    assert (follower.over().state, follower.learned_from) == ("done", PRESSES)
     studio.close()
 
 

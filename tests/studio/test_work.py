@@ -15,7 +15,7 @@ from fdvv.rendering.compensate import uncompensated
 from fdvv.rendering.probe import probe
 from fdvv.studio.jobs.events import CurveIntended, JobEvent, JobOutcome, PressEvent
 from fdvv.studio.jobs.file import JobFolder, JobRecord, publish, utc_now
-from fdvv.studio.jobs.orders import Order
+from fdvv.studio.jobs.orders import Order, ProbeOrder
 from fdvv.studio.jobs.process import ended
 from fdvv.studio.jobs.work import Work
 from fdvv.studio.jobs.work_learn import PROBE_SEED
@@ -73,6 +73,39 @@ def test_what_was_learned_is_judged_beside_the_same_presses_without_compensation
         assert found.before_ratio > found.force_ratio
     before = sum(c.outcome.mean_error_cN for c in alone) / len(alone)
     assert outcome.headline.startswith(f"Mean error {before:.0f} → ")
+    assert " cN on simulated presses, largest " in outcome.headline
+
+
+@pytest.mark.parametrize(
+    ("order", "stages"),
+    [
+        (learning(probe_presses=0, method="paper", presses=2), ["baseline", "compensate", "probe"]),
+        (ProbeOrder("builtin:mx-clear", "clear", velocities_mm_s=(100.0,), presses=1), ["probe"]),
+    ],
+    ids=["learning without held-out presses", "a probe of the button's own force"],
+)
+def test_every_path_says_what_a_finger_feels_without_compensation(
+    tmp_path: Path, order: Order, stages: list[str]
+) -> None:
+    events: list[JobEvent] = []
+    assert ended(work_of(order, tmp_path / "job", events.append)).state == "done"
+    pressed = list(dict.fromkeys(e.stage for e in events if isinstance(e, PressEvent)))
+    assert pressed == stages
+    headline = next(e.headline for e in events if isinstance(e, JobOutcome) and e.stage == "probe")
+    compared = "→" in headline, "uncompensated" in headline
+    assert compared == ("compensate" in stages, "compensate" not in stages)
+
+
+def test_a_table_that_is_judged_is_compared_with_none(tmp_path: Path) -> None:
+    events: list[JobEvent] = []
+    learned = work_of(learning(), tmp_path / "learned", lambda _event: None)
+    assert ended(learned).state == "done"
+    order = ProbeOrder("builtin:mx-clear", "clear", velocities_mm_s=(100.0,), presses=1, actuation="clear")
+    work = work_of(order, tmp_path / "job", events.append)
+    work.folder.actuation.write_bytes(learned.folder.result("actuation").read_bytes())
+    assert ended(work).state == "done"
+    pressed = list(dict.fromkeys(e.stage for e in events if isinstance(e, PressEvent)))
+    assert pressed == ["baseline", "probe"]
 
 
 def test_work_that_is_interrupted_ends_as_cancelled_and_goes_on(tmp_path: Path) -> None:
@@ -80,10 +113,10 @@ def test_work_that_is_interrupted_ends_as_cancelled_and_goes_on(tmp_path: Path) 
         if isinstance(event, PressEvent):
             raise KeyboardInterrupt
 
-    end = ended(work_of(learning(probe_presses=0), tmp_path, stop))
+    end = ended(work_of(learning(probe_presses=2), tmp_path, stop))
     assert (end.state, "kept" in end.line) == ("cancelled", True)
     events: list[JobEvent] = []
-    assert ended(work_of(learning(probe_presses=0), tmp_path, events.append)).state == "done"
+    assert ended(work_of(learning(probe_presses=2), tmp_path, events.append)).state == "done"
     assert next(e.done for e in events if isinstance(e, PressEvent)) == 2
 
 

@@ -96,6 +96,7 @@ def test_the_headline_says_what_fell_to_what_and_at_which_speeds_a_finger_notice
     assert headline(three).endswith("at 100 and 200 mm/s only")
     assert headline(three[2:]).endswith("at every speed")
     assert headline([]) == ""
+    assert headline(fine, bad, "simulated presses").count(" cN on simulated presses, largest ") == 1
     # a tenth of a stroke and less counts as little, as for the next step
     assert "would not" in headline([off(curves[0], count // 11), curves[1]])
 

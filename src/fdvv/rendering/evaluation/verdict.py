@@ -54,15 +54,17 @@ def verdict(curves: Sequence[ProbeCurve]) -> str:
     return f"{_force(curves)}; {_vibration(curves)}."
 
 
-def headline(curves: Sequence[ProbeCurve], before: Sequence[ProbeCurve] = ()) -> str:
+def headline(curves: Sequence[ProbeCurve], before: Sequence[ProbeCurve] = (), presses: str = "") -> str:
     """Return what is left of the error, and at which speeds a finger would notice it, in one line.
 
     before : the same without compensation, whose errors come first. Empty without a curve.
+    presses : what it was judged on, such as "simulated presses"; left out if empty.
     """
     if not curves:
         return ""
     parts = (_fell(_mean_cN(before), _mean_cN(curves)), _fell(_largest_cN(before), _largest_cN(curves)))
-    return f"Mean error {parts[0]} cN, largest {parts[1]}; {_noticed_where(curves)}"
+    where = f" on {presses}" if presses else ""
+    return f"Mean error {parts[0]} cN{where}, largest {parts[1]}; {_noticed_where(curves)}"
 
 
 def headline_figures(

@@ -126,6 +126,9 @@ class JobRow(Message):
     """A job as a list shows it.
 
     line : why it failed or was cancelled; empty otherwise. now : what is being done.
+    button : id of what is worked on; empty for a capture.
+    stage : of the work, as its events name it; empty before the first. left_s : about so long it still takes;
+        None where it is over.
     done, total : of its presses, takes or questions; total 0 where that is not known yet.
     events : so far. resumable : it can continue where it stopped.
     created, ended : UTC; ended None while it lasts.
@@ -146,6 +149,9 @@ class JobRow(Message):
     created: str
     ended: str | None
     results: tuple[JobResult, ...]
+    button: str = ""
+    stage: str = ""
+    left_s: float | None = None
 
 
 NAME = re.compile(r"[^\W_][\w .+()-]{0,79}")

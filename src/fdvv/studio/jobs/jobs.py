@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import threading
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +24,7 @@ from fdvv.studio.jobs.file import JOB, JobFolder, JobRecord, JobRow, JobState, p
 from fdvv.studio.jobs.inputs import BENCH, Inputs, inputs_of
 from fdvv.studio.jobs.orders import CaptureOrder, Order, kind_of
 from fdvv.studio.jobs.process import JobStart
+from fdvv.studio.jobs.time_left import left_s
 from fdvv.studio.studio import Studio
 
 Heard = Callable[[int, Sequence[JobEvent]], None]
@@ -36,7 +38,7 @@ BROKEN_OFF = "the studio ended meanwhile; what was made is kept"
 class JobProgress:
     """How far a job is, as its events tell.
 
-    question : number of the one that waits for an answer; 0 if none does.
+    question : number of the one that waits for an answer; 0 if none does. stage : as its events name it.
     """
 
     state: JobState = "waiting"
@@ -44,8 +46,14 @@ class JobProgress:
     done: int = 0
     total: int = 0
     question: int = 0
+    stage: str = ""
 
     def after(self, event: JobEvent) -> JobProgress:
+        """Return the progress after an event."""
+        stage = event.stage if isinstance(event, events.StageEvent) else self.stage
+        return dataclasses.replace(self._after(event), stage=stage)
+
+    def _after(self, event: JobEvent) -> JobProgress:
         match event:
             case events.StageEvent():
                 return JobProgress("running", event.text)
@@ -83,6 +91,7 @@ class LiveJob:
         self.start: JobStart | None = None
         self.progress = JobProgress(record.state, record.line, record.done, record.total)
         self._events: list[JobEvent] | None = None
+        self._began_s = time.monotonic()
         self._journal: Journal | None = None
         self._listeners: list[Heard] = []
 
@@ -110,11 +119,22 @@ class LiveJob:
                 total=progress.total,
                 events=record.events if self._events is None else len(self._events),
                 resumable=record.state in ("cancelled", "failed"),
+                button=getattr(record.order, "button", ""),
+                stage=progress.stage,
+                left_s=self._left_s(),
             )
+
+    def _left_s(self) -> float | None:
+        if self.record.state not in UNFINISHED:
+            return None
+        progress, elapsed_s = self.progress, time.monotonic() - self._began_s
+        ratio = min(1.0, progress.done / progress.total) if progress.total else 0.0
+        return round(left_s(self.record.order, progress.stage, ratio, elapsed_s), 1)
 
     def begin(self) -> None:
         """Open the journal to append to it. InputError if another process is at work on the job, OSError."""
         with self.lock:
+            self._began_s = time.monotonic()
             self._journal = self.folder.open_journal()
             self._events = self.folder.events()
 

@@ -29,7 +29,8 @@ class CompensateOrder(RigOrder, tag="compensate"):
     presses : per round and velocity, with the paper's law.
     known_rig : name of what a rig has taught before; empty to identify it.
     pace_ratio : part by which a press may miss its speed.
-    probe_presses : fresh presses per velocity that judge the result; 0 for none.
+    probe_presses : fresh presses per velocity that judge the result, and as many without compensation;
+        0, as in older jobs, is 1.
     """
 
     method: Literal["rig-aware", "paper"] = "rig-aware"
@@ -37,6 +38,11 @@ class CompensateOrder(RigOrder, tag="compensate"):
     presses: int = 12
     known_rig: str = ""
     probe_presses: int = 5
+
+
+def judging_presses(order: CompensateOrder) -> int:
+    """Return how many presses per velocity judge the result: a rendering is never left without a figure."""
+    return max(1, order.probe_presses)
 
 
 class ProbeOrder(RigOrder, tag="probe"):

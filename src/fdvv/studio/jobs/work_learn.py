@@ -25,7 +25,7 @@ from fdvv.rendering.evaluation.vibration_presses import Playback
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session import Session
 from fdvv.studio.jobs.events import JobOutcome, StageEvent
-from fdvv.studio.jobs.orders import CompensateOrder, ProbeOrder, RigOrder
+from fdvv.studio.jobs.orders import CompensateOrder, ProbeOrder, RigOrder, judging_presses
 from fdvv.studio.jobs.work import Work, curve_noticed, curve_progress
 
 PROBE_SEED = 1
@@ -33,28 +33,26 @@ PROBE_SEED = 1
 
 
 def learn(work: Work, order: CompensateOrder) -> None:
-    """Learn, keep what was learned, and judge it on fresh presses if that is wanted."""
-    model = load_model(work.folder.button)
+    """Press without compensation, learn, keep what was learned, and judge it on fresh presses."""
+    model, presses = load_model(work.folder.button), judging_presses(order)
+    before = _baseline(work, order, model, order.seed + PROBE_SEED, presses)
     with work.session(order, work.folder.session, order.seed) as (device, session):
-        _begin(work, device, model, order)
         work.tell(StageEvent("compensate", "learning what makes the rig feel like the button"))
         report_press, guide = work.pressed(model.travel_mm, "compensate"), work.guide(order.device)
         law, speeds = _law(work, order), order.velocities_mm_s
         result = compensate(device, model, speeds, law, report_press, session, guide)
     _keep(work, result)
-    if order.probe_presses:
-        before = _baseline(work, order, model, order.seed + PROBE_SEED, order.probe_presses)
-        with work.session(order, work.folder.probe, order.seed + PROBE_SEED) as pressed:
-            _probe(work, order, pressed, model, _table(result), order.probe_presses, before)
+    with work.session(order, work.folder.probe, order.seed + PROBE_SEED) as pressed:
+        _probe(work, order, pressed, model, _table(result), presses, before)
 
 
 def judge(work: Work, order: ProbeOrder) -> None:
     """Judge a learned table, or the model's own force, on fresh presses."""
     model, learned = load_model(work.folder.button), work.learned()
-    with work.session(order, work.folder.probe, order.seed) as (device, _session):
-        _begin(work, device, model, order)
     before = _baseline(work, order, model, order.seed, order.presses) if learned else ()
     with work.session(order, work.folder.probe, order.seed) as (device, session):
+        if not learned:
+            _begin(work, device, model, order)
         table = _table(learned) if learned else _uncompensated(device, model, order)
         _probe(work, order, (device, session), model, table, order.presses, before)
 
@@ -81,6 +79,7 @@ def _baseline(
 ) -> tuple[ProbeCurve, ...]:
     """Press without compensation as often as what is judged, a simulated person in the same way."""
     with work.session(order, work.folder.baseline, seed) as (device, session):
+        _begin(work, device, model, order)
         work.tell(StageEvent("baseline", "pressing without compensation, to compare"))
         surface, method, tuning, _ = _uncompensated(device, model, order)
         about = (work.pressed(model.travel_mm, "baseline"), method, session, work.guide(order.device), tuning)
@@ -111,7 +110,8 @@ def _probe(
     outcome = JobOutcome("probe", found["verdict"].removesuffix("."), *counts, result.simulated, curves)
     bare = {(curve.stroke, curve.velocity_mm_s): curve for curve in before}
     marks = tuple(curve_noticed(c, bare.get((c.stroke, c.velocity_mm_s))) for c in result.curves)
-    line = headline(result.curves, before)
+    judged = "simulated presses" if result.simulated else "held-out presses"
+    line = headline(result.curves, before, judged if before else f"{judged}, uncompensated")
     work.tell(replace(outcome, next_step=found["next_step"], headline=line, noticed=marks))
 
 
