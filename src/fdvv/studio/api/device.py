@@ -184,11 +184,15 @@ def status(session: DeviceSession, _ask: Empty) -> DeviceStatus:
 @call("device.facts")
 def facts(session: DeviceSession, _ask: Empty) -> DeviceFacts:
     held = session.held()
-    found = {name: str(value) for name, value in dataclasses.asdict(held.device.info()).items()}
+    found = {name: _shown(value) for name, value in dataclasses.asdict(held.device.info()).items()}
     if held.remote:
         remote = held.remote
         found |= held.do(lambda: _firmware(remote))
     return DeviceFacts(tuple(DeviceFact(name.replace("_", " "), value) for name, value in found.items()))
+
+
+def _shown(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _firmware(remote: Remote) -> dict[str, str]:

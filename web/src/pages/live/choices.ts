@@ -1,7 +1,9 @@
 /** What forms offer: asked for when the page opens, and again when a job has left something. */
 
+import { workOn } from "../../app/current";
 import { call, type WorkChoices } from "../../net";
-import { type Signal, signal, tell } from "../../ui";
+import { type Signal, signal, tell, untracked } from "../../ui";
+import { nameFor } from "./fields";
 import { askedButton } from "./where";
 
 export const choices: Signal<WorkChoices | null> = signal<WorkChoices | null>(null);
@@ -12,16 +14,17 @@ export function refreshChoices(): void {
 
 export type Option = readonly [string, string];
 
-/** The buttons to choose from; one that another page asked work for is among them, whatever it is. */
+/** Options that are called what they are. */
+export const same = (names: readonly string[]): readonly Option[] => names.map((name) => [name, name]);
+
+/** The buttons to choose from; one that work was asked for is among them, whatever it is. */
 export function buttonOptions(found: WorkChoices, vibrating = false): readonly Option[] {
   const asked = askedButton();
-  const known = found.buttons.filter((button) => button.vibrates || !vibrating);
-  const options = known.map(
-    (one): Option => [one.button, `${one.name}${one.button.startsWith("own:") ? " (own)" : ""}`],
-  );
-  return !asked || found.buttons.some((button) => button.button === asked)
-    ? options
-    : [[asked, asked], ...options];
+  const options = found.buttons
+    .filter(({ vibrates }) => vibrates || !vibrating)
+    .map(({ button, name }): Option => [button, `${name}${button.startsWith("own:") ? " (own)" : ""}`]);
+  const known = !asked || found.buttons.some(({ button }) => button === asked);
+  return known ? options : [[asked, asked], ...options];
 }
 
 export function deviceOptions(found: WorkChoices, use: "rig" | "bench"): readonly Option[] {
@@ -35,8 +38,23 @@ export function deviceOptions(found: WorkChoices, use: "rig" | "bench"): readonl
     );
 }
 
-/** Name what comes out of work on a button, as a file may be named. */
-export function nameFor(button: string, added: string): string {
-  const name = button.slice(button.indexOf(":") + 1).replace(/[^\p{L}\p{N} .+()-]+/gu, "-");
-  return `${name}${added}`.slice(0, 80);
+interface Draft {
+  button: string;
+  name: string;
+}
+
+/** Choose a button, and name the result after it; a name that a person has typed stays. */
+export function named(draft: Draft, button: string, added = ""): void {
+  if (!draft.name || draft.name === nameFor(draft.button, added)) draft.name = nameFor(button, added);
+  draft.button = button;
+  workOn(button);
+}
+
+/** Begin with the button that is worked on, if it is offered; called when a form is made. */
+export function chosenButton(draft: Draft, options: () => readonly Option[], added = ""): void {
+  untracked(() => {
+    const wanted = [askedButton(), draft.button].find((one) => options().some(([button]) => button === one));
+    const button = wanted ?? options()[0]?.[0] ?? "";
+    if (button) named(draft, button, added);
+  });
 }

@@ -3,13 +3,14 @@
 import { call, type JobRow, type LiveChannel, live, type StartJob } from "../../net";
 import { type Signal, signal, tell, toast, untracked } from "../../ui";
 import { emptyPicture, fold, type JobEvent, type JobPicture } from "./picture";
+import { jobAddress } from "./where";
 
 export type Order = StartJob["order"];
 
 /** All jobs, newest first; null until the server has answered. */
 export const rows: Signal<readonly JobRow[] | null> = signal<readonly JobRow[] | null>(null);
 
-/** The job that is looked at and what its events come to; a new object with every change. */
+/** The job that is looked at and what its events come to. */
 export const watched: Signal<Watched> = signal<Watched>({ job: "", events: 0, picture: emptyPicture() });
 
 export interface Watched {
@@ -22,22 +23,35 @@ export interface Watched {
 // it may be open already, and then `opened` is called before there is a channel to send on
 let channel: LiveChannel<"jobs"> | null = null;
 channel = live().channel("jobs", {
-  opened: begin,
+  opened: follow,
   onMessage: (message) => {
-    if (message.type === "jobs") rows.set(message.jobs);
+    if (message.type === "jobs") rows.set(message.jobs.map(heard));
     else if (message.type === "job") changed(message.row);
     else take(message.job, message.from_event, message.events);
   },
   wrong: (line) => toast(line, "wrong"),
 });
-begin();
+follow();
 
-function begin(): void {
+function follow(): void {
   channel?.send({ type: "watch_jobs" });
   askEvents();
 }
 
+const heard_ms = new WeakMap<JobRow, number>();
+
+/** When a row was heard of: what is left of its time counts from then. */
+export function heardAt_ms(row: JobRow): number {
+  return heard_ms.get(row) ?? performance.now();
+}
+
+function heard(row: JobRow): JobRow {
+  heard_ms.set(row, performance.now());
+  return row;
+}
+
 function changed(row: JobRow): void {
+  heard(row);
   const known = rows.peek() ?? [];
   const there = known.some((one) => one.job === row.job);
   rows.set(there ? known.map((one) => (one.job === row.job ? row : one)) : [row, ...known]);
@@ -61,21 +75,23 @@ function take(job: string, from_event: number, events: readonly JobEvent[]): voi
   if (job !== now.job) return;
   if (from_event > now.events) return askEvents();
   const fresh = events.slice(now.events - from_event);
-  for (const event of fresh) fold(now.picture, event);
-  if (fresh.length) watched.set({ ...now, events: now.events + fresh.length });
+  if (fresh.length)
+    watched.set({ job, events: now.events + fresh.length, picture: fresh.reduce(fold, now.picture) });
 }
 
 export function rowOf(job: string): JobRow | null {
   return rows()?.find((row) => row.job === job) ?? null;
 }
 
-export function isUnderWay(row: JobRow): boolean {
-  return row.state === "waiting" || row.state === "running" || row.state === "needs you";
+/** Begin work; null if the studio refused, which is then shown. */
+async function startJob(order: Order): Promise<JobRow | null> {
+  return done(call("jobs.start", { order }));
 }
 
-/** Begin work; null if the studio refused, which is then shown. */
-export async function startJob(order: Order): Promise<JobRow | null> {
-  return done(call("jobs.start", { order }));
+/** Start work, and look at it. */
+export async function begin(order: Order): Promise<void> {
+  const row = await startJob(order);
+  if (row) location.hash = jobAddress(row);
 }
 
 export async function cancelJob(job: string): Promise<void> {

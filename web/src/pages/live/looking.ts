@@ -29,6 +29,7 @@ const DEFAULTS: Status = {
   programmed: "",
   travel_mm: null,
   fault: "",
+  loop: "",
   missing_ticks: 0,
   late_ticks: 0,
   missing_frames: 0,

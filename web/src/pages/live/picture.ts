@@ -1,11 +1,11 @@
 /** What a job's events come to: everything its views draw. Folded event by event, so that a reload gives the same. */
 
 import type {
-  CueStarted,
   CurveIntended,
   CurveProgress,
   JobEvents,
   JobOutcome,
+  JobRow,
   PaceProgress,
   PressAsked,
   PressEvent,
@@ -23,26 +23,31 @@ export interface NumberedPress {
   readonly press: PressEvent;
 }
 
+/** Nothing in it is ever changed: every event makes another one. */
 export interface JobPicture {
-  device: string;
-  simulated: boolean;
-  stage: string;
-  readonly notices: string[];
+  readonly device: string;
+  readonly simulated: boolean;
+  readonly stage: string;
+  readonly notices: readonly string[];
   /** By speed, mm/s. */
-  readonly intended: Map<number, CurveIntended>;
-  readonly presses: NumberedPress[];
+  readonly intended: ReadonlyMap<number, CurveIntended>;
+  readonly presses: readonly NumberedPress[];
   /** The newest standing of each curve, by curveKey. */
-  readonly curves: Map<string, CurveProgress>;
-  readonly outcomes: JobOutcome[];
-  pressAsked: PressAsked | null;
-  takeAsked: TakeAsked | null;
+  readonly curves: ReadonlyMap<string, CurveProgress>;
+  readonly outcomes: readonly JobOutcome[];
+  readonly pressAsked: PressAsked | null;
+  readonly takeAsked: TakeAsked | null;
   /** Counts the cues that began: a change means that one begins now. */
-  cues: number;
-  readonly takes: TakeEvent[];
-  paces: readonly PaceProgress[];
-  question: QuestionAsked | null;
-  answers: number;
-  rankings: readonly TuneRanking[];
+  readonly cues: number;
+  readonly takes: readonly TakeEvent[];
+  readonly paces: readonly PaceProgress[];
+  readonly question: QuestionAsked | null;
+  readonly answers: number;
+  readonly rankings: readonly TuneRanking[];
+}
+
+export function isUnderWay(row: JobRow): boolean {
+  return row.state === "waiting" || row.state === "running" || row.state === "needs you";
 }
 
 export type Stage = PressEvent["stage"];
@@ -73,91 +78,56 @@ export function curveKey(stage: string, stroke: StrokeName, velocity_mm_s: numbe
   return `${stage} ${stroke} ${velocity_mm_s}`;
 }
 
-/** Take one event into the picture. */
-export function fold(picture: JobPicture, event: JobEvent): void {
+/** Return the picture after an event. */
+export function fold(picture: JobPicture, event: JobEvent): JobPicture {
+  return { ...picture, ...changes(picture, event) };
+}
+
+function changes(picture: JobPicture, event: JobEvent): Partial<JobPicture> {
   switch (event.type) {
     case "begun":
-      picture.device = event.device;
-      picture.simulated = event.simulated;
-      break;
+      return { device: event.device, simulated: event.simulated };
     case "stage":
-      picture.stage = event.stage;
-      break;
+      return { stage: event.stage };
     case "notice":
-      picture.notices.push(event.text);
-      break;
+      return { notices: [...picture.notices, event.text] };
     case "intended":
-      picture.intended.set(event.velocity_mm_s, event);
-      break;
-    case "outcome":
-      foldOutcome(picture, event);
-      break;
-    case "ended":
-      settle(picture);
-      break;
-    default:
-      foldStep(picture, event);
-  }
-}
-
-type Step =
-  | PressAsked
-  | PressEvent
-  | TakeAsked
-  | CueStarted
-  | TakeEvent
-  | QuestionAsked
-  | Extract<JobEvent, { type: "answered" }>;
-
-function foldStep(picture: JobPicture, event: Step): void {
-  switch (event.type) {
+      return { intended: new Map(picture.intended).set(event.velocity_mm_s, event) };
     case "press_asked":
-      picture.pressAsked = event;
-      break;
-    case "press":
-      foldPress(picture, event);
-      break;
+      return { pressAsked: event };
+    case "press": {
+      const presses = [...picture.presses, { number: picture.presses.length + 1, press: event }];
+      return { pressAsked: null, presses, curves: withCurves(picture, event.stage, event.curves) };
+    }
     case "take_asked":
-      picture.takeAsked = event;
-      break;
+      return { takeAsked: event };
     case "cue":
-      picture.cues += 1;
-      break;
+      return { cues: picture.cues + 1 };
     case "take":
-      picture.takes.push(event);
-      picture.paces = event.paces;
-      picture.takeAsked = null;
-      break;
+      return { takes: [...picture.takes, event], paces: event.paces, takeAsked: null };
     case "asked":
-      picture.question = event;
-      break;
+      return { question: event };
     case "answered":
-      picture.question = null;
-      picture.answers = event.number;
-      picture.rankings = event.rankings;
+      return { question: null, answers: event.number, rankings: event.rankings };
+    case "outcome":
+      return {
+        outcomes: [...picture.outcomes.filter((one) => one.stage !== event.stage), event],
+        curves: withCurves(picture, event.stage, event.curves ?? []),
+        ...(event.rankings?.length && { rankings: event.rankings }),
+      };
+    case "ended":
+      // nothing waits for a person once the work is over
+      return { pressAsked: null, takeAsked: null, question: null };
   }
 }
 
-function foldPress(picture: JobPicture, press: PressEvent): void {
-  picture.pressAsked = null;
-  picture.presses.push({ number: picture.presses.length + 1, press });
-  keep(picture, press.stage, press.curves);
-}
-
-function foldOutcome(picture: JobPicture, outcome: JobOutcome): void {
-  const others = picture.outcomes.filter((one) => one.stage !== outcome.stage);
-  picture.outcomes.splice(0, picture.outcomes.length, ...others, outcome);
-  keep(picture, outcome.stage, outcome.curves ?? []);
-  if (outcome.rankings?.length) picture.rankings = outcome.rankings;
-}
-
-function keep(picture: JobPicture, stage: string, curves: readonly CurveProgress[]): void {
-  for (const curve of curves) picture.curves.set(curveKey(stage, curve.stroke, curve.velocity_mm_s), curve);
-}
-
-/** Nothing waits for a person once the work is over. */
-function settle(picture: JobPicture): void {
-  picture.pressAsked = null;
-  picture.takeAsked = null;
-  picture.question = null;
+function withCurves(
+  { curves }: JobPicture,
+  stage: string,
+  news: readonly CurveProgress[],
+): JobPicture["curves"] {
+  return new Map([
+    ...curves,
+    ...news.map((curve) => [curveKey(stage, curve.stroke, curve.velocity_mm_s), curve] as const),
+  ]);
 }

@@ -1,134 +1,106 @@
-/** Target and rendered forces of the last presses at one speed. */
+/** Before and after: target and rendered forces of both strokes at one speed, and where a finger would notice. */
 
-import { type Brush, Plot, palette, type Range, rangeOf, series, type View } from "../../draw";
-import { type Child, choice, h, signal } from "../../ui";
-import { listOf, speedsKey, swatch } from "./converge";
+import { type Brush, type PlotOptions, palette, type Range, rangeOf, series, type View } from "../../draw";
+import type { CurveIntended, CurveNoticed, FeltCurve } from "../../net";
 import { watched } from "./jobs";
-import type { NumberedPress } from "./picture";
+import type { Stage } from "./picture";
 import { spans } from "./spans";
 
-const SHOWN = 3;
-const BARE_DASH = [1, 3];
-/** Speed that is looked at; "last" follows the presses. */
-const chosen = signal("last");
+const RELEASE_DASH = [7, 3];
+type Stroke = "press" | "release";
+const STROKES: readonly Stroke[] = ["press", "release"];
 
-export function renderedPanel(): Child {
-  const speeds = speedsKey();
-  return () => view(listOf(speeds()));
-}
-
-function view(speeds: readonly number[]): HTMLElement {
-  chosen.set("last");
-  const plot = new Plot({
-    label: "Force over displacement: target, and rendered in the last presses",
+export function renderedOptions(velocity_mm_s: number): PlotOptions {
+  return {
+    label: `Force over displacement at ${velocity_mm_s} mm/s: target, before and after`,
     x: { label: "displacement", unit: "mm" },
     y: { label: "force", unit: "cN" },
     whole,
-    still: draw,
+    still: (brush, view) => draw(brush, view, velocity_mm_s),
     zoom: true,
-    height_px: 300,
-  });
-  const pick = choice({
-    label: "Speed",
-    options: [
-      ["last", "of the last press"],
-      ...speeds.map((v): [string, string] => [String(v), `${v} mm/s`]),
-    ],
-    value: () => chosen(),
-    set: (value) => chosen.set(value),
-  });
-  const legend = h(
-    "span",
-    { class: "legend" },
-    swatch(0, "intended"),
-    swatch(1, "rendered, press"),
-    swatch(2, "rendered, release"),
-    h(
-      "span",
-      { class: "muted" },
-      "Grey: ± 1 JND of force. Dotted grey: without compensation. Bars: where held-out presses would be noticed.",
-    ),
-  );
-  return h("div", { class: "stack" }, h("div", { class: "row spread" }, pick, legend), plot.element);
-}
-
-function speed(): number | null {
-  const last = watched().picture.presses.at(-1)?.press.velocity_mm_s;
-  const first = watched().picture.intended.keys().next().value;
-  return chosen() === "last" ? (last ?? first ?? null) : Number(chosen());
-}
-
-function lastPresses(velocity_mm_s: number): readonly NumberedPress[] {
-  return watched()
-    .picture.presses.filter(
-      ({ press }) => press.velocity_mm_s === velocity_mm_s && press.felt && press.stage !== "baseline",
-    )
-    .slice(-SHOWN);
-}
-
-/** The last press without compensation, to compare. */
-function bare(velocity_mm_s: number): NumberedPress | undefined {
-  return watched().picture.presses.findLast(
-    ({ press }) => press.velocity_mm_s === velocity_mm_s && press.felt && press.stage === "baseline",
-  );
-}
-
-function whole(): { x: Range; y: Range } {
-  const { intended } = watched().picture;
-  const columns = [...intended.values()].flatMap((one) => [one.press_cN, one.release_cN]);
-  const x = [...intended.values()][0]?.displacement_mm ?? [0, 4];
-  const y = rangeOf(columns, 0.15) ?? { low: 0, high: 100 };
-  return { x: { low: 0, high: x.at(-1) as number }, y: { low: Math.min(0, y.low), high: y.high } };
-}
-
-function draw(brush: Brush, view_: View): void {
-  const velocity_mm_s = speed();
-  const wanted = velocity_mm_s === null ? undefined : watched().picture.intended.get(velocity_mm_s);
-  if (!wanted || velocity_mm_s === null) return;
-  const x = wanted.displacement_mm.map((mm) => view_.x.px(mm));
-  const line = (values: readonly (number | null)[], n: number, opacity: number, width_px: number) => {
-    const { colour, dash } = n < 0 ? { colour: palette().muted, dash: BARE_DASH } : series(n);
-    const y = values.map((cN) => (cN === null ? NaN : view_.y.px(cN)));
-    brush.line(x, y, { colour, dash, opacity, width_px });
+    height_px: 220,
   };
-  band(brush, view_, x, wanted.press_cN, wanted.press_jnd_cN ?? []);
-  band(brush, view_, x, wanted.release_cN, wanted.release_jnd_cN ?? []);
-  markNoticed(brush, view_, velocity_mm_s);
-  const before = bare(velocity_mm_s)?.press.felt;
-  line(before?.press_cN ?? [], -1, 1, 1.5);
-  line(before?.release_cN ?? [], -1, 1, 1.5);
-  const presses = lastPresses(velocity_mm_s);
-  presses.forEach(({ press }, i) => {
-    const opacity = (i + 1) / presses.length;
-    line(press.felt?.press_cN ?? [], 1, opacity, 1.5);
-    line(press.felt?.release_cN ?? [], 2, opacity, 1.5);
-  });
-  line(wanted.press_cN, 0, 1, 2);
-  line(wanted.release_cN, 0, 0.6, 2);
 }
 
-/** One just noticeable difference on either side of a curve; nothing for jobs of older versions. */
-function band(
-  brush: Brush,
-  view_: View,
-  x: readonly number[],
-  force_cN: readonly number[],
-  jnd_cN: readonly number[],
-): void {
+/** The last press of a stage at a speed. */
+function last(velocity_mm_s: number, ...stages: Stage[]): FeltCurve | undefined {
+  const found = watched().picture.presses.findLast(
+    ({ press }) =>
+      press.velocity_mm_s === velocity_mm_s && press.felt && !press.skipped && stages.includes(press.stage),
+  );
+  return found?.press.felt ?? undefined;
+}
+
+const before = (velocity_mm_s: number) => last(velocity_mm_s, "baseline");
+/** Held-out presses say it better than those that were learned from. */
+const after = (velocity_mm_s: number) => last(velocity_mm_s, "probe") ?? last(velocity_mm_s, "compensate");
+
+/** One range for all speeds, so that they compare by eye; it holds all that is drawn. */
+function whole(): { x: Range; y: Range } {
+  const intended = [...watched().picture.intended.values()];
+  const felt = intended.flatMap((one) => [before(one.velocity_mm_s), after(one.velocity_mm_s)]);
+  const columns = [...intended, ...felt].flatMap((one) =>
+    one ? STROKES.map((stroke) => one[`${stroke}_cN`].map((cN) => cN ?? NaN)) : [],
+  );
+  const x_mm = intended[0]?.displacement_mm ?? [0, 4];
+  const y = rangeOf(columns, 0.08) ?? { low: 0, high: 100 };
+  return { x: { low: 0, high: x_mm.at(-1) as number }, y: { low: Math.min(0, y.low), high: y.high } };
+}
+
+function draw(brush: Brush, view: View, velocity_mm_s: number): void {
+  const wanted = watched().picture.intended.get(velocity_mm_s);
+  if (!wanted) return;
+  const x = wanted.displacement_mm.map((mm) => view.x.px(mm));
+  const { text } = palette();
+  const lines = (
+    curve: Pick<FeltCurve, "press_cN" | "release_cN"> | undefined,
+    colour: string,
+    width_px: number,
+  ) => {
+    for (const stroke of curve ? STROKES : []) {
+      const y = curve?.[`${stroke}_cN`].map((cN) => (cN === null ? NaN : view.y.px(cN))) ?? [];
+      brush.line(x, y, { colour, width_px, ...(stroke === "release" && { dash: RELEASE_DASH }) });
+    }
+  };
+  for (const stroke of STROKES) band(brush, view, x, wanted, stroke);
+  const felt = after(velocity_mm_s);
+  if (felt) for (const curve of noticed(velocity_mm_s)) mark(brush, view, wanted, felt, curve);
+  lines(before(velocity_mm_s), series(0).colour, 1.5);
+  lines(wanted, text, 1.2);
+  lines(felt, series(1).colour, 2);
+}
+
+/** One just noticeable difference on either side of a target; nothing for jobs of older versions. */
+function band(brush: Brush, view: View, x: readonly number[], wanted: CurveIntended, stroke: Stroke): void {
+  const [force_cN, jnd_cN] = [wanted[`${stroke}_cN`], wanted[`${stroke}_jnd_cN`] ?? []];
   if (jnd_cN.length !== force_cN.length) return;
-  const edge = (sign: number) => force_cN.map((cN, i) => view_.y.px(cN + sign * (jnd_cN[i] as number)));
-  const around = [...edge(-1), ...edge(1).reverse()];
-  brush.area([...x, ...[...x].reverse()], around, { colour: palette().muted, opacity: 0.18 });
+  const edge = (sign: number) => force_cN.map((cN, i) => view.y.px(cN + sign * (jnd_cN[i] as number)));
+  brush.area([...x, ...[...x].reverse()], [...edge(-1), ...edge(1).reverse()], {
+    colour: palette().muted,
+    opacity: 0.18,
+  });
 }
 
-/** Bars at the bottom of the plot, press above release, where most held-out presses would be noticed. */
-function markNoticed(brush: Brush, view_: View, velocity_mm_s: number): void {
+function noticed(velocity_mm_s: number): readonly CurveNoticed[] {
   const found = watched().picture.outcomes.find((one) => one.stage === "probe")?.noticed ?? [];
-  const { top, height } = view_.box;
-  for (const curve of found.filter((one) => one.velocity_mm_s === velocity_mm_s)) {
-    const n = curve.stroke === "press" ? 1 : 2;
-    const y = top + height - (n === 1 ? 9 : 3);
-    for (const [from, to] of spans(curve.displacement_mm, curve.noticed_ratio))
-      brush.line([view_.x.px(from), view_.x.px(to)], [y, y], { colour: series(n).colour, width_px: 4 });
+  return found.filter((one) => one.velocity_mm_s === velocity_mm_s);
+}
+
+/** Fill what is between target and rendered where most held-out presses would be noticed, and say so with a bar. */
+function mark(brush: Brush, view: View, wanted: CurveIntended, felt: FeltCurve, curve: CurveNoticed): void {
+  const { warning } = palette();
+  const [asked_cN, felt_cN] = [wanted[`${curve.stroke}_cN`], felt[`${curve.stroke}_cN`]];
+  const y = view.box.top + view.box.height - (curve.stroke === "press" ? 9 : 3);
+  for (const [from, to] of spans(curve.displacement_mm, curve.noticed_ratio)) {
+    const at = wanted.displacement_mm.flatMap((mm, i) =>
+      mm >= from && mm <= to && felt_cN[i] != null ? [i] : [],
+    );
+    const x = at.map((i) => view.x.px(wanted.displacement_mm[i] as number));
+    const edge = (cN: readonly (number | null)[]) => at.map((i) => view.y.px(cN[i] as number));
+    brush.area([...x, ...[...x].reverse()], [...edge(asked_cN), ...edge(felt_cN).reverse()], {
+      colour: warning,
+      opacity: 0.45,
+    });
+    brush.line([view.x.px(from), view.x.px(to)], [y, y], { colour: warning, width_px: 4 });
   }
 }

@@ -1,18 +1,20 @@
-/** Where the page is: a section, and the job that is looked at, both in the address. */
+/** Where the page is: a section, the job that is looked at, the button that work is asked for, all in the address. */
 
+import { current } from "../../app/current";
 import { address, go, route } from "../../app/route";
 import type { JobRow } from "../../net";
 
 export type Section = "compensate" | "capture" | "tune" | "device";
-export const SECTIONS: readonly (readonly [Section, string])[] = [
-  ["compensate", "Compensate"],
-  ["capture", "Capture"],
-  ["tune", "Tune vibration"],
-  ["device", "Device"],
-];
+export const SECTIONS: Readonly<Record<Section, string>> = {
+  compensate: "Compensate",
+  capture: "Capture",
+  tune: "Tune vibration",
+  device: "Device",
+};
 
 export function section(): Section {
-  return SECTIONS.find(([name]) => name === route().id)?.[0] ?? "compensate";
+  const { id } = route();
+  return id in SECTIONS ? (id as Section) : "compensate";
 }
 
 /** The job that is looked at; empty where a new one is set up. */
@@ -20,21 +22,17 @@ export function shownJob(): string {
   return route().query.get("job") ?? "";
 }
 
-/** The button that another page asked work for; empty if none did. */
+/** The button that another page asked work for, else the one that is worked on; empty if there is none. */
 export function askedButton(): string {
-  return route().query.get("button") ?? "";
+  return route().query.get("button") || current();
 }
 
-export function sectionOf(row: JobRow): Section {
+export function sectionOf(row: JobRow): Exclude<Section, "device"> {
   return row.kind === "probe" ? "compensate" : row.kind;
 }
 
 export function jobAddress(row: JobRow): string {
   return address("live", sectionOf(row), { job: row.job });
-}
-
-export function goToJob(row: JobRow): void {
-  go("live", sectionOf(row), { job: row.job });
 }
 
 export function goToSection(name: Section): void {

@@ -1,6 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { nameFor } from "../../../src/pages/live/choices";
-import { speedsOf } from "../../../src/pages/live/fields";
+import { nameFor, speedsOf } from "../../../src/pages/live/fields";
 
 describe("speeds in one field", () => {
   it("are read with commas, spaces or both", () => {

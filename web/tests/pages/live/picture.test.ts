@@ -27,11 +27,7 @@ const question: JobEvent = {
 };
 const ended: JobEvent = { type: "ended", state: "cancelled", line: "stopped" };
 
-const folded = (events: readonly JobEvent[]) => {
-  const picture = emptyPicture();
-  for (const event of events) fold(picture, event);
-  return picture;
-};
+const folded = (events: readonly JobEvent[]) => events.reduce(fold, emptyPicture());
 
 describe("the picture of a job", () => {
   it("keeps the newest standing of each curve and numbers the presses", () => {
@@ -46,10 +42,8 @@ describe("the picture of a job", () => {
 
   it("is the same whether events come at once or after a reload", () => {
     const events = [press([9]), press([9, 5]), question, ended];
-    const picture = emptyPicture();
-    for (const event of events.slice(0, 2)) fold(picture, event);
-    for (const event of events.slice(2)) fold(picture, event);
-    expect(picture).toEqual(folded(events));
+    const picture = folded(events.slice(0, 2));
+    expect(events.slice(2).reduce(fold, picture)).toEqual(folded(events));
   });
 
   it("waits for nobody once the work is over, or the answer is there", () => {
