@@ -243,7 +243,7 @@ def test_the_scope_shows_a_press_and_zero_force_is_one_key_away(page: Page) -> N
     page.keyboard.press("Escape")
     page.locator(".job-state.mode-idle").wait_for()
     page.get_by_role("button", name="Self-test").click()
-    page.locator(".verdicts .passed").first.wait_for()
+    page.get_by_role("row", name="position sensor passed").wait_for()
     assert audit(page) == []
     page.reload()
     page.locator(".job-state.mode-idle").wait_for()

@@ -75,7 +75,7 @@ def _off(rendered: RenderedPress, wanted: RenderedPress, travel_mm: float) -> tu
 
 def cell_check(reads_cN: float, closed: bool) -> CellCheck:
     """Judge what the cell of a free cap reads; closed : the force loop was closed then."""
-    reads = f"With nothing on the cap the load cell reads {reads_cN:.1f} cN"
+    reads = f"With nothing on the cap the load cell reads {round(reads_cN, 1) + 0:.1f} cN"
     if abs(reads_cN) > FREE_CELL_cN:
         line = f"{reads}: too much. Keep your hands off and check again, or mend or zero the cell."
         return CellCheck(False, reads_cN, line)

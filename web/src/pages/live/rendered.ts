@@ -2,43 +2,43 @@
 
 import { type Brush, type PlotOptions, palette, type Range, rangeOf, series, type View } from "../../draw";
 import type { CurveIntended, CurveNoticed, FeltCurve } from "../../net";
-import { watched } from "./jobs";
-import type { Stage } from "./picture";
+import type { JobPicture, Stage } from "./picture";
 import { spans } from "./spans";
 
 const RELEASE_DASH = [7, 3];
 type Stroke = "press" | "release";
 const STROKES: readonly Stroke[] = ["press", "release"];
 
-export function renderedOptions(velocity_mm_s: number): PlotOptions {
+/** picture : that of now. */
+export function renderedOptions(picture: () => JobPicture, velocity_mm_s: number): PlotOptions {
   return {
     label: `Force over displacement at ${velocity_mm_s} mm/s: target, before and after`,
     x: { label: "displacement", unit: "mm" },
     y: { label: "force", unit: "cN" },
-    whole,
-    still: (brush, view) => draw(brush, view, velocity_mm_s),
+    whole: () => whole(picture()),
+    still: (brush, view) => draw(brush, view, picture(), velocity_mm_s),
     zoom: true,
     height_px: 220,
   };
 }
 
 /** The last press of a stage at a speed. */
-function last(velocity_mm_s: number, ...stages: Stage[]): FeltCurve | undefined {
-  const found = watched().picture.presses.findLast(
+function last(picture: JobPicture, velocity_mm_s: number, stage: Stage): FeltCurve | undefined {
+  const found = picture.presses.findLast(
     ({ press }) =>
-      press.velocity_mm_s === velocity_mm_s && press.felt && !press.skipped && stages.includes(press.stage),
+      press.velocity_mm_s === velocity_mm_s && press.felt && !press.skipped && press.stage === stage,
   );
   return found?.press.felt ?? undefined;
 }
 
-const before = (velocity_mm_s: number) => last(velocity_mm_s, "baseline");
 /** Held-out presses say it better than those that were learned from. */
-const after = (velocity_mm_s: number) => last(velocity_mm_s, "probe") ?? last(velocity_mm_s, "compensate");
+const after = (picture: JobPicture, velocity_mm_s: number) =>
+  last(picture, velocity_mm_s, "probe") ?? last(picture, velocity_mm_s, "compensate");
 
 /** One range for all speeds, so that they compare by eye; it holds all that is drawn. */
-function whole(): { x: Range; y: Range } {
-  const intended = [...watched().picture.intended.values()];
-  const felt = intended.flatMap((one) => [before(one.velocity_mm_s), after(one.velocity_mm_s)]);
+function whole(picture: JobPicture): { x: Range; y: Range } {
+  const intended = [...picture.intended.values()];
+  const felt = intended.flatMap(({ velocity_mm_s: v }) => [last(picture, v, "baseline"), after(picture, v)]);
   const columns = [...intended, ...felt].flatMap((one) =>
     one ? STROKES.map((stroke) => one[`${stroke}_cN`].map((cN) => cN ?? NaN)) : [],
   );
@@ -47,8 +47,8 @@ function whole(): { x: Range; y: Range } {
   return { x: { low: 0, high: x_mm.at(-1) as number }, y: { low: Math.min(0, y.low), high: y.high } };
 }
 
-function draw(brush: Brush, view: View, velocity_mm_s: number): void {
-  const wanted = watched().picture.intended.get(velocity_mm_s);
+function draw(brush: Brush, view: View, picture: JobPicture, velocity_mm_s: number): void {
+  const wanted = picture.intended.get(velocity_mm_s);
   if (!wanted) return;
   const x = wanted.displacement_mm.map((mm) => view.x.px(mm));
   const { text } = palette();
@@ -63,9 +63,9 @@ function draw(brush: Brush, view: View, velocity_mm_s: number): void {
     }
   };
   for (const stroke of STROKES) band(brush, view, x, wanted, stroke);
-  const felt = after(velocity_mm_s);
-  if (felt) for (const curve of noticed(velocity_mm_s)) mark(brush, view, wanted, felt, curve);
-  lines(before(velocity_mm_s), series(0).colour, 1.5);
+  const felt = after(picture, velocity_mm_s);
+  if (felt) for (const curve of noticed(picture, velocity_mm_s)) mark(brush, view, wanted, felt, curve);
+  lines(last(picture, velocity_mm_s, "baseline"), series(0).colour, 1.5);
   lines(wanted, text, 1.2);
   lines(felt, series(1).colour, 2);
 }
@@ -81,8 +81,8 @@ function band(brush: Brush, view: View, x: readonly number[], wanted: CurveInten
   });
 }
 
-function noticed(velocity_mm_s: number): readonly CurveNoticed[] {
-  const found = watched().picture.outcomes.find((one) => one.stage === "probe")?.noticed ?? [];
+function noticed(picture: JobPicture, velocity_mm_s: number): readonly CurveNoticed[] {
+  const found = picture.outcomes.find((one) => one.stage === "probe")?.noticed ?? [];
   return found.filter((one) => one.velocity_mm_s === velocity_mm_s);
 }
 

@@ -8,7 +8,7 @@ export type Section = "compensate" | "capture" | "tune" | "device";
 export const SECTIONS: Readonly<Record<Section, string>> = {
   compensate: "Compensate",
   capture: "Capture",
-  tune: "Tune vibration",
+  tune: "Tune",
   device: "Device",
 };
 
