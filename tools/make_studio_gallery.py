@@ -77,16 +77,17 @@ def hold(page: Page) -> None:
 def learn(page: Page) -> None:
     """Have the simulated rig learn a button."""
     page.get_by_label("Button", exact=True).select_option("builtin:mx-clear")
-    page.get_by_role("button", name="Start learning").click()
+    page.get_by_role("button", name="Start", exact=True).click()
     page.wait_for_selector(".job-head .job-state.done", timeout=LONG_ms)
 
 
 def connect(page: Page) -> None:
     """Connect the simulated rig and press on it."""
     page.get_by_role("button", name="Connect").click()
-    page.get_by_role("button", name="Upload").click()
+    next_step = page.get_by_role("region", name="Verdict").get_by_role("button")
+    next_step.click()
     page.get_by_text("program: ").wait_for()
-    page.get_by_role("button", name="Press once").click()
+    next_step.click()
     page.get_by_text("in true displacement, simulated").wait_for()
     page.wait_for_timeout(1500)
 

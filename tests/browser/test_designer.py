@@ -89,10 +89,11 @@ def test_a_designer_finds_edits_presses_renders_and_keeps_a_button(
 
     page.goto(f"{studio.base}/#/live/compensate")
     page.get_by_label("Button", exact=True).select_option(unquote(own))
+    page.get_by_text("Advanced").click()
     speeds = page.get_by_label("Speeds", exact=True)
     speeds.fill("100")
     speeds.press("Enter")
-    page.get_by_role("button", name="Start learning").click()
+    page.get_by_role("button", name="Start", exact=True).click()
     page.wait_for_selector(".job-head .job-state.done", timeout=90_000)
 
     page.goto(f"{studio.base}/#/edit/{own}")
