@@ -92,6 +92,8 @@ def page(context: BrowserContext, studio: RunningStudio) -> Iterator[Page]:
     wrong: list[str] = []
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.on("console", lambda message: wrong.append(message.text) if _fault(message) else None)
+    # file choosers are caught from the start: a key pressed at once opened the system's before they were
+    page.on("filechooser", lambda _chooser: None)
     page.goto(studio.address)
     page.wait_for_selector("html[data-ready]")
     yield page
