@@ -6,6 +6,7 @@ import Shell from "./app/Shell.svelte";
 import { followTheme } from "./app/theme";
 import { live } from "./net/live";
 import { listenForShortcuts } from "./ui/keys";
+import "./tokens.css";
 import "./style.css";
 
 followTheme();

@@ -13,7 +13,12 @@ export interface Palette {
   readonly good: string;
   /** Eight colours that people with any kind of colour vision tell apart; always used with SERIES_DASH. */
   readonly series: readonly string[];
+  /** Stops of the scale of velocity, slow to fast; read them by velocityColour. */
+  readonly velocity: readonly string[];
 }
+
+/** The dash of every release, wherever both strokes are drawn. */
+export const RELEASE_DASH: readonly number[] = [6, 4];
 
 /** Dashes that go with the series colours, so that colour is never the only difference. */
 export const SERIES_DASH: readonly (readonly number[])[] = [
@@ -29,7 +34,7 @@ export const SERIES_DASH: readonly (readonly number[])[] = [
 
 function read(): Palette {
   const style = getComputedStyle(document.documentElement);
-  const colour = (name: string) => style.getPropertyValue(`--${name}`).trim() || "#888";
+  const colour = (name: string) => style.getPropertyValue(`--${name}`).trim();
   return {
     text: colour("text"),
     muted: colour("muted"),
@@ -40,6 +45,7 @@ function read(): Palette {
     danger: colour("danger"),
     good: colour("good"),
     series: Array.from({ length: 8 }, (_, i) => colour(`series-${i + 1}`)),
+    velocity: Array.from({ length: 5 }, (_, i) => colour(`velocity-${i + 1}`)),
   };
 }
 

@@ -4,6 +4,7 @@ import { h } from "../ui/element";
 import { effect, onCleanup, type Signal, signal } from "../ui/signal.svelte";
 import { type Brush, CanvasBrush, SvgBrush } from "./brush";
 import { drawFrame } from "./frame";
+import { labelRoom_px, paintEndLabels } from "./labels";
 import { palette } from "./palette";
 import { type DataPoint, linear, type Range, type ScreenPoint } from "./scale";
 import type { PlotOptions, View } from "./types";
@@ -47,10 +48,12 @@ export class Plot {
     const { width_px, height_px } = this.size();
     const m = this.options.small ? SMALL : MARGIN;
     const seen = this.window() ?? this.options.whole();
+    const names = this.options.ends?.().map((one) => one.text) ?? [];
+    const right = m.right + labelRoom_px(names, width_px);
     const box = {
       left: m.left,
       top: m.top,
-      width: Math.max(1, width_px - m.left - m.right),
+      width: Math.max(1, width_px - m.left - right),
       height: Math.max(1, height_px - m.top - m.bottom),
     };
     return {
@@ -124,6 +127,7 @@ export class Plot {
     if (layer === 0) drawFrame(brush, view, this.options);
     const work = layer === 0 ? this.options.still : this.options.moving;
     if (work) brush.clipped(view.box, () => work(brush, view));
+    if (layer === 1 && this.options.ends) paintEndLabels(brush, view, this.options.ends());
   }
 
   /** Each layer is painted in an effect of its own, at most once a frame. */

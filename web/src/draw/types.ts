@@ -20,6 +20,18 @@ export interface View {
 
 export type Layer = (brush: Brush, view: View) => void;
 
+/** A name at the end of a curve. */
+export interface EndLabel {
+  readonly text: string;
+  readonly colour: string;
+  /** Where the curve ends, in the plot's units. */
+  readonly x: number;
+  readonly y: number;
+  /** Those that matter most keep their place where room is short. */
+  readonly weight?: number;
+  readonly opacity?: number;
+}
+
 export interface PlotOptions {
   /** Says what the plot shows to those who do not see it. */
   readonly label: string;
@@ -36,4 +48,6 @@ export interface PlotOptions {
   readonly height_px?: number;
   /** Leave the axes' labels out, for small plots whose neighbours carry them. */
   readonly small?: boolean;
+  /** Names at the ends of curves, in a margin of their own on the right. */
+  readonly ends?: () => readonly EndLabel[];
 }

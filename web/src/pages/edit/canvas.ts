@@ -41,7 +41,8 @@ export function editorCanvas(editor: EditorController, rig: RigView): EditorCanv
     label: "Force over displacement: drag the control points of the active curve",
     x: { label: "displacement", unit: "mm" },
     y: { label: "force", unit: "cN" },
-    whole: wholeOf(editor),
+    whole: wholeOf(editor, rig),
+    ends: computed(() => paint.velocityNames(editor.model().curves, editor.curve())),
     still: (brush, view) => paintStill(editor, rig, brush, view),
     moving: (brush, view) => timed("fdvv-draw", () => paintMoving(editor, rig, pointer, brush, view)),
     zoom: true,
@@ -58,13 +59,24 @@ export function editorCanvas(editor: EditorController, rig: RigView): EditorCanv
 }
 
 /** Everything there is to see, with room above for the handles of places; it stays while a drag goes on, so that the axes do not run from the hand. */
-function wholeOf(editor: EditorController): () => { readonly x: Range; readonly y: Range } {
-  const ranges = signal(rangesOf(editor));
-  effect(() => ranges.set(rangesOf(editor)));
+function wholeOf(editor: EditorController, rig: RigView): () => { readonly x: Range; readonly y: Range } {
+  const ranges = signal(rangesOf(editor, []));
+  effect(() => {
+    const forces = [
+      ...rig.curves().flatMap((one) => one.achievable_cN),
+      ...(rig.measured()?.curves ?? []).flatMap((one) => [...one.low_cN, ...one.high_cN]),
+    ];
+    editor.settled();
+    if (!editor.store.history.dragging) ranges.set(rangesOf(editor, forces));
+  });
   return computed(() => ranges());
 }
 
-function rangesOf(editor: EditorController): { readonly x: Range; readonly y: Range } {
+/** forces_cN : what else is drawn, such as what a rig renders. */
+function rangesOf(
+  editor: EditorController,
+  forces_cN: readonly number[],
+): { readonly x: Range; readonly y: Range } {
   const model = editor.settled();
   let [low, high, far] = [0, 10, model.travel_mm];
   for (const curve of model.curves) {
@@ -73,6 +85,8 @@ function rangesOf(editor: EditorController): { readonly x: Range; readonly y: Ra
     for (const force of force_cN) [low, high] = [Math.min(low, force), Math.max(high, force)];
     for (const force of curve.control_points_cN) [low, high] = [Math.min(low, force), Math.max(high, force)];
   }
+  for (const force of forces_cN)
+    if (Number.isFinite(force)) [low, high] = [Math.min(low, force), Math.max(high, force)];
   const air = 0.08 * (high - low);
   return {
     x: { low: -0.03 * far, high: far * 1.06 },
@@ -85,7 +99,7 @@ type Brush = Parameters<typeof paint.paintBefore>[0];
 function paintStill(editor: EditorController, rig: RigView, brush: Brush, view: View): void {
   const { stroke, velocity_mm_s } = editor.active();
   const before = editor.showBefore() ? curveAt(editor.before(), { stroke, velocity_mm_s }) : null;
-  paint.paintOthers(brush, view, editor.others(), editor.velocities());
+  paint.paintOthers(brush, view, editor.others());
   if (before) paint.paintBefore(brush, view, before);
   for (const one of rig.measured()?.curves ?? []) {
     if (one.stroke !== stroke || one.velocity_mm_s !== velocity_mm_s) continue;
@@ -100,16 +114,15 @@ function paintMoving(
   brush: Brush,
   view: View,
 ): void {
-  const [model, curve, velocities] = [editor.model(), editor.curve(), editor.velocities()];
+  const [model, curve] = [editor.model(), editor.curve()];
   const span = editor.span();
   if (span) paint.paintSpan(brush, view, span.from_mm, span.to_mm);
   const made = rig.curves().find((one) => one.stroke === curve.stroke);
   for (const { start_mm, end_mm, limit } of made?.limited ?? [])
     paint.paintHatched(brush, view, start_mm, end_mm, limit === "force" ? "force limit" : "slew limit");
   paintPositions(brush, view, model, curve, pointer.held());
-  paint.paintActive(brush, view, curve, velocities, editor.selection());
+  paint.paintActive(brush, view, curve, editor.selection());
   if (made) paint.paintAchievable(brush, view, made.displacement_mm, made.achievable_cN);
-  paint.paintName(brush, view, curve, velocities, true);
   paintBumps(brush, view, curve, model.travel_mm);
   paintPointer(editor, pointer, brush, view);
 }
@@ -131,7 +144,7 @@ function paintPointer(editor: EditorController, pointer: PointerOverlay, brush: 
     const on = view.y.px(forceNear_cN(sampled(editor.curve()), hover.x));
     brush.line([x, x], [view.box.top, view.box.top + view.box.height], { colour: muted, opacity: 0.5 });
     brush.line([view.box.left, view.box.left + view.box.width], [y, y], { colour: muted, opacity: 0.5 });
-    const { colour } = lineOf(editor.velocities(), editor.curve());
+    const { colour } = lineOf(editor.curve());
     brush.circle({ x_px: x, y_px: on }, 3, { colour });
   }
 }

@@ -1,26 +1,17 @@
-/** How curves look: a colour for each velocity, dashes for the release, and a short name beside the line. */
+/** How curves look: the scale of velocity, the dash of releases, and names. */
 
-import { type Stroke as Line, series } from "../../draw";
+import { type Stroke as Line, RELEASE_DASH, velocityColour } from "../../draw";
 import type { CurveRef, FDVVModel } from "../../model";
 
-const RELEASE_DASH = [6, 4] as const;
-
-/** The velocities of a model, slow before fast, unknown first; their order gives the colours. */
+/** The velocities of a model, slow before fast, unknown first. */
 export function velocitiesOf(model: FDVVModel): (number | null)[] {
   const all = new Set(model.curves.map((curve) => curve.velocity_mm_s));
   return [...all].sort((a, b) => (a ?? 0) - (b ?? 0));
 }
 
 /** The line of a curve: its velocity's colour, dashed for a release. */
-export function lineOf(velocities: readonly (number | null)[], at: CurveRef): Line {
-  const { colour } = series(Math.max(0, velocities.indexOf(at.velocity_mm_s)));
-  return { colour, dash: at.stroke === "release" ? RELEASE_DASH : [] };
-}
-
-/** The name shown beside a line. */
-export function shortName(at: CurveRef): string {
-  const speed = at.velocity_mm_s === null ? "?" : String(at.velocity_mm_s);
-  return `${at.stroke === "press" ? "↓" : "↑"} ${speed}`;
+export function lineOf({ stroke, velocity_mm_s }: CurveRef): Line {
+  return { colour: velocityColour(velocity_mm_s), dash: stroke === "release" ? RELEASE_DASH : [] };
 }
 
 /** The name in lists. */

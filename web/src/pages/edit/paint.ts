@@ -1,13 +1,11 @@
 /** What the editor's canvas shows, stroke by stroke; every painter goes through a brush, so that it can be exported. */
 
-import type { Brush, Stroke as Line, View } from "../../draw";
-import { palette } from "../../draw";
+import type { Brush, EndLabel, Stroke as Line, View } from "../../draw";
+import { palette, velocityColour } from "../../draw";
 import { controlPoints_mm } from "../../math";
 import type { ForceCurve } from "../../model";
-import { DIMMED, lineOf, shortName } from "./look";
-import { forceNear_cN, inPixels, sampled } from "./samples";
-
-type Velocities = readonly (number | null)[];
+import { DIMMED, lineOf } from "./look";
+import { inPixels, sampled } from "./samples";
 
 /** A curve as a line. */
 export function paintCurve(brush: Brush, view: View, curve: ForceCurve, line: Line): void {
@@ -15,54 +13,33 @@ export function paintCurve(brush: Brush, view: View, curve: ForceCurve, line: Li
   brush.line(inPixels(view.x, x_mm), inPixels(view.y, force_cN), line);
 }
 
-/** The curves that are not edited: dimmed, each with its short name on the line, spread so that names stay apart. */
-export function paintOthers(
-  brush: Brush,
-  view: View,
-  curves: readonly ForceCurve[],
-  velocities: Velocities,
-): void {
+/** The curves that are not edited, dimmed. */
+export function paintOthers(brush: Brush, view: View, curves: readonly ForceCurve[]): void {
   for (const curve of curves)
-    paintCurve(brush, view, curve, { ...lineOf(velocities, curve), width_px: 1.4, opacity: DIMMED });
-  for (const curve of curves) paintName(brush, view, curve, velocities, false);
+    paintCurve(brush, view, curve, { ...lineOf(curve), width_px: 1.4, opacity: DIMMED });
 }
 
-/** The short name of a curve on its line. */
-export function paintName(
-  brush: Brush,
-  view: View,
-  curve: ForceCurve,
-  velocities: Velocities,
-  active: boolean,
-): void {
-  const { colour } = lineOf(velocities, curve);
-  const { low, high } = view.x.range;
-  const rank = velocities.indexOf(curve.velocity_mm_s) + (curve.stroke === "press" ? 0 : 0.5);
-  const x_mm =
-    low + (high - low) * (active ? 0.72 : 0.34 + (0.5 * (rank + 0.5)) / Math.max(2, velocities.length));
-  const at = {
-    x_px: view.x.px(x_mm),
-    y_px: view.y.px(forceNear_cN(sampled(curve), x_mm)) + (active ? 16 : -8),
-  };
-  const style = {
-    colour,
-    size_px: active ? 12 : 11,
-    weight: active ? 700 : 400,
-    align: "center",
-    halo: palette().surface,
-  } as const;
-  brush.text(shortName(curve), at, style);
+/** A name for each velocity where its curves end: press and release meet there. */
+export function velocityNames(curves: readonly ForceCurve[], active: ForceCurve): EndLabel[] {
+  const at = [...new Map(curves.map((curve) => [curve.velocity_mm_s, curve])).keys()];
+  return at.map((velocity_mm_s) => {
+    const mine = velocity_mm_s === active.velocity_mm_s;
+    const { x_mm, force_cN } = sampled(
+      mine ? active : curves.find((c) => c.velocity_mm_s === velocity_mm_s)!,
+    );
+    return {
+      text: velocity_mm_s === null ? "speed unknown" : `${velocity_mm_s} mm/s`,
+      colour: velocityColour(velocity_mm_s),
+      x: x_mm[x_mm.length - 1]!,
+      y: force_cN[force_cN.length - 1]!,
+      weight: mine ? 1 : 0,
+    };
+  });
 }
 
 /** The curve that is edited, its control polygon and its control points; selected ones are filled. */
-export function paintActive(
-  brush: Brush,
-  view: View,
-  curve: ForceCurve,
-  velocities: Velocities,
-  selection: readonly number[],
-): void {
-  const line = lineOf(velocities, curve);
+export function paintActive(brush: Brush, view: View, curve: ForceCurve, selection: readonly number[]): void {
+  const line = lineOf(curve);
   const { surface, text } = palette();
   paintCurve(brush, view, curve, { colour: surface, width_px: 6 });
   paintCurve(brush, view, curve, { ...line, width_px: 2.6 });

@@ -1,15 +1,20 @@
-/** How the buttons of the overlay are distinguished: colour and dash; more than twelve are dimmed. */
+/** How the compared buttons look: a colour each; more than twelve are dimmed, of more than six those not looked at. */
 
-import { palette, SERIES_DASH, type Stroke } from "../../draw";
+import { palette, type Stroke } from "../../draw";
 
 export const DISTINCT = 12;
-const DASH_step = 3;
+/** More than these on the same axes are a crowd: all but the ones pointed at fade. */
+const CROWD = 6;
+const FADED = 0.22;
 
-/** Return the stroke of the n-th button of the overlay; after eight colours the dashes are others. */
+/** Return the stroke of the n-th button of the overlay. */
 export function strokeOf(n: number): Stroke {
   const { series, muted } = palette();
   if (n >= DISTINCT) return { colour: muted, opacity: 0.45, width_px: 1 };
-  const round = Math.floor(n / series.length);
-  const dash = SERIES_DASH[(n + DASH_step * round) % SERIES_DASH.length] as readonly number[];
-  return { colour: series[n % series.length] as string, dash, width_px: 2 };
+  return { colour: series[n % series.length] as string, width_px: 2 };
+}
+
+/** Return the opacity of a button among `count`. */
+export function fade(count: number, looked_at: boolean): number {
+  return count > CROWD && !looked_at ? FADED : 1;
 }

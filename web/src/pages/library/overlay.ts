@@ -1,11 +1,11 @@
 /** The curves of the chosen buttons on the same axes: force, slope or work over displacement. */
 
-import { type Brush, Plot, palette, type Stroke, type View } from "../../draw";
+import { type Brush, type EndLabel, Plot, palette, RELEASE_DASH, type Stroke, type View } from "../../draw";
 import type { LibraryButton } from "../../net/messages";
 import { computed, type Signal, signal } from "../../ui";
 import { speedText } from "./columns";
 import { type Line, lineOf, type StrokeName, seen, strokeAt, valueAt } from "./curves";
-import { DISTINCT, strokeOf } from "./marks";
+import { DISTINCT, fade, strokeOf } from "./marks";
 import { SKETCH_POINTS } from "./rows";
 import type { ViewName } from "./state";
 import type { LibraryStore } from "./store";
@@ -25,11 +25,15 @@ export const AXES: Readonly<Record<ViewName, { readonly label: string; readonly 
   work: { label: "work", unit: "mJ" },
 };
 
+const NEAR_px = 24;
+
 export class Overlay {
   readonly plot: Plot;
   /** Where the pointer is, mm; null outside. */
   readonly cursor_mm: Signal<number | null> = signal(null);
   readonly drawn: () => readonly Drawn[];
+  /** Id of the button that is pointed at, in the legend or by the pointer near its curve. */
+  readonly pointed: Signal<string | null> = signal(null);
   private readonly stamp: Signal<string | null> = signal(null);
 
   constructor(private readonly store: LibraryStore) {
@@ -51,9 +55,17 @@ export class Overlay {
       still: (brush, view) => this.paint(brush, view),
       moving: (brush, view) => this.paintCursor(brush, view),
       zoom: true,
+      ends: computed(() => this.ends()),
     });
-    this.plot.element.addEventListener("pointermove", (event) => this.cursor_mm.set(this.plot.at(event).x));
-    this.plot.element.addEventListener("pointerleave", () => this.cursor_mm.set(null));
+    this.plot.element.addEventListener("pointermove", (event) => {
+      const at = this.plot.at(event);
+      this.cursor_mm.set(at.x);
+      this.pointed.set(this.nearest(at.x, at.y_px));
+    });
+    this.plot.element.addEventListener("pointerleave", () => {
+      this.cursor_mm.set(null);
+      this.pointed.set(null);
+    });
   }
 
   /** Return the button that the keys of the list are at, if it is not chosen anyway. */
@@ -74,6 +86,41 @@ export class Overlay {
       ];
     });
     return lines.length ? { name: rows.names[at] ?? "", lines } : null;
+  }
+
+  /** Return how strongly a compared button is drawn. */
+  opacity(id: string): number {
+    const { overlay, reference } = this.store.shown();
+    const looked_at = [this.pointed() ?? reference, this.store.activeId()].includes(id);
+    return fade(overlay.length, looked_at);
+  }
+
+  /** The id of the button whose curve is nearest to a place, if it is near. */
+  private nearest(x_mm: number, y_px: number): string | null {
+    const { y } = this.plot.view();
+    let [id, least]: [string | null, number] = [null, NEAR_px];
+    for (const one of this.drawn()) {
+      const off = Math.abs(y.px(valueAt(one.line, x_mm)) - y_px);
+      if (off < least) [id, least] = [one.button.id, off];
+    }
+    return id;
+  }
+
+  /** A name for each compared button, where its press ends. */
+  private ends(): EndLabel[] {
+    const first = (one: Drawn, i: number, all: readonly Drawn[]) =>
+      one.n < DISTINCT && i === all.findIndex((other) => other.n === one.n && other.stroke === one.stroke);
+    const presses = this.drawn().filter(
+      (one) => one.stroke === (this.store.shown().press ? "press" : "release"),
+    );
+    return presses.filter(first).map((one) => ({
+      text: one.button.name,
+      colour: strokeOf(one.n).colour,
+      x: one.line.x_mm.at(-1) as number,
+      y: one.line.y.findLast(Number.isFinite) ?? 0,
+      weight: one.button.id === (this.pointed() ?? this.store.shown().reference) ? 1 : 0,
+      opacity: this.opacity(one.button.id),
+    }));
   }
 
   /** Run work while names and a line of origin stand in the plot, as files need them. */
@@ -117,9 +164,14 @@ export class Overlay {
     preview?.lines.forEach((line, i) =>
       this.paintLine(brush, view, line, { colour: palette().text, width_px: i ? 1 : 1.5, dash: [1.5, 3] }),
     );
-    for (const one of [...drawn].reverse()) this.paintLine(brush, view, one.line, strokeFor(one));
+    for (const one of [...drawn].reverse()) {
+      const stroke = strokeFor(one);
+      const opacity = (stroke.opacity ?? 1) * this.opacity(one.button.id);
+      this.paintLine(brush, view, one.line, { ...stroke, opacity });
+    }
     if (marks && name === "force")
-      for (const one of drawn) if (one.n < DISTINCT) this.paintMarks(brush, view, one);
+      for (const one of drawn)
+        if (one.n < DISTINCT && this.opacity(one.button.id) === 1) this.paintMarks(brush, view, one);
     const stamp = this.stamp();
     if (stamp !== null) this.paintNames(brush, view, drawn, stamp);
   }
@@ -196,9 +248,9 @@ export class Overlay {
   }
 }
 
-/** The press as the button's stroke; the release the same, thinner and paler. */
+/** The press as the button's stroke; the release the same, thinner and dashed. */
 function strokeFor(one: Drawn): Stroke {
   const stroke = strokeOf(one.n);
   if (one.stroke === "press") return stroke;
-  return { ...stroke, width_px: 1.2, opacity: (stroke.opacity ?? 1) * 0.7 };
+  return { ...stroke, width_px: 1.4, dash: RELEASE_DASH };
 }
