@@ -34,7 +34,7 @@ def found_by_typing(page: Page, words: str) -> None:
     expect(page.locator(".lib-row:not([hidden])")).to_have_count(1, timeout=40_000)
     page.keyboard.press("ArrowDown")
     page.keyboard.press("Enter")
-    expect(page.get_by_role("button", name="Edit a copy")).to_be_focused()
+    expect(page.get_by_role("button", name="Edit", exact=True)).to_be_focused()
     page.keyboard.press("Enter")
     page.wait_for_selector(".edit-points")
 

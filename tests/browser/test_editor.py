@@ -336,19 +336,15 @@ def test_constraints_hold_while_a_point_is_moved(editor: Page) -> None:
     )
 
 
-def test_a_button_is_renamed_and_duplicated(editor: Page, tmp_path: Path) -> None:
+def test_the_editor_says_what_the_button_is_like_and_leads_on_to_pressing_it(editor: Page) -> None:
+    verdict = editor.get_by_role("region", name="Verdict")
+    expect(verdict).to_contain_text(
+        "mx-clear falls by 13.3 cN after its peak of 64.7 cN, actuates at 2.00 mm"
+    )
     nudge(editor)
     saved(editor)
-    editor.click("role=button[name='Button']")
-    editor.click("role=menuitem[name='Rename…']")
-    editor.get_by_label("New name").fill("my clear")
-    editor.keyboard.press("Enter")
-    expect(editor.locator("h1")).to_have_text("my clear")
-    editor.click("role=button[name='Button']")
-    editor.click("role=menuitem[name=Duplicate]")
-    expect(editor.locator("h1")).not_to_have_text("my clear")
-    names = {path.name for path in (tmp_path / "project" / "buttons").glob("*.fdvv.json")}
-    assert len(names) == 2
+    verdict.get_by_role("link", name="Press it").click()
+    expect(editor).to_have_url(re.compile("#/press/own%3Amx-clear%202"))
 
 
 def test_the_model_and_its_curves_are_taken_away_as_files(editor: Page, tmp_path: Path) -> None:

@@ -48,7 +48,7 @@ def library(context: BrowserContext, with_sources: RunningStudio) -> Iterator[Pa
     wrong: list[str] = []
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.on("console", lambda message: wrong.append(message.text) if message.type == "error" else None)
-    page.goto(with_sources.address)
+    page.goto(f"{with_sources.address}#/library")
     expect(page.locator(".lib-status")).to_contain_text("9 buttons", timeout=40_000)
     yield page
     assert wrong == []
@@ -88,26 +88,63 @@ def test_the_list_is_worked_by_keys_alone(library: Page) -> None:
     expect(library.locator(".lib-chip")).to_have_count(1)
     expect(library.locator(ROWS)).to_have_attribute("aria-selected", "true")
     library.keyboard.press("Enter")
-    expect(library.get_by_role("button", name="Edit a copy")).to_be_focused()
+    expect(library.get_by_role("button", name="Edit", exact=True)).to_be_focused()
     library.get_by_role("button", name="Press it").press("Enter")
     library.wait_for_selector("main[data-page=press]")
     expect(library).to_have_url(re.compile(r"#/press/builtin%3Amx-clear(\?|$)"))
 
 
-def test_a_copy_of_a_measured_switch_is_one_click_from_the_editor(
+def test_a_measured_switch_is_copied_by_its_first_change_and_no_name_is_twice(
     context: BrowserContext, start_studio: Callable[..., RunningStudio], bench: Path
 ) -> None:
     page = context.new_page()
-    page.goto(start_studio(bench).address)
+    page.goto(f"{start_studio(bench).address}#/library")
     page.get_by_label("Search buttons").fill("purple")
     expect(page.locator(f"{ROWS} .lib-name")).to_have_text(["Kailh Pro Purple"], timeout=40_000)
-    page.get_by_role("tab", name="About").click()
-    page.get_by_role("button", name="Edit a copy").click()
-    page.wait_for_selector("main[data-page=edit]")
-    expect(page).to_have_url(re.compile("#/edit/own%3AKailh"))
-    page.get_by_role("link", name="Library").click()
-    page.get_by_text("Mine", exact=True).click()
-    expect(page.locator(f"{ROWS} .lib-name")).to_have_count(1)
+    page.get_by_role("button", name="Actions for Kailh Pro Purple").click()
+    page.get_by_role("menuitem", name="Edit").click()
+    page.wait_for_selector(".edit-points")
+    for key in ("c", "ArrowRight", "ArrowUp"):
+        page.keyboard.press(key)
+    expect(page).to_have_url(re.compile("#/edit/own%3AKailh%20Pro%20Purple%202"))
+    page.get_by_role("link", name="Compare", exact=True).click()
+    page.get_by_label("Search buttons").fill("purple")
+    expect(page.locator(f"{ROWS} .lib-name")).to_have_text(["Kailh Pro Purple", "Kailh Pro Purple 2"])
+
+
+def test_a_row_has_its_actions_in_a_menu_by_mouse_and_by_key(library: Page) -> None:
+    library.get_by_label("Search buttons").fill("mx-clear")
+    found(library, "mx-clear")
+    library.get_by_role("button", name="Actions for mx-clear").click()
+    menu = library.get_by_role("menu")
+    expect(menu.get_by_role("menuitem")).to_have_text(
+        ["Edit", "Press", "Render on a rig", "Optimise", "Study", "Find similar", "Compare", "Copy…"]
+    )
+    menu.get_by_role("menuitem", name="Compare").click()
+    expect(library.locator(".lib-chip")).to_have_count(1)
+    library.get_by_role("grid", name="Buttons").focus()
+    library.keyboard.press("m")
+    expect(menu).to_be_visible()
+    library.keyboard.press("Escape")
+    expect(menu).to_have_count(0)
+    chip = library.get_by_role("list", name="Compared buttons")
+    chip.get_by_role("button", name="Actions for mx-clear").click()
+    menu.get_by_role("menuitem", name="Render on a rig").click()
+    expect(library).to_have_url(re.compile("#/live/compensate.button=builtin%3Amx-clear"))
+
+
+def test_a_comparison_ends_in_a_sentence_and_the_next_step(library: Page) -> None:
+    base = library.url.partition("#")[0]
+    library.goto(f"{base}#/library?over=builtin%3Amx-clear")
+    verdict = library.get_by_role("region", name="Verdict")
+    expect(verdict).to_contain_text("mx-clear is tactile: a bump of 13.3 cN under its peak of 64.7 cN")
+    expect(verdict.get_by_role("link", name="Edit mx-clear")).to_be_visible()
+    library.goto(f"{base}#/library?over=builtin%3Amx-clear&over=builtin%3Amx-red")
+    expect(verdict).to_contain_text(re.compile(r"bottom-out 89\.8 against 60\.1 cN; \d+\.\d JND apart, so a"))
+    with library.expect_download():
+        verdict.get_by_role("button", name="Share this comparison").click()
+    library.goto(f"{base}#/library?over=builtin%3Amx-clear&over=builtin%3Amx-red&over=builtin%3Amx-brown")
+    expect(verdict).to_contain_text(re.compile(r"mx-\w+ \(\d+\.\d JND\) feels nearest to mx-clear, mx-"))
 
 
 def test_a_link_shows_the_same_view(library: Page, context: BrowserContext) -> None:
@@ -195,6 +232,7 @@ def test_files_that_come_and_go_are_followed_when_looked_for_again(library: Page
 
 
 def test_without_folders_the_page_says_how_to_give_some(page: Page) -> None:
+    page.keyboard.press("Alt+1")
     expect(page.locator(".lib-more-buttons")).to_contain_text("fdvv studio FOLDER")
     expect(page.locator(ROWS)).to_have_count(6)
 

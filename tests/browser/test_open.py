@@ -196,7 +196,8 @@ def test_two_buttons_are_compared_and_shared_as_one_page(
     page: Page, context: BrowserContext, tmp_path: Path
 ) -> None:
     base = page.url.partition("#")[0]
-    share = page.get_by_role("button", name="Share")
+    page.goto(f"{base}#/library")
+    share = page.get_by_role("button", name="Share", exact=True)
     expect(share).to_be_disabled()
     expect(share).to_have_attribute("title", re.compile("one to six"))
     page.goto(f"{base}#/library?over=builtin%3Amx-clear&over=builtin%3Amx-red")

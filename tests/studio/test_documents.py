@@ -53,9 +53,9 @@ def test_a_built_in_button_opens_to_be_seen_and_is_copied_to_be_edited(client: T
     change = travel(client, "mx-clear", 3.5, "a")
     line = refused(client, "change", button="builtin:mx-clear", revision=0, change=change)
     assert line == "builtin:mx-clear: only your own buttons can be edited; copy it first"
-    assert copied(client, None) == "own:mx-clear"
     assert copied(client, None) == "own:mx-clear 2"
-    assert ask(client, "open", button="own:mx-clear 2")["editable"] is True
+    assert copied(client, None) == "own:mx-clear 3"
+    assert ask(client, "open", button="own:mx-clear 3")["editable"] is True
 
 
 def test_an_edit_is_kept_undone_and_done_again(client: TestClient, own_studio: Studio) -> None:

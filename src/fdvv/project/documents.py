@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -234,10 +234,10 @@ class DocumentStore:
             self._document(name)
             return name
 
-    def free_name(self, wanted: str) -> str:
-        """Return a free name near the wanted one."""
+    def free_name(self, wanted: str, others: Iterable[str] = ()) -> str:
+        """Return a free name near the wanted one. others : names that count as taken too."""
         with self._lock:
-            return free_name(wanted, self._names())
+            return free_name(wanted, [*self._names(), *others])
 
     def rename(self, name: str, to: str) -> str:
         """Rename a button with its history; returns the name as it is kept."""

@@ -15,6 +15,20 @@ export function workOn(button: string): void {
   sessionStorage.setItem(KEPT, button);
 }
 
+/** The address of the last comparison, so that who comes back to it finds it as it was. */
+const compared: Signal<string> = signal("");
+
+/** Keep the comparison that is shown. */
+export function keepComparison(query: URLSearchParams): void {
+  if (query.toString() !== compared.peek()) compared.set(query.toString());
+}
+
+function comparisonWith(button: string): Record<string, string> | URLSearchParams {
+  const last = new URLSearchParams(compared());
+  if (!button || last.getAll("over").includes(button)) return last;
+  return { over: button };
+}
+
 export interface Task {
   readonly page: string;
   readonly label: string;
@@ -29,7 +43,7 @@ export const TASKS: readonly Task[] = [
     page: "library",
     label: "Compare",
     hint: "Find and compare buttons",
-    at: (button) => address("library", "", button ? { over: button } : {}),
+    at: (button) => address("library", "", comparisonWith(button)),
   },
   {
     page: "edit",

@@ -2,11 +2,17 @@
 
 import type { Entry } from "./types";
 
-/** Every page, in the order of the navigation. */
+/** Every page; those that keys lead to in the order of the line of work. */
 export const PAGES: readonly Entry[] = [
   {
+    name: "home",
+    label: "Home",
+    hint: "What to begin with, and recent work",
+    load: () => import("../pages/home"),
+  },
+  {
     name: "library",
-    label: "Library",
+    label: "Compare",
     hint: "Find and compare buttons",
     load: () => import("../pages/library"),
   },
@@ -14,15 +20,9 @@ export const PAGES: readonly Entry[] = [
   { name: "press", label: "Press", hint: "Press a button, simulated", load: () => import("../pages/press") },
   {
     name: "live",
-    label: "Live work",
+    label: "Rig",
     hint: "Capture, compensate, tune, devices",
     load: () => import("../pages/live"),
-  },
-  {
-    name: "programs",
-    label: "Programs",
-    hint: "Buttons with several states",
-    load: () => import("../pages/programs"),
   },
   {
     name: "optimize",
@@ -32,18 +32,24 @@ export const PAGES: readonly Entry[] = [
   },
   {
     name: "studies",
-    label: "Studies",
+    label: "Study",
     hint: "Compare buttons blind, with participants",
     load: () => import("../pages/studies"),
   },
   {
+    name: "programs",
+    label: "Programs",
+    hint: "Buttons with several states",
+    load: () => import("../pages/programs"),
+  },
+  {
     name: "study",
-    label: "Study",
+    label: "Participant",
     hint: "The participant's screen",
     alone: true,
     load: () => import("../pages/study"),
   },
 ];
 
-/** Every page that the navigation leads to. */
+/** Every page that a key leads to: Alt with its place, 0 for the first. */
 export const LISTED: readonly Entry[] = PAGES.filter((entry) => !entry.alone);

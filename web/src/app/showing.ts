@@ -1,7 +1,7 @@
 /** Which page is shown. */
 
 import { type Cleanup, effect, scope } from "../ui/signal.svelte";
-import { dismissErrors, tell } from "../ui/toast";
+import { dismissNotices, tell } from "../ui/toast";
 import { PAGES } from "./pages";
 import { address, type Route, route } from "./route";
 import type { Entry, Page } from "./types";
@@ -19,7 +19,7 @@ export function showPages(host: HTMLElement): void {
     try {
       const { page } = await entry.load();
       if (mine !== turn) return;
-      dismissErrors();
+      dismissNotices(shown?.entry !== entry);
       leave();
       host.replaceChildren();
       host.dataset.page = entry.name;
@@ -36,6 +36,6 @@ export function showPages(host: HTMLElement): void {
     const now = route();
     const entry = PAGES.find((one) => one.name === now.page);
     if (entry) void show(entry, now);
-    else location.replace(address("library"));
+    else location.replace(address("home"));
   });
 }

@@ -35,7 +35,7 @@ export function tell(error: unknown): void {
   toast(lineOf(error), "wrong");
 }
 
-/** Remove the errors of a page that goes. */
-export function dismissErrors(): void {
-  for (const { id, important } of sonner.getActiveToasts()) if (important) sonner.dismiss(id);
+/** Remove the errors of what goes, and with a whole page all of its notices. */
+export function dismissNotices(all: boolean): void {
+  for (const { id, important } of sonner.getActiveToasts()) if (all || important) sonner.dismiss(id);
 }

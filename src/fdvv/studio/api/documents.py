@@ -160,7 +160,8 @@ def copy_document(studio: Studio, ask: DocumentCopy) -> DocumentNamed:
         model = model_of(store.open(_own_name(ask.button)).history.record, ask.button)
     else:
         model = studio.catalog.model(ask.button)
-    name = ask.name if ask.name is not None else store.free_name(model.name)
+    # the original stays: two buttons of one name would look the same in every list
+    name = ask.name if ask.name is not None else store.free_name(model.name, [model.name])
     return _new(studio, store.create(name, model))
 
 

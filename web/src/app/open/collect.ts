@@ -13,6 +13,14 @@ export const MOST_bytes = 5_900_000;
 export const MOST_PICKED = 2000;
 const STROKE = /[._](downstroke|upstroke|press|release)(?=\.[^.]*$)/i;
 
+/** Id of the page's input for files. */
+export const PICKER = "files-to-open";
+
+/** Let the person choose files; to be called while a click or a key lasts. */
+export function choose(): void {
+  document.getElementById(PICKER)?.click();
+}
+
 /** Whether a drag carries files. */
 export function carriesFiles(data: DataTransfer | null): data is DataTransfer {
   return data?.types.includes("Files") ?? false;

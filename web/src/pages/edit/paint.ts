@@ -19,7 +19,7 @@ export function paintOthers(brush: Brush, view: View, curves: readonly ForceCurv
     paintCurve(brush, view, curve, { ...lineOf(curve), width_px: 1.4, opacity: DIMMED });
 }
 
-/** A name for each velocity where its curves end: press and release meet there. */
+/** A name for each velocity where its curves end: press and release end together. */
 export function velocityNames(curves: readonly ForceCurve[], active: ForceCurve): EndLabel[] {
   const at = [...new Map(curves.map((curve) => [curve.velocity_mm_s, curve])).keys()];
   return at.map((velocity_mm_s) => {

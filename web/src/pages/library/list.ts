@@ -16,6 +16,7 @@ interface RowView {
   readonly name: HTMLElement;
   readonly about: HTMLElement;
   readonly figures: readonly HTMLElement[];
+  readonly menu: HTMLElement;
   /** Position in the index that is drawn, and the growth of the index it was drawn at. */
   drawn: string;
   place: number;
@@ -102,8 +103,15 @@ export class ButtonList {
     if (moves[event.key] !== undefined) this.move(moves[event.key] as number);
     else if (event.key === " " && id) this.store.toggle(id);
     else if (event.key === "Enter" && id) this.open(id);
+    else if (["m", "ContextMenu"].includes(event.key) && id) this.openMenu(id);
     else return;
     event.preventDefault();
+  }
+
+  /** Open the menu of the row that the keys are at. */
+  private openMenu(id: string): void {
+    const row = this.views.find(({ place }) => place === this.store.active.peek());
+    if (row) this.store.menu.set({ id, anchor: row.menu });
   }
 
   private request(): void {
@@ -145,6 +153,11 @@ export class ButtonList {
     const pin = h("span", { class: "lib-check", "aria-hidden": "true" });
     const [name, about] = [h("span", { class: "lib-name" }), h("span", { class: "lib-about" })];
     const figures = LISTED.map(() => h("span", { class: "lib-figure", role: "gridcell" }));
+    const menu = h(
+      "button",
+      { type: "button", class: "button quiet", tabindex: -1, title: "Actions (M)" },
+      "⋯",
+    );
     const element = h(
       "div",
       { class: "lib-row", role: "row", id: `lib-row-${this.views.length}` },
@@ -152,8 +165,9 @@ export class ButtonList {
       canvas,
       h("span", { class: "lib-words", role: "gridcell" }, name, about),
       figures,
+      h("span", { class: "lib-menu", role: "gridcell" }, menu),
     );
-    const view: RowView = { element, canvas, pin, name, about, figures, drawn: "", place: -1 };
+    const view: RowView = { element, canvas, pin, name, about, figures, menu, drawn: "", place: -1 };
     element.addEventListener("click", (event) => this.onClick(view, event));
     element.addEventListener("dblclick", () => {
       const id = this.store.activeId();
@@ -166,7 +180,9 @@ export class ButtonList {
   private onClick(view: RowView, event: MouseEvent): void {
     this.store.active.set(view.place);
     const id = this.store.activeId();
-    if (id && (event.target as HTMLElement).closest(".lib-pin")) this.store.toggle(id);
+    const on = event.target as HTMLElement;
+    if (id && on.closest(".lib-menu")) return this.store.menu.set({ id, anchor: view.menu });
+    if (id && on.closest(".lib-pin")) this.store.toggle(id);
     this.element.focus({ preventScroll: true });
     this.request();
   }
@@ -201,6 +217,7 @@ export class ButtonList {
     const { rows } = this.store;
     view.name.textContent = rows.names[at] ?? "";
     view.name.title = rows.names[at] ?? "";
+    view.menu.ariaLabel = `Actions for ${rows.names[at] ?? ""}`;
     const kind = rows.kinds[at] as string;
     const words = [kind, rows.simulated[at] ? "simulated" : "", rows.collections[at] || rows.origins[at]];
     view.about.textContent = (like === null ? words : [`${like.toFixed(1)} JND away`, ...words])

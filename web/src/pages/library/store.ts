@@ -1,5 +1,6 @@
 /** What the library page knows: rows, the question and its answer, and the curves that are compared. */
 
+import { keepComparison, workOn } from "../../app/current";
 import { keepQuery, route } from "../../app/route";
 import { call, type LiveChannel, live } from "../../net";
 import type { LibraryButton, LibraryFound, LibraryStatus } from "../../net/messages";
@@ -35,6 +36,11 @@ export class LibraryStore {
   /** Buttons of the overlay whose curves are here, and the reasons of those that cannot be had. */
   readonly buttons: Signal<ReadonlyMap<string, LibraryButton>> = signal(new Map());
   readonly missing: Signal<ReadonlyMap<string, string>> = signal(new Map());
+  /** The button whose menu is open, and what it hangs from. */
+  readonly menu: Signal<{ readonly id: string; readonly anchor: HTMLElement } | null> = signal<{
+    readonly id: string;
+    readonly anchor: HTMLElement;
+  } | null>(null);
   private loading = false;
   private again = false;
   private searching: AbortController | null = null;
@@ -49,6 +55,10 @@ export class LibraryStore {
       this.search();
     });
     effect(() => this.fetchCurves(this.shown().overlay));
+    effect(() => {
+      const { reference } = this.shown();
+      if (reference) untracked(() => workOn(reference));
+    });
     this.watch();
   }
 
@@ -115,8 +125,8 @@ export class LibraryStore {
       if (route.peek().page === "library") keepQuery(writeState(this.query.peek(), this.shown.peek()));
     };
     effect(() => {
-      this.query();
-      this.shown();
+      const state = writeState(this.query(), this.shown());
+      untracked(() => keepComparison(state));
       clearTimeout(due);
       due = setTimeout(keep, KEEP_ms);
     });
