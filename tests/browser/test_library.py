@@ -140,7 +140,9 @@ def test_a_comparison_ends_in_a_sentence_and_the_next_step(library: Page) -> Non
     expect(verdict).to_contain_text("mx-clear is tactile: a bump of 13.3 cN under its peak of 64.7 cN")
     expect(verdict.get_by_role("link", name="Edit mx-clear")).to_be_visible()
     library.goto(f"{base}#/library?over=builtin%3Amx-clear&over=builtin%3Amx-red")
-    expect(verdict).to_contain_text(re.compile(r"bottom-out 89\.8 against 60\.1 cN; \d+\.\d JND apart, so a"))
+    expect(verdict).to_contain_text(
+        re.compile(r"bottom-out 89\.8 against 60\.1 cN; \d+\.\d JND apart: computed to feel diff")
+    )
     with library.expect_download():
         verdict.get_by_role("button", name="Share this comparison").click()
     library.goto(f"{base}#/library?over=builtin%3Amx-clear&over=builtin%3Amx-red&over=builtin%3Amx-brown")
@@ -173,6 +175,21 @@ def test_differences_are_to_the_reference_and_what_is_not_there_says_why(library
     expect(bottom.locator("td")).to_have_text(["89.8", re.compile(r"60\.1 −29\.7")])
     peak = library.locator(".lib-landmarks tr", has=library.get_by_text("Peak, cN", exact=True))
     expect(peak.locator("td").nth(1)).to_have_attribute("title", re.compile("never falls by 4 cN"))
+
+
+def test_a_term_is_explained_by_pointer_and_by_key(library: Page) -> None:
+    library.goto(f"{library.url.partition('#')[0]}#/library?over=builtin%3Amx-clear")
+    term = library.locator(".lib-landmarks").get_by_role("button", name="Preload")
+    meaning = library.get_by_role("dialog", name="preload")
+    term.hover()
+    expect(meaning).to_contain_text("The force at the end of the first step on contact.")
+    library.mouse.move(5, 5)
+    expect(meaning).to_have_count(0)
+    term.focus()
+    library.keyboard.press("Tab")
+    expect(library.get_by_role("dialog", name="peak")).to_contain_text("The greatest force before the bump.")
+    library.keyboard.press("Escape")
+    expect(library.get_by_role("dialog")).to_have_count(0)
 
 
 def test_the_file_of_numbers_holds_the_curves(library: Page) -> None:

@@ -48,6 +48,20 @@ export const COLUMNS: readonly Column[] = [
   column("loss_mJ", "Work lost (hysteresis)", "Loss", "mJ", 2, "release"),
 ];
 
+/** Terms of the glossary that explain a figure. */
+export const TERMS: Readonly<Record<string, { readonly term: string }>> = {
+  preload_cN: { term: "preload" },
+  peak_cN: { term: "peak" },
+  valley_cN: { term: "valley" },
+  drop_cN: { term: "bump" },
+  snap_ratio: { term: "snap ratio" },
+  actuation_mm: { term: "actuation" },
+  reset_mm: { term: "reset" },
+  travel_mm: { term: "travel" },
+  bottom_out_cN: { term: "bottom-out" },
+  loss_mJ: { term: "hysteresis" },
+};
+
 const BY_NAME = new Map(COLUMNS.map((one) => [one.name, one]));
 
 export function columnOf(name: string): Column | undefined {

@@ -61,7 +61,7 @@ export function two(first: LibraryButton, second: LibraryButton, away: ReadonlyM
   const [name, word, unit, digits] = [...FIGURES].sort((a, b) => off(b) - off(a))[0]!;
   const values = [first, second].map((one) => figure(one.numbers[name], digits));
   const jnd = away.get(second.id);
-  const felt = jnd === undefined ? "" : `; ${jndText(jnd)} apart, ${notices(jnd)}`;
+  const felt = jnd === undefined ? "" : `; ${jndText(jnd)} apart: ${notices(jnd)}`;
   return `${first.name} against ${second.name}: ${word} ${values.join(" against ")} ${unit}${felt}.`;
 }
 
@@ -82,7 +82,7 @@ function jndText(jnd: number): string {
 }
 
 function notices(jnd: number): string {
-  return jnd < 1 ? "less than a finger notices" : "so a finger notices";
+  return jnd < 1 ? "computed to feel alike" : "computed to feel different";
 }
 
 /** How far every button is from the reference, JND; asked again when another becomes the reference. */
