@@ -1,1 +1,0 @@
-import{An as e,Fn as t,Ln as n,Rn as r,Yt as i,_n as a,an as o,fn as s,hn as c,tr as l,yn as u}from"./shared.js";var d=a(`<section class="panel"><h2> </h2> <div class="panel-body"><!></div></section>`);function f(a,f){let p=u();var m=d(),h=t(m),g=n(h,!0),_=r(h,2),v=t(_);o(v,()=>f.children),l(_),l(m),e(()=>{i(m,`aria-labelledby`,p),i(h,`id`,p),s(g,f.title)}),c(a,m)}export{f as t};
