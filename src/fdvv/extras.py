@@ -12,10 +12,18 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 Kind = Literal[
-    "commands", "device_commands", "engines", "pair_engines", "devices", "presenters", "exchange_formats"
+    "commands",
+    "device_commands",
+    "engines",
+    "pair_engines",
+    "devices",
+    "rigs",
+    "presenters",
+    "exchange_formats",
 ]
 """What an extra can add: a click command of ``fdvv`` or of ``fdvv device``, an engine of ``fdvv optimize``, a
-board in lockstep, what presents the rounds of ``fdvv optimize`` to a person, a format of ``fdvv export``."""
+board in lockstep, the physics of a rig of one's own, what presents the rounds of ``fdvv optimize`` to a
+person, a format of ``fdvv export``."""
 
 KNOWN = MappingProxyType(
     {

@@ -91,3 +91,46 @@ def test_a_port_that_is_not_there_is_refused_with_status_1(fdvv: Run) -> None:
     ran = fdvv("device", "info", "--device", "serial:/dev/there-is-none")
     assert ran.status == 1
     assert ran.err.count("\n") == 1
+
+
+def test_a_new_rig_is_pressed_checked_and_set_from_its_file(fdvv: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "fdvv-mine"
+    written = fdvv("device", "new", "mine", "-o", str(folder))
+    assert written.status == 0
+    device = f"rig:{folder}/src/mine/rig.py:Rig"
+    assert f"--device {device}" in written.out
+    pressed = json.loads(
+        fdvv("device", "press", "mx-red", "--device", device, "--presses", "1", "--json").out
+    )
+    assert pressed["simulated"]
+    info = json.loads(fdvv("device", "info", "--device", device, "--json").out)
+    assert info["name"].startswith("mine")
+    checked = fdvv("device", "conform", "--no-press", "--device", device)
+    assert (checked.status, "16 of 16 rules kept" in checked.out) == (0, True)
+    again = fdvv("device", "new", "mine", "-o", str(folder))
+    assert (again.status, "exists and is not empty" in again.err) == (2, True)
+
+
+def test_settings_are_read_into_a_file_and_written_back(fdvv: Run, tmp_path: Path) -> None:
+    path = tmp_path / "board.toml"
+    held = json.loads(fdvv("device", "settings", "get", "-o", str(path), "--json").out)
+    assert path.read_text().count("\n") == len(held)
+    assert "nothing changed" in fdvv("device", "settings", "set", str(path)).out
+    assert "lead_us 0 -> 700" in fdvv("device", "settings", "set", "lead_us=700").out
+
+
+def test_settings_that_cannot_be_written_say_which_and_why(fdvv: Run, tmp_path: Path) -> None:
+    for words, reason in (
+        ("leadus=7", "did you mean lead_us?"),
+        ("lead_us=-1", "use 0 to 20000"),
+        ("lead_us=much", "is no whole number"),
+        ("force_limit_cN64=32000", "this board was built for at most"),
+        (str(tmp_path / "absent.toml"), "does not exist"),
+    ):
+        ran = fdvv("device", "settings", "set", words)
+        assert ran.status in (1, 2)
+        assert reason in ran.err
+
+
+def test_a_device_without_a_fault_has_none_to_clear(fdvv: Run) -> None:
+    assert "host: no fault" in fdvv("device", "clear").out

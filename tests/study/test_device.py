@@ -329,7 +329,7 @@ def test_a_line_that_breaks_is_reported_once_and_ends_the_stage(line: StudyRig) 
 
 def test_a_fault_on_a_line_is_reported_at_once_and_recorded_for_its_label(line: StudyRig) -> None:
     lines: list[str] = []
-    line.person.meddle = broken
+    line.scripted.meddle = broken
     stage = on_line(line, failed=lines.append)
     stage.prepare({"A": FD, "B": FDVV})
     stage.show("B")

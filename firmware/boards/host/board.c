@@ -124,6 +124,11 @@ const uint8_t *fdvv_host_program(const fdvv_host *host)
     return host->core.image;
 }
 
+uint16_t fdvv_host_announced_mm_s16(const fdvv_host *host)
+{
+    return host->core.announced_mm_s16;
+}
+
 void fdvv_host_unplug(fdvv_host *host)
 {
     current = host;

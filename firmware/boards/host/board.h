@@ -22,6 +22,9 @@ uint16_t fdvv_host_transmit(fdvv_host *host, uint8_t *bytes, uint16_t room);
 /* The active program, or 0. */
 const uint8_t *fdvv_host_program(const fdvv_host *host);
 
+/* The speed of the next press, which its host announced. */
+uint16_t fdvv_host_announced_mm_s16(const fdvv_host *host);
+
 /* The connection was lost. */
 void fdvv_host_unplug(fdvv_host *host);
 

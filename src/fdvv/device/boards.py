@@ -32,6 +32,7 @@ class LibraryBoard:
     def __init__(self) -> None:
         self._library = library = _native.library()
         library.fdvv_host_new.restype = library.fdvv_host_program.restype = ctypes.c_void_p
+        library.fdvv_host_announced_mm_s16.restype = ctypes.c_uint16
         library.fdvv_host_receive.restype = library.fdvv_host_transmit.restype = ctypes.c_uint16
         self._handle = ctypes.c_void_p()
         self.build(limits_like(Settings()))
@@ -75,6 +76,11 @@ class LibraryBoard:
             return None
         head = ImageHeader.unpack(ctypes.string_at(found, ImageHeader.length_bytes()))
         return ctypes.string_at(found, head.size_bytes)
+
+    @property
+    def announced_mm_s(self) -> float:
+        """Speed of the next press, as its host announced it."""
+        return float(self._library.fdvv_host_announced_mm_s16(self._handle)) / 16
 
     def unplug(self) -> None:
         self._library.fdvv_host_unplug(self._handle)

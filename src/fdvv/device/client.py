@@ -106,6 +106,11 @@ class Client:
         assert isinstance(reply, kind)
         return reply
 
+    @property
+    def repeated(self) -> int:
+        """How many requests had to be sent again so far."""
+        return self._wire.repeated
+
     def ping(self) -> PingReply:
         """Show that the host is there, and compare the clocks."""
         sent_us = self.port.now_s() * 1e6

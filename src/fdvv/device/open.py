@@ -9,6 +9,8 @@ from fdvv import extras
 from fdvv.device.boards import HostBoard, LibraryBoard
 from fdvv.device.contract import Device
 from fdvv.device.linked import Board, LinkedDevice
+from fdvv.device.own_rig import OwnRigPerson, find_rig
+from fdvv.device.plant import Person
 from fdvv.device.recording import ReplayDevice
 from fdvv.device.remote import PressedDevice
 from fdvv.device.serial import SerialPort
@@ -26,6 +28,7 @@ KINDS = {
     "emulated:FILE": "the same, from that ELF file of the ItsyBitsy M0 or M4",
     "serial:PORT": "a rig on a serial port, pressed by a person",
     "replay:FILE": "a recorded session",
+    "rig:FILE.py:NAME": "a rig of your own, simulated by that class; fdvv device new writes one",
 }
 """Devices that a word opens, and what each is."""
 
@@ -52,9 +55,28 @@ def open_device(spec: str, rig: Rig | None = None, finger: Finger | None = None,
         return LinkedDevice(board, SimulatedPerson(rig, finger, seed))
     if spec == "twin":
         return TwinDevice(rig, finger, seed)
+    if kind == "rig" and where:
+        return _own_rig(where, seed)
+    if kind in extras.names("rigs"):
+        return _own_rig(kind, seed)
     if kind in extras.names("devices"):
         return LinkedDevice(open_board(spec), SimulatedPerson(rig, finger, seed))
     raise InputError("--device", spec, "names no device", f"use one of {', '.join(KINDS)}")
+
+
+def _own_rig(name: str, seed: int) -> LinkedDevice:
+    person, board = OwnRigPerson(find_rig(name), seed), LibraryBoard()
+    board.name = person.rig.numbers.name
+    return LinkedDevice(board, person)
+
+
+def person_of(spec: str, seed: int = 0) -> Person:
+    """Return the simulated rig that spec names, and who presses it: ``twin``, ``rig:FILE.py:NAME`` or a rig
+    that a package registers. Raises InputError on another one.
+    """
+    if spec == "twin":
+        return SimulatedPerson(seed=seed)
+    return OwnRigPerson(find_rig(spec.removeprefix("rig:")), seed)
 
 
 def open_board(spec: str) -> Board:

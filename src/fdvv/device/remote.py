@@ -128,8 +128,26 @@ class Remote:
 
     def upload_program(self, image: bytes) -> None:
         travel_mm = travel_mm_of(image)
-        self.client.upload(image)
+        try:
+            self.client.upload(image)
+        except RefusedError as error:
+            self._explain(error)
+            raise
         self.travel_mm, self.image = travel_mm, image
+
+    def press(self, velocity_mm_s: float) -> Press:
+        """Have someone press once, at about this speed."""
+        raise NotImplementedError
+
+    def _explain(self, error: RefusedError) -> None:
+        """Raise DeviceError with the latched fault, if that is why a request was refused."""
+        if error.refusal in (Refusal.WRONG_MODE, Refusal.FAULT_LATCHED):
+            report = self.fault()
+            if report.fault is not Fault.NONE:
+                raise DeviceError(
+                    f"{self.client.port.name}: a fault is latched, {report}; mend its cause, then run "
+                    "fdvv device clear"
+                ) from error
 
     def stop(self) -> None:
         try:
@@ -220,12 +238,19 @@ class PressedDevice(Remote):
         self.client.telemetry.clear()
         self.client.stream(1)
         try:
-            self.client.arm()
+            self._arm()
             found = self._wait(travel_mm)
         finally:
             self.stop()
         self.force_loop.check()
         return self._record(found, velocity_mm_s)
+
+    def _arm(self) -> None:
+        try:
+            self.client.arm()
+        except RefusedError as error:
+            self._explain(error)
+            raise
 
     def _wait(self, travel_mm: float) -> TickColumns:
         port, telemetry = self.client.port, self.client.telemetry

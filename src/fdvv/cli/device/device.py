@@ -11,6 +11,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import click
 
+from fdvv import extras
 from fdvv.cli import ui
 from fdvv.cli.options import device_option, opened, remote
 from fdvv.device.client import Client
@@ -19,7 +20,7 @@ from fdvv.device.remote import Remote, watch
 from fdvv.device.serial import serial_ports
 from fdvv.device.telemetry import TickColumns
 from fdvv.errors import BuildError
-from fdvv.protocol.tables import Mode, Part, SelfTestResult
+from fdvv.protocol.tables import Fault, Mode, Part, SelfTestResult
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -74,15 +75,19 @@ def writer(stream: IO[str], output: Path) -> Callable[[TickColumns], None]:
     return write
 
 
-MODULES = dict.fromkeys(("exciter", "press", "upload"), "device.press")
+MODULES = {
+    **dict.fromkeys(("exciter", "press", "upload"), "device.press"),
+    **dict.fromkeys(("new", "serve", "conform"), "device.own"),
+    "settings": "device.settings",
+}
 
 
 @click.group(cls=ui.LazyGroup, modules=MODULES, extra="device_commands")
 def device() -> None:
-    """Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.
+    """Work with a device: look at it, press it, set it, check it, or make one of your own.
 
     --device is 'host' (the firmware as a program of this machine), 'emulated' (the program of the board in an
-    emulator), 'twin', 'serial:PORT' or 'replay:FILE'.
+    emulator), 'twin', 'serial:PORT', 'replay:FILE', or a simulated rig of your own.
     What is simulated says so.
     """
 
@@ -92,6 +97,7 @@ def device() -> None:
 def list_(as_json: bool) -> None:
     """List what --device may be, serial ports among it."""
     rows = [{"device": name, "about": about} for name, about in KINDS.items()]
+    rows += [{"device": name, "about": "a rig of your own, simulated"} for name in extras.names("rigs")]
     note = []
     try:
         rows += [{"device": f"serial:{path}", "about": about} for path, about in serial_ports()]
@@ -170,6 +176,17 @@ def selftest(spec: str, as_json: bool) -> None:
     failed = [str(row["part"]) for row in parts if row["verdict"] == "failed"]
     if failed:
         raise ui.failed(f"{spec}: failed: {', '.join(failed)}")
+
+
+@device.command()
+@device_option
+def clear(spec: str) -> None:
+    """Clear the latched fault of a device, once its cause is gone; say what it was."""
+    with remote(spec) as found:
+        report = found.fault()
+        if report.fault is not Fault.NONE:
+            found.clear_fault()
+        click.echo(f"{spec}: {'cleared ' if report.fault is not Fault.NONE else ''}{report}")
 
 
 @device.command()
