@@ -212,7 +212,7 @@ def test_the_pace_is_led_by_a_moving_cue(page: Page) -> None:
     page.get_by_label("A slow probe first").uncheck()
     page.get_by_label("Show the cue in real time").check()
     page.get_by_role("button", name="Start the capture").click()
-    page.get_by_text("Hands off").wait_for()
+    page.get_by_text("Finger off", exact=True).wait_for()
     page.get_by_text("Press down to the stop, then release: 100 mm/s").wait_for()
     for count in ("3", "2", "1"):
         page.locator(".cue-count", has_text=count).wait_for()

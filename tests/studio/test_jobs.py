@@ -21,6 +21,7 @@ from fdvv.studio.jobs.file import JOB, JobResult
 from fdvv.studio.jobs.jobs import BROKEN_OFF, Jobs
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder
 from fdvv.studio.jobs.process import PATIENCE_s as LETTING_GO_s
+from fdvv.studio.jobs.time_left import left_s
 from fdvv.studio.studio import Studio
 from tests.studio.jobs import DEVICES, PRESSES, Follower, PATIENCE_s, learning, long_learning, tuning
 
@@ -48,9 +49,15 @@ def begin(jobs: Jobs, order: CompensateOrder) -> Follower:
 
 
 def test_work_tells_every_press_and_leaves_its_results_in_the_project(studio: Studio, jobs: Jobs) -> None:
-    follower = begin(jobs, learning())
+    row = jobs.start(learning(), DEVICES)
+    assert (row.button, row.left_s) == (
+        "builtin:mx-clear",
+        pytest.approx(left_s(learning(), "", 0.0, 0.0), abs=0.5),
+    )
+    follower = Follower(jobs, row.job)
     row = follower.over()
     assert (row.state, row.line, row.simulated) == ("done", "", True)
+    assert (row.stage, row.left_s) == ("probe", None)
     presses = [event for event in follower.events if isinstance(event, PressEvent)]
     # one press without compensation, one with it; this rig has no exciter
     learned_in = len(presses) - 2

@@ -64,12 +64,12 @@ def press_seen(press: Press, model: FDVVModel, velocity_mm_s: float) -> PressSee
 def _off(rendered: RenderedPress, wanted: RenderedPress, travel_mm: float) -> tuple[float, bool]:
     """Return the mean error where presses are judged, and whether a finger would notice much of it."""
     judged = (wanted.displacement_mm >= FROM_mm) & (wanted.displacement_mm <= travel_mm - STOP_GUARD_mm)
-    felt_cN = np.concatenate([rendered.press_cN[judged], rendered.release_cN[judged]])
+    rendered_cN = np.concatenate([rendered.press_cN[judged], rendered.release_cN[judged]])
     asked_cN = np.concatenate([wanted.press_cN[judged], wanted.release_cN[judged]])
-    known = np.isfinite(felt_cN)
+    known = np.isfinite(rendered_cN)
     if not known.any():
         return math.nan, True
-    error_cN = np.abs(felt_cN - asked_cN)[known]
+    error_cN = np.abs(rendered_cN - asked_cN)[known]
     return float(error_cN.mean()), bool((error_cN > force_jnd_cN(asked_cN)[known]).mean() > FEW_ratio)
 
 

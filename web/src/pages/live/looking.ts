@@ -2,15 +2,14 @@
 
 import { type DeviceStatus, type LiveChannel, live, type PressSeen } from "../../net";
 import { effect, onCleanup, type Signal, signal, toast } from "../../ui";
-import { addBins, emptyBins, type ScopeBins } from "./scope";
+import { type ScopeBins, withBins } from "./scope";
 
 /** Pixel columns that a device's ticks are sent in. */
 export const COLUMNS = 600;
 
 export const span_s: Signal<number> = signal(5);
 export const seen: Signal<PressSeen | null> = signal<PressSeen | null>(null);
-/** The bins of now; a new object each time that some were added. */
-export const scope: Signal<{ readonly bins: ScopeBins }> = signal({ bins: emptyBins(5 / COLUMNS) });
+export const scope: Signal<ScopeBins> = signal<ScopeBins>({ bin_s: 5 / COLUMNS, bins: [] });
 
 const NONE: DeviceStatus = { type: "standing" };
 const received = signal<DeviceStatus>(NONE);
@@ -50,18 +49,14 @@ export function followDevice(): void {
     onMessage: (message) => {
       if (message.type === "standing") received.set(message);
       else if (message.type === "press_seen") seen.set(message);
-      else {
-        const { bins } = scope.peek();
-        addBins(bins, message, COLUMNS);
-        scope.set({ bins });
-      }
+      else scope.update((kept) => withBins(kept, message, COLUMNS));
     },
     wrong: (line) => toast(line, "wrong"),
   });
   function begin(): void {
-    const bins = emptyBins(span_s.peek() / COLUMNS);
-    scope.set({ bins });
-    channel?.send({ type: "watch_scope", bin_s: bins.bin_s });
+    const bin_s = span_s.peek() / COLUMNS;
+    scope.set({ bin_s, bins: [] });
+    channel?.send({ type: "watch_scope", bin_s });
   }
   effect(() => {
     span_s();

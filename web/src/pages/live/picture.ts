@@ -25,8 +25,6 @@ export interface NumberedPress {
 
 /** Nothing in it is ever changed: every event makes another one. */
 export interface JobPicture {
-  readonly device: string;
-  readonly simulated: boolean;
   readonly stage: string;
   readonly notices: readonly string[];
   /** By speed, mm/s. */
@@ -42,7 +40,6 @@ export interface JobPicture {
   readonly takes: readonly TakeEvent[];
   readonly paces: readonly PaceProgress[];
   readonly question: QuestionAsked | null;
-  readonly answers: number;
   readonly rankings: readonly TuneRanking[];
 }
 
@@ -55,8 +52,6 @@ export type StrokeName = CurveProgress["stroke"];
 
 export function emptyPicture(): JobPicture {
   return {
-    device: "",
-    simulated: false,
     stage: "",
     notices: [],
     intended: new Map(),
@@ -69,7 +64,6 @@ export function emptyPicture(): JobPicture {
     takes: [],
     paces: [],
     question: null,
-    answers: 0,
     rankings: [],
   };
 }
@@ -86,7 +80,7 @@ export function fold(picture: JobPicture, event: JobEvent): JobPicture {
 function changes(picture: JobPicture, event: JobEvent): Partial<JobPicture> {
   switch (event.type) {
     case "begun":
-      return { device: event.device, simulated: event.simulated };
+      return {};
     case "stage":
       return { stage: event.stage };
     case "notice":
@@ -108,7 +102,7 @@ function changes(picture: JobPicture, event: JobEvent): Partial<JobPicture> {
     case "asked":
       return { question: event };
     case "answered":
-      return { question: null, answers: event.number, rankings: event.rankings };
+      return { question: null, rankings: event.rankings };
     case "outcome":
       return {
         outcomes: [...picture.outcomes.filter((one) => one.stage !== event.stage), event],

@@ -89,15 +89,15 @@ function noticed(picture: JobPicture, velocity_mm_s: number): readonly CurveNoti
 /** Fill what is between target and rendered where most held-out presses would be noticed, and say so with a bar. */
 function mark(brush: Brush, view: View, wanted: CurveIntended, felt: FeltCurve, curve: CurveNoticed): void {
   const { warning } = palette();
-  const [asked_cN, felt_cN] = [wanted[`${curve.stroke}_cN`], felt[`${curve.stroke}_cN`]];
+  const [asked_cN, rendered_cN] = [wanted[`${curve.stroke}_cN`], felt[`${curve.stroke}_cN`]];
   const y = view.box.top + view.box.height - (curve.stroke === "press" ? 9 : 3);
   for (const [from, to] of spans(curve.displacement_mm, curve.noticed_ratio)) {
     const at = wanted.displacement_mm.flatMap((mm, i) =>
-      mm >= from && mm <= to && felt_cN[i] != null ? [i] : [],
+      mm >= from && mm <= to && rendered_cN[i] != null ? [i] : [],
     );
     const x = at.map((i) => view.x.px(wanted.displacement_mm[i] as number));
     const edge = (cN: readonly (number | null)[]) => at.map((i) => view.y.px(cN[i] as number));
-    brush.area([...x, ...[...x].reverse()], [...edge(asked_cN), ...edge(felt_cN).reverse()], {
+    brush.area([...x, ...[...x].reverse()], [...edge(asked_cN), ...edge(rendered_cN).reverse()], {
       colour: warning,
       opacity: 0.45,
     });

@@ -2,74 +2,52 @@
 
 import type { ScopeFrame } from "../../net";
 
-/** Columns of one quantity: the least and the most of each bin. */
-export interface Band {
-  readonly low: number[];
-  readonly high: number[];
+/** The least and the most of a bin; NaN where there is no sensor. */
+type Span = readonly [low: number, high: number];
+
+export interface Bin {
+  readonly bin: number;
+  readonly displacement_mm: Span;
+  readonly force_cN: Span;
+  readonly commanded_cN: Span;
+  readonly state: number;
+  /** The command was cut to a limit. */
+  readonly cut: boolean;
 }
 
 export interface ScopeBins {
   readonly bin_s: number;
-  readonly bin: number[];
-  readonly displacement_mm: Band;
-  readonly force_cN: Band;
-  readonly commanded_cN: Band;
-  readonly state: number[];
-  readonly cut: boolean[];
+  readonly bins: readonly Bin[];
 }
 
-const band = (): Band => ({ low: [], high: [] });
-
-export function emptyBins(bin_s: number): ScopeBins {
-  return {
-    bin_s,
-    bin: [],
-    displacement_mm: band(),
-    force_cN: band(),
-    commanded_cN: band(),
-    state: [],
-    cut: [],
-  };
-}
-
-/** Add bins and forget those that are out of sight; bins of another width are not taken. */
-export function addBins(kept: ScopeBins, bins: ScopeFrame, most: number): void {
-  if (bins.bin_s !== kept.bin_s) return;
-  kept.bin.push(...bins.bin);
-  kept.displacement_mm.low.push(...bins.displacement_low_mm);
-  kept.displacement_mm.high.push(...bins.displacement_high_mm);
-  kept.force_cN.low.push(...bins.force_low_cN.map((v) => v ?? NaN));
-  kept.force_cN.high.push(...bins.force_high_cN.map((v) => v ?? NaN));
-  kept.commanded_cN.low.push(...bins.commanded_low_cN);
-  kept.commanded_cN.high.push(...bins.commanded_high_cN);
-  kept.state.push(...bins.state);
-  kept.cut.push(...bins.cut);
-  forget(kept, most);
-}
-
-function forget(kept: ScopeBins, most: number): void {
-  const last = kept.bin.at(-1);
-  if (last === undefined) return;
-  const from = kept.bin.findIndex((bin) => bin > last - most);
-  if (from <= 0) return;
-  const bands = [kept.displacement_mm, kept.force_cN, kept.commanded_cN];
-  for (const column of [kept.bin, kept.state, kept.cut, ...bands.flatMap((b) => [b.low, b.high])])
-    column.splice(0, from);
+/** Return the bins with new ones, without those that are out of sight; bins of another width are not taken. */
+export function withBins(kept: ScopeBins, frame: ScopeFrame, most: number): ScopeBins {
+  if (frame.bin_s !== kept.bin_s) return kept;
+  const added = frame.bin.map((bin, i) => {
+    const span = (low: readonly (number | null)[], high: readonly (number | null)[]): Span => [
+      low[i] ?? NaN,
+      high[i] ?? NaN,
+    ];
+    return {
+      bin,
+      displacement_mm: span(frame.displacement_low_mm, frame.displacement_high_mm),
+      force_cN: span(frame.force_low_cN, frame.force_high_cN),
+      commanded_cN: span(frame.commanded_low_cN, frame.commanded_high_cN),
+      state: frame.state[i] ?? 0,
+      cut: frame.cut[i] ?? false,
+    };
+  });
+  const from = (frame.bin.at(-1) ?? 0) - most;
+  return { ...kept, bins: [...kept.bins, ...added].filter(({ bin }) => bin > from) };
 }
 
 /** The line through least and most of every bin; broken where bins are missing. x is time before the newest, s. */
-export function zigzag(kept: ScopeBins, of: Band): { readonly t_s: number[]; readonly value: number[] } {
-  const last = kept.bin.at(-1) ?? 0;
-  const t_s: number[] = [];
-  const value: number[] = [];
-  kept.bin.forEach((bin, i) => {
-    const at = (bin - last) * kept.bin_s;
-    if (i && bin - (kept.bin[i - 1] as number) > 1) {
-      t_s.push(at);
-      value.push(NaN);
-    }
-    t_s.push(at, at);
-    value.push(of.low[i] as number, of.high[i] as number);
+export function zigzag({ bins, bin_s }: ScopeBins, of: "displacement_mm" | "force_cN" | "commanded_cN") {
+  const last = bins.at(-1)?.bin ?? 0;
+  const points = bins.flatMap((one, i) => {
+    const t_s = (one.bin - last) * bin_s;
+    const drawn = one[of].map((value) => ({ t_s, value }));
+    return i && one.bin - (bins[i - 1]?.bin ?? 0) > 1 ? [{ t_s, value: NaN }, ...drawn] : drawn;
   });
-  return { t_s, value };
+  return { t_s: points.map((one) => one.t_s), value: points.map((one) => one.value) };
 }

@@ -2,7 +2,7 @@
 
 import { type Brush, type PlotOptions, palette, type Range, rangeOf, series, type View } from "../../draw";
 import { span_s } from "./looking";
-import { type Band, type ScopeBins, zigzag } from "./scope";
+import { type ScopeBins, zigzag } from "./scope";
 
 interface Kind {
   readonly label: string;
@@ -10,7 +10,7 @@ interface Kind {
   /** What the axis holds at least. */
   readonly least: Range;
   /** Curves by the number of their series. */
-  readonly bands: (bins: ScopeBins) => readonly (readonly [number, Band])[];
+  readonly curves: readonly (readonly [number, Parameters<typeof zigzag>[1]])[];
 }
 
 const KINDS: Readonly<Record<"displacement" | "force", Kind>> = {
@@ -18,58 +18,49 @@ const KINDS: Readonly<Record<"displacement" | "force", Kind>> = {
     label: "Displacement of the cap over time",
     unit: "mm",
     least: { low: -0.2, high: 4.5 },
-    bands: (bins) => [[0, bins.displacement_mm]],
+    curves: [[0, "displacement_mm"]],
   },
   force: {
     label: "Forces over time",
     unit: "cN",
     least: { low: 0, high: 100 },
-    bands: (bins) => [
-      [1, bins.commanded_cN],
-      [2, bins.force_cN],
+    curves: [
+      [1, "commanded_cN"],
+      [2, "force_cN"],
     ],
   },
 };
 
 /** shown : the bins, which may be other ones at any time. */
 export function scopeOptions(name: keyof typeof KINDS, shown: () => ScopeBins): PlotOptions {
-  const { label, unit, least, bands } = KINDS[name];
-  return {
-    label,
-    x: { label: "time before now", unit: "s" },
-    y: { label: name, unit },
-    whole: () => ({ x: { low: -span_s(), high: 0 }, y: rangeHolding(bands(shown()), least) }),
-    still: (brush, view) => {
-      const bins = shown();
-      for (const [n, band] of bands(bins)) drawBand(brush, view, bins, band, n);
-      drawCut(brush, view, bins);
-    },
-    height_px: 200,
+  const { label, unit, least, curves } = KINDS[name];
+  const whole = () => {
+    const found = rangeOf(curves.map(([, of]) => zigzag(shown(), of).value)) ?? least;
+    const y = { low: Math.min(least.low, found.low), high: Math.max(least.high, found.high) };
+    return { x: { low: -span_s(), high: 0 }, y };
   };
-}
-
-function rangeHolding(bands: readonly (readonly [number, Band])[], least: Range): Range {
-  const found = rangeOf(bands.flatMap(([, band]) => [band.low, band.high]));
-  return found ? { low: Math.min(least.low, found.low), high: Math.max(least.high, found.high) } : least;
-}
-
-function drawBand(brush: Brush, view: View, bins: ScopeBins, band: Band, n: number): void {
-  const { t_s, value } = zigzag(bins, band);
-  // dashes would tear a line that goes up and down in every column
-  const style = { colour: series(n).colour, width_px: n === 1 ? 2.5 : 1.3 };
-  brush.line(
-    t_s.map((t) => view.x.px(t)),
-    value.map((v) => view.y.px(v)),
-    style,
-  );
+  const still = (brush: Brush, view: View) => {
+    for (const [n, of] of curves) {
+      const { t_s, value } = zigzag(shown(), of);
+      // dashes would tear a line that goes up and down in every column
+      const style = { colour: series(n).colour, width_px: n === 1 ? 2.5 : 1.3 };
+      brush.line(t_s.map(view.x.px), value.map(view.y.px), style);
+    }
+    drawCut(brush, view, shown());
+  };
+  const [x, y] = [
+    { label: "time before now", unit: "s" },
+    { label: name, unit },
+  ];
+  return { label, x, y, whole, still, height_px: 200 };
 }
 
 /** Mark above the curves where the command was cut to a limit. */
-function drawCut(brush: Brush, view: View, bins: ScopeBins): void {
-  const last = bins.bin.at(-1) ?? 0;
-  const colour = palette().warning;
-  bins.cut.forEach((cut, i) => {
-    const x = view.x.px(((bins.bin[i] as number) - last) * bins.bin_s);
-    if (cut) brush.line([x, x], [view.box.top, view.box.top + 6], { colour, width_px: 2 });
-  });
+function drawCut(brush: Brush, view: View, { bins, bin_s }: ScopeBins): void {
+  const last = bins.at(-1)?.bin ?? 0;
+  const { top } = view.box;
+  for (const { bin, cut } of bins) {
+    const x = view.x.px((bin - last) * bin_s);
+    if (cut) brush.line([x, x], [top, top + 6], { colour: palette().warning, width_px: 2 });
+  }
 }

@@ -80,14 +80,7 @@ function rendered(row: JobRow, found: JobOutcome): Verdict {
   return { sentence: `${found.headline || found.sentence}.`, kind, ...(row.button && { next }) };
 }
 
-/** What can be done with a device. */
-export interface DeviceActs {
-  readonly upload: () => void;
-  readonly press: () => void;
-  readonly arm: () => void;
-  readonly clear: () => void;
-  readonly checkCell: () => void;
-}
+export type DeviceActs = Readonly<Record<"upload" | "press" | "arm" | "clear" | "checkCell", () => void>>;
 
 /** button : that is chosen. learned : the device renders a learned table. */
 export function deviceVerdict(

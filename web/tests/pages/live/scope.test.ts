@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { ScopeFrame } from "../../../src/net";
-import { addBins, emptyBins, zigzag } from "../../../src/pages/live/scope";
+import { type ScopeBins, withBins, zigzag } from "../../../src/pages/live/scope";
 
 const frame = (bin: number[], bin_s = 0.01): ScopeFrame => ({
   type: "scope",
@@ -17,29 +17,29 @@ const frame = (bin: number[], bin_s = 0.01): ScopeFrame => ({
   ticks: bin.map(() => 10),
 });
 
+const empty = (bin_s: number): ScopeBins => ({ bin_s, bins: [] });
+
 describe("the scope", () => {
-  it("forgets what is out of sight, in every column alike", () => {
-    const bins = emptyBins(0.01);
-    addBins(bins, frame([1, 2, 3]), 3);
-    addBins(bins, frame([4, 5]), 3);
-    expect(bins.bin).toEqual([3, 4, 5]);
-    expect(bins.displacement_mm.low).toEqual([3, 4, 5]);
-    expect([bins.force_cN.high.length, bins.state.length, bins.cut.length]).toEqual([3, 3, 3]);
+  it("forgets what is out of sight", () => {
+    const kept = withBins(withBins(empty(0.01), frame([1, 2, 3]), 3), frame([4, 5]), 3);
+    expect(kept.bins.map(({ bin }) => bin)).toEqual([3, 4, 5]);
+    expect(kept.bins.map(({ displacement_mm }) => displacement_mm)).toEqual([
+      [3, 3.5],
+      [4, 4.5],
+      [5, 5.5],
+    ]);
   });
 
   it("takes no bins of another width", () => {
-    const bins = emptyBins(0.01);
-    addBins(bins, frame([1], 0.02), 10);
-    expect(bins.bin).toEqual([]);
+    expect(withBins(empty(0.01), frame([1], 0.02), 10).bins).toEqual([]);
   });
 
   it("draws the least and the most of every bin, and breaks where ticks are missing", () => {
-    const bins = emptyBins(0.5);
-    addBins(bins, frame([1, 2, 5], 0.5), 10);
-    expect(zigzag(bins, bins.displacement_mm)).toEqual({
+    const kept = withBins(empty(0.5), frame([1, 2, 5], 0.5), 10);
+    expect(zigzag(kept, "displacement_mm")).toEqual({
       t_s: [-2, -2, -1.5, -1.5, 0, 0, 0],
       value: [1, 1.5, 2, 2.5, NaN, 5, 5.5],
     });
-    expect(zigzag(bins, bins.force_cN).value.every(Number.isNaN)).toBe(true);
+    expect(zigzag(kept, "force_cN").value.every(Number.isNaN)).toBe(true);
   });
 });
