@@ -83,29 +83,18 @@ export function rowOf(job: string): JobRow | null {
   return rows()?.find((row) => row.job === job) ?? null;
 }
 
-/** Begin work; null if the studio refused, which is then shown. */
-async function startJob(order: Order): Promise<JobRow | null> {
-  return done(call("jobs.start", { order }));
-}
-
 /** Start work, and look at it. */
 export async function begin(order: Order): Promise<void> {
-  const row = await startJob(order);
+  const row = await done(call("jobs.start", { order }));
   if (row) location.hash = jobAddress(row);
 }
 
-export async function cancelJob(job: string): Promise<void> {
-  await done(call("jobs.cancel", { job }));
-}
+export const cancelJob = (job: string) => done(call("jobs.cancel", { job }));
+export const resumeJob = (job: string) => done(call("jobs.resume", { job }));
+export const answerJob = (job: string, number: number, answer: string) =>
+  done(call("jobs.answer", { job, number, answer }));
 
-export async function resumeJob(job: string): Promise<void> {
-  await done(call("jobs.resume", { job }));
-}
-
-export async function answerJob(job: string, number: number, answer: string): Promise<void> {
-  await done(call("jobs.answer", { job, number, answer }));
-}
-
+/** Return the row after what was asked; null if the studio refused, which is then shown. */
 async function done(asked: Promise<JobRow>): Promise<JobRow | null> {
   try {
     const row = await asked;
