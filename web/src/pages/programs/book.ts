@@ -189,32 +189,20 @@ function now_s(): number {
 }
 
 function localFindings(document: ProgramDocument): readonly ProgramFinding[] | null {
-  const found = problemsOf(document);
-  if (found.length === 0) return null;
-  return found.map(({ path, reason, remedy }) => ({
-    severity: "refused",
-    path,
-    state: "",
-    place: path || "program",
-    reason,
-    remedy,
-    at_mm: null,
-  }));
+  const found = problemsOf(document).map(({ path, reason, remedy }) =>
+    refusal({ path, place: path || "program", reason, remedy }),
+  );
+  return found.length ? found : null;
 }
 
-function unchecked(line: string): ProgramCheck {
-  const finding: ProgramFinding = {
-    severity: "refused",
-    path: "",
-    state: "",
-    place: "check",
-    reason: line,
-    remedy: "it is checked again after the next edit",
-    at_mm: null,
-  };
+type Refusal = Pick<ProgramFinding, "path" | "place" | "reason" | "remedy">;
+const refusal = (of: Refusal): ProgramFinding => ({ severity: "refused", state: "", at_mm: null, ...of });
+
+function unchecked(reason: string): ProgramCheck {
+  const remedy = "it is checked again after the next edit";
   return {
     accepted: false,
-    findings: [finding],
+    findings: [refusal({ path: "", place: "check", reason, remedy })],
     sizes: [],
     surfaces: [],
     return_s: null,

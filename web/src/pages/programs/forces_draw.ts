@@ -205,11 +205,11 @@ function edges(from: number, size: number, count: number): readonly number[] {
   return Array.from({ length: count + 1 }, (_, i) => Math.round(from + (i * size) / count));
 }
 
+/** Words on the map stand on a ground of their own. */
 function mapWords(brush: Brush, view: View, words: string): void {
   const { text, surface } = palette();
-  brush.text(
-    words,
-    { x_px: view.box.left + 8, y_px: view.box.top + 14 },
-    { colour: text, halo: surface, size_px: 12 },
-  );
+  const { left, top } = view.box;
+  const ground = { left: left + 4, top: top + 4, width: 6.4 * words.length, height: 20 };
+  brush.rect(ground, { colour: surface, opacity: 0.85 });
+  brush.text(words, { x_px: left + 10, y_px: top + 14 }, { colour: text, size_px: 12 });
 }

@@ -14,8 +14,8 @@ export function verdictOf(book: ProgramBook, show: (finding: ProgramFinding) => 
   const findings = book.findings();
   const refused = findings.find(({ severity }) => severity === "refused");
   if (refused) {
-    const more = findings.length > 1 ? ` (and ${findings.length - 1} more)` : "";
-    const sentence = `A device would refuse it: ${placeOf(refused)}: ${refused.reason}${more}.`;
+    const more = findings.length > 1 ? `; ${findings.length - 1} more` : "";
+    const sentence = `Not ready: ${refused.reason} (${placeOf(refused)}${more}).`;
     return { sentence, kind: "warning", next: { label: "Show where", act: () => show(refused) } };
   }
   if (!book.check()) return { sentence: "Checking the program…" };
@@ -23,6 +23,6 @@ export function verdictOf(book: ProgramBook, show: (finding: ProgramFinding) => 
   const states = length === 1 ? "1 state" : `${length} states`;
   const [warning] = findings;
   return warning
-    ? { sentence: `Ready, ${states}, but ${placeOf(warning)}: ${warning.reason}.`, kind: "warning", next }
+    ? { sentence: `Ready: ${states}, but ${warning.reason} (${placeOf(warning)}).`, kind: "warning", next }
     : { sentence: `Ready: ${states}, no findings.`, kind: "good", next };
 }
