@@ -27,7 +27,7 @@ def start(browser: Browser, folder: Path) -> tuple[float, float]:
     begun = time.perf_counter()
     studio = RunningStudio(folder)
     printed = time.perf_counter()
-    page.goto(studio.address, wait_until="commit")
+    page.goto(f"{studio.address}#/library", wait_until="commit")
     page.wait_for_selector(INTERACTIVE)
     page.wait_for_selector(FIRST_ROW)
     ready = time.perf_counter()

@@ -7,6 +7,45 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+RECORD = r"""() => {
+  // every canvas keeps what is written on it, as boxes on the screen, until it is cleared
+  const context = CanvasRenderingContext2D.prototype;
+  const texts = new WeakMap(), clips = new WeakMap(), lasts = new WeakMap();
+  const was = {};
+  for (const name of ["fillText", "clearRect", "rect", "clip", "save", "restore"]) was[name] = context[name];
+  const placed = (c, left, top, right, bottom) => {
+    const at = c.getTransform();
+    const corners = [[left, top], [right, top], [left, bottom], [right, bottom]];
+    const points = corners.map(([x, y]) => at.transformPoint(new DOMPoint(x, y)));
+    const x = points.map((p) => p.x), y = points.map((p) => p.y);
+    return { left: Math.min(...x), right: Math.max(...x), top: Math.min(...y), bottom: Math.max(...y) };
+  };
+  const stack = (c) => clips.get(c) ?? clips.set(c, [null]).get(c);
+  context.save = function () { stack(this).push(stack(this).at(-1)); was.save.call(this); };
+  context.restore = function () { if (stack(this).length > 1) stack(this).pop(); was.restore.call(this); };
+  context.rect = function (x, y, w, h) {
+    lasts.set(this, placed(this, x, y, x + w, y + h));
+    was.rect.call(this, x, y, w, h);
+  };
+  context.clip = function (...rest) {
+    stack(this)[stack(this).length - 1] = lasts.get(this) ?? null;
+    was.clip.apply(this, rest);
+  };
+  context.clearRect = function (...rest) { texts.set(this.canvas, []); was.clearRect.apply(this, rest); };
+  context.fillText = function (text, x, y, ...rest) {
+    const m = this.measureText(text);
+    const box = placed(this, x - m.actualBoundingBoxLeft, y - m.actualBoundingBoxAscent,
+      x + m.actualBoundingBoxRight, y + m.actualBoundingBoxDescent);
+    if (!texts.has(this.canvas)) texts.set(this.canvas, []);
+    texts.get(this.canvas).push({ text, ...box, clip: stack(this).at(-1) });
+    was.fillText.call(this, text, x, y, ...rest);
+  };
+  globalThis.fdvvCut = (canvas) => (texts.get(canvas) ?? []).filter(({ left, right, top, bottom, clip }) => {
+    const edge = clip ?? { left: 0, top: 0, right: canvas.width, bottom: canvas.height };
+    return left < edge.left - 2 || right > edge.right + 2 || top < edge.top - 2 || bottom > edge.bottom + 2;
+  });
+}"""
+
 MEASURE = r"""() => {
   const AIR = 1.5;
   const ROOT = document.documentElement;
@@ -62,6 +101,10 @@ MEASURE = r"""() => {
     if (field.scrollWidth > field.clientWidth + AIR && overflowX === "visible" && field.clientWidth)
       found.push(`too wide for its button: ${words(field.textContent)} in ${where(field)}`);
   }
+  for (const canvas of document.querySelectorAll("canvas"))
+    if (canvas.checkVisibility() && globalThis.fdvvCut)
+      for (const { text } of globalThis.fdvvCut(canvas))
+        found.push(`cut in a plot: ${words(text)} in ${where(canvas.parentElement)}`);
   boxes.sort((a, b) => a.top - b.top);
   for (let i = 0; i < boxes.length; i++) {
     const a = boxes[i];
@@ -79,6 +122,11 @@ MEASURE = r"""() => {
     if (part.scrollWidth > part.clientWidth + AIR) found.push(`the page is ${part.scrollWidth} px wide`);
   return [...new Set(found)];
 }"""
+
+
+def record(page: Page) -> None:
+    """Let the canvases of a page keep what is written on them; before it is opened."""
+    page.add_init_script(f"({RECORD})()")
 
 
 def faults(page: Page) -> list[str]:

@@ -67,7 +67,7 @@ def test_a_designer_finds_edits_presses_renders_and_keeps_a_button(
     write_cycle(bench / "Silent Linear Red.csv", added_cN=9, seed=2)
     studio = start_studio(bench)
     page = context.new_page()
-    page.goto(studio.address)
+    page.goto(f"{studio.address}#/library")
     page.wait_for_selector("html[data-ready=library]")
 
     found_by_typing(page, "yellow")

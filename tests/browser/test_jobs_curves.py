@@ -124,6 +124,7 @@ def test_two_buttons_are_compared_and_shared(hand: Hand) -> None:
 def test_two_are_compared_and_shared_by_keyboard_alone(hand: Hand) -> None:
     page = hand.page
     page.keyboard.press("Alt+1")
+    page.wait_for_selector("main[data-page=library]")
     for name in ("mx-clear", "mx-red"):
         page.keyboard.press("/")
         page.keyboard.type(name)

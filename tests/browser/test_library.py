@@ -180,16 +180,16 @@ def test_differences_are_to_the_reference_and_what_is_not_there_says_why(library
 def test_a_term_is_explained_by_pointer_and_by_key(library: Page) -> None:
     library.goto(f"{library.url.partition('#')[0]}#/library?over=builtin%3Amx-clear")
     term = library.locator(".lib-landmarks").get_by_role("button", name="Preload")
-    meaning = library.get_by_role("dialog", name="preload")
+    meaning = library.get_by_role("tooltip", name="preload")
     term.hover()
     expect(meaning).to_contain_text("The force at the end of the first step on contact.")
-    library.mouse.move(5, 5)
+    library.mouse.move(5, 5, steps=10)
     expect(meaning).to_have_count(0)
     term.focus()
     library.keyboard.press("Tab")
-    expect(library.get_by_role("dialog", name="peak")).to_contain_text("The greatest force before the bump.")
+    expect(library.get_by_role("tooltip", name="peak")).to_contain_text("The greatest force before the bump.")
     library.keyboard.press("Escape")
-    expect(library.get_by_role("dialog")).to_have_count(0)
+    expect(library.get_by_role("tooltip")).to_have_count(0)
 
 
 def test_the_file_of_numbers_holds_the_curves(library: Page) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.browser.accessibility import audit
-from tests.browser.boxes import faults
+from tests.browser.boxes import faults, record
 from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:
@@ -31,6 +31,8 @@ PAGES = (
     "optimize",
     "studies",
 )
+BUSY = {"edit/builtin:mx-clear": ".edit-points"}
+"""Pages that go on asking, such as what a rig can follow, and what shows that they stand."""
 NARROW = "overflow: hidden; white-space: nowrap"
 PLANTED = {
     "cut": (("p", f"width: 60px; {NARROW}", "a line that is cut by its box"),),
@@ -39,6 +41,12 @@ PLANTED = {
     "too wide": (("button", "width: 40px; white-space: nowrap", "a long name"),),
 }
 """Tag, style and text of what each kind of fault is made of."""
+DRAWN = """() => {
+  const canvas = document.createElement("canvas");
+  canvas.id = "planted";
+  document.querySelector(".home").append(canvas);
+  canvas.getContext("2d").fillText("beyond its edge", canvas.width - 20, 40);
+}"""
 PLANT = """parts => {
   const host = document.createElement("div");
   host.id = "planted";
@@ -59,6 +67,7 @@ def look(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     context = browser.new_context()
     context.set_default_timeout(15_000)
     page = context.new_page()
+    record(page)
     logged: list[str] = []
     page.on("pageerror", lambda error: logged.append(str(error)))
     page.on("console", lambda line: logged.append(line.text) if line.type == "error" else None)
@@ -79,7 +88,10 @@ def test_no_text_is_cut_covered_or_outside(look: tuple[Page, list[str]], address
     page, logged = look
     page.goto(f"{page.url.partition('#')[0]}#/{address}")
     page.wait_for_selector(f"main[data-page={address.partition('/')[0].partition('?')[0]}]")
-    page.wait_for_load_state("networkidle")
+    if address in BUSY:
+        page.wait_for_selector(BUSY[address])
+    else:
+        page.wait_for_load_state("networkidle")
     found: list[str] = []
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
@@ -103,3 +115,14 @@ def test_a_planted_fault_is_found(look: tuple[Page, list[str]], kind: str) -> No
     page.evaluate("document.getElementById('planted').remove()")
     assert any(line.startswith(kind) for line in found)
     assert faults(page) == []
+
+
+def test_a_word_that_a_plot_cuts_is_found(look: tuple[Page, list[str]]) -> None:
+    page, _ = look
+    page.goto(f"{page.url.partition('#')[0]}#/home")
+    page.wait_for_selector(".card polyline")
+    page.evaluate(DRAWN)
+    found = faults(page)
+    page.evaluate("document.getElementById('planted').remove()")
+    assert len(found) == 1
+    assert found[0].startswith('cut in a plot: "beyond its edge"')

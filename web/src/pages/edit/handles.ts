@@ -132,9 +132,14 @@ export function paintPositions(
     const colour = name === held ? accent : muted;
     brush.line([x, x], [y, bottom], { colour, dash: name === "reset" ? [2, 4] : [6, 4], opacity: 0.8 });
     brush.circle({ x_px: x, y_px: y }, 5.5, { colour: surface }, { colour, width_px: 2 });
-    const right = x < view.box.left + view.box.width - 130;
+    const [before, behind] = [x - view.box.left, view.box.left + view.box.width - x];
+    const full = `${label} ${at_mm.toFixed(2)} mm`;
+    const fits = (room_px: number) => 16 + LETTER_px * full.length < room_px;
+    // to the right, unless only the left has room; the axis says the unit where neither has
+    const words = fits(before) || fits(behind) ? full : `${label} ${at_mm.toFixed(2)}`;
+    const right = fits(behind) || (!fits(before) && behind > before);
     const at = { x_px: x + (right ? 10 : -10), y_px: y };
-    brush.text(`${label} ${at_mm.toFixed(2)} mm`, at, {
+    brush.text(words, at, {
       colour: text,
       size_px: 11,
       align: right ? "left" : "right",
@@ -153,11 +158,15 @@ export function paintBumps(brush: Brush, view: View, curve: ForceCurve, travel_m
     const [tip, base] = [y + up * 10, y + up * 19];
     brush.area([x, x - 6, x + 6], [tip, base, base], { colour: accent });
     // the rows of the places come first
-    const at = { x_px: x, y_px: Math.max(y + up * 30, rowOf(view, PLACES - 0.4)) };
     const words = `${name} ${force_cN.toFixed(1)} cN at ${x_mm.toFixed(2)} mm`;
     const half_px = 0.5 * LETTER_px * words.length;
+    const last_px = view.box.left + view.box.width - half_px;
+    const at = {
+      x_px: Math.max(view.box.left + half_px, Math.min(last_px, x)),
+      y_px: Math.max(y + up * 30, rowOf(view, PLACES - 0.4)),
+    };
     brush.rect(
-      { left: x - half_px, top: at.y_px - 7, width: 2 * half_px, height: 14 },
+      { left: at.x_px - half_px, top: at.y_px - 7, width: 2 * half_px, height: 14 },
       { colour: surface, opacity: 0.85 },
     );
     brush.text(words, at, { colour: text, size_px: 11, align: "center" });
