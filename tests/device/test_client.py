@@ -112,7 +112,7 @@ def test_pings_relate_the_clocks() -> None:
         client.ping()
     relation = client.clocks()
     # in lockstep both clocks are one: the offset is half a round trip of a tick or two
-    assert abs(relation.offset_us) <= relation.shortest_us / 2 + 1
+    assert abs(relation.offset_us) <= relation.error_us + 1
     assert relation.residual_us < 1
     assert relation.exchanges == 10
 

@@ -34,6 +34,18 @@ def test_offset_and_drift_are_found_in_spite_of_delays(drift_ppm: float) -> None
     assert relation.shortest_us == 200
 
 
+@given(st.integers(0, 10_000))
+def test_the_bound_of_the_error_holds_however_the_ways_are_held_up(seed: int) -> None:
+    """All on one way, as a busy machine does it; half of the quickest trip bounds only what is symmetric."""
+    rng = np.random.default_rng(seed)
+    late_us = rng.exponential(2000, (12, 2)) * [1.0, 0.05]
+    found = [
+        Exchange(1e5 * i - there, 1e5 * i + back, 1e5 * i) for i, (there, back) in enumerate(late_us.tolist())
+    ]
+    relation = relate(found[:8])
+    assert abs(relation.offset_us) <= relation.error_us
+
+
 def test_exchanges_within_a_second_claim_no_drift() -> None:
     relation = relate(exchanges(0.0, 80.0, np.random.default_rng(1), 5))
     assert relation.drift_ppm == 0

@@ -9,7 +9,7 @@ from fdvv.protocol.frame import FrameDecoder
 from fdvv.protocol.tables import Message, Settings
 from tests.support.scripted_person import ScriptedPerson
 
-SETTINGS = Settings(host_timeout_ms=2000)
+SETTINGS = Settings(host_timeout_ms=5000)
 """Patient, as this machine may be busy; otherwise the board's own."""
 
 
@@ -26,7 +26,7 @@ class KeyedRig(Rig):
 
     Attributes
     ----------
-    pressed_s : when, on the host's clock. lose : so many of the next frames of ticks are lost on the line.
+    pressed_s : when, see tick_s. lose : so many of the next frames of ticks get lost.
     """
 
     def __init__(self, presses: int, person: ScriptedPerson | None = None) -> None:
@@ -36,7 +36,7 @@ class KeyedRig(Rig):
         self._decoder, read = FrameDecoder(), self.board.read
 
         def noted() -> bytes:
-            data, now_s = read(), time.monotonic()
+            data, now_s = read(), self.tick_s
             for frame in self._decoder.feed(data):
                 if frame.message == Message.KEY and frame.payload[0] > 0:
                     self.pressed_s.append(now_s)

@@ -83,6 +83,10 @@ class LockstepPort:
     def now_s(self) -> float:
         return self._time_us * 1e-6
 
+    def set_clock(self, now_s: float) -> None:
+        """Set the board's clock, which otherwise counts ticks, for a board that runs in real time."""
+        self._time_us = round(1e6 * now_s)
+
     def connect(self, plant: Plant) -> None:
         """Connect the board to another plant from the next tick on."""
         self._plant, self.ticks = plant, []

@@ -20,8 +20,10 @@ from fdvv.protocol.tables import Fault
 LAG_s = 0.01
 """Beyond this a busy machine's lost time is left out, so that the rig never runs ahead of its host."""
 POLL_s = 1e-3
+UNSENT_bytes = 1 << 20
+"""Kept for a host that does not read; what is older is lost."""
 BETWEEN_s = 0.4
-PATIENCE_ms = 2000
+PATIENCE_ms = 5000
 """The host's timeout: both run on one machine, which may be busy."""
 
 
@@ -36,7 +38,8 @@ class RigServer(threading.Thread):
     Attributes
     ----------
     path : of the terminal that a host opens. counts : of "ticks" and "presses" so far.
-    over : set when it ends.
+    over : set when it ends. tick_s : when the tick under way began, on the host's clock; the board's own clock
+        goes with it, as a real one does, whatever ticks a busy machine leaves out.
     """
 
     def __init__(self, person: Person, presses: int | None = None, between_s: float = BETWEEN_s) -> None:
@@ -60,6 +63,8 @@ class RigServer(threading.Thread):
         self.counts: Counter[str] = Counter()
         self._due = self._ticks_of(self.between_s)
         self.over = threading.Event()
+        self._begun_s = self.tick_s = time.monotonic()
+        self._unsent = self._heard = b""
 
     def _prepare(self) -> None:
         """Write the rig's settings, and clear what only the settings that a board starts with found wrong."""
@@ -83,17 +88,27 @@ class RigServer(threading.Thread):
     def hear(self) -> None:
         """Hand on what the host has sent."""
         with suppress(BlockingIOError):
-            self.board.write(os.read(self.line, 4096))
+            self._heard += os.read(self.line, 4096)
 
     def tick(self) -> None:
         """Run a tick of the board; the person begins a press when one is due."""
+        self.tick_s = time.monotonic()
+        self.port.set_clock(self.tick_s - self._begun_s)
         armed = bool(self.port.step().enable)
         self.counts["ticks"] += 1
-        with suppress(BlockingIOError):  # nobody reads; the next host asks anew
-            os.write(self.line, self.board.read())
+        # a board stamps what it hears with the time of its last tick, which is not before it came
+        self.board.write(self._heard)
+        self._heard = b""
+        self._send(self.board.read())
         self._due = self._due - 1 if armed else self._ticks_of(self.between_s)
         if self._due <= 0 and self.presses != 0:
             self._press()
+
+    def _send(self, data: bytes) -> None:
+        """Send what the line takes, the rest later: a host that is busy loses nothing, as on USB."""
+        self._unsent = (self._unsent + data)[-UNSENT_bytes:]
+        with suppress(BlockingIOError):
+            self._unsent = self._unsent[os.write(self.line, self._unsent) :]
 
     def _press(self) -> None:
         image = self.board.program()

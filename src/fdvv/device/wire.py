@@ -180,7 +180,8 @@ class ClockRelation:
     offset_us : host's clock at the device's zero.
     drift_ppm : how much faster the host's clock runs; 0 unless the exchanges span a second.
     residual_us : rms distance of the exchanges used from the line.
-    shortest_us : shortest round trip; half of it bounds the error of the offset.
+    shortest_us : shortest round trip. error_us : bound of the error, however ways were held up: the device's
+        clock was read between the two ends of every exchange.
     exchanges : used.
     """
 
@@ -189,6 +190,7 @@ class ClockRelation:
     residual_us: float
     shortest_us: float
     exchanges: int
+    error_us: float
 
     def host_us(self, device_us: float) -> float:
         return self.offset_us + (1 + self.drift_ppm * 1e-6) * device_us
@@ -217,4 +219,5 @@ def relate(exchanges: Sequence[Exchange]) -> ClockRelation:
     offset = float(host.mean() - (1 + drift) * device.mean())
     residual = host - offset - (1 + drift) * device
     rms = float(np.sqrt(np.mean(residual**2)))
-    return ClockRelation(offset, drift * 1e6, rms, float(trips.min()), quick.size)
+    error = float(np.min(np.abs(residual) + trips[quick] / 2))
+    return ClockRelation(offset, drift * 1e6, rms, float(trips.min()), quick.size, error)

@@ -171,15 +171,15 @@ class DeviceKey:
             raise InputError("device", device.info().name, "is pressed by no person", "use serial:PORT")
         self.device, self._failed = device, failed
         self._level, self._pressed_s, self._missed = 0, deque[float](maxlen=KEPT), 0
-        self.problem, self._rendering, self._lock = "", False, Lock()
+        self.problem, self._rendering, self._lock, self._error_us = "", False, Lock(), 0.0
         device.client.on_key = self._key
         # keys are reported separately, so that nothing is to be done with telemetry
         self._line = RealLine(device, lambda _columns: None, self._look, lambda error: self._end(str(error)))
 
     @property
     def clock_error_ms(self) -> float:
-        """Error bound between the device's clock and the host's: half of the quickest exchange."""
-        return self._line.do(lambda: 0.5e-3 * self.device.client.clocks().shortest_us)
+        """Error bound between the device's clock and the host's: the worst since the button came, or now."""
+        return self._line.do(lambda: 1e-3 * max(self._error_us, self.device.client.clocks().error_us))
 
     def render(self, model: FDVVModel) -> None:
         """Put a button under the hand.
@@ -235,7 +235,7 @@ class DeviceKey:
         for _ in range(PINGS):
             client.ping()
         client.telemetry.clear()
-        self._missed, self._level = 0, 0
+        self._missed, self._level, self._error_us = 0, 0, 0.0
         client.stream(EVERY)
         client.arm()
         self._rendering = True
@@ -244,6 +244,7 @@ class DeviceKey:
         """Note a key that went down, or on to the next level."""
         if notice.key > self._level:
             at_s = self.device.client.host_s(notice.time_us)
+            self._error_us = max(self._error_us, self.device.client.clocks().error_us)
             with self._lock:
                 self._pressed_s.append(at_s)
         self._level = notice.key
