@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Page
 
 ROUNDS = 3
+LONG_ms = 60_000
+"""For a machine that is busy with other things."""
 CLOCK_ms = 0.2
 """Browsers tell times in steps of 0.1 ms."""
 BUTTON_ms = 2.0
@@ -78,10 +80,19 @@ class Wire:
         return [body for body in (*self.said, *self.heard) if body.get("type") == kind]
 
 
-def begin(page: Page, engine: str = "sobol", **more: str) -> None:
-    """Begin a run of few presses on its page, with a wire on it."""
+def form(page: Page, kind: str = "I play") -> None:
+    """Open the form of a new run, with all there is to set."""
     page.goto(f"{page.url.partition('#')[0]}#/optimize")
+    page.get_by_role("radio", name=kind).check()
+    if not page.get_by_label("Engine").is_visible():
+        page.get_by_text("Advanced").click()
+
+
+def begin(page: Page, engine: str = "sobol", kind: str = "I play", **more: str) -> None:
+    """Begin a run of few presses on its page, with a wire on it."""
+    form(page, kind)
     page.get_by_label("Engine").select_option(engine)
+    page.get_by_label("Designs").select_option("paper")
     for label, value in {"Score after": str(ROUNDS), "Budget": "3", **more}.items():
         page.get_by_label(label, exact=True).fill(value)
         page.keyboard.press("Enter")
@@ -200,7 +211,7 @@ def test_a_run_is_played_stopped_gone_on_with_compared_and_saved(
     page.wait_for_selector("th:has-text('actuation, mm') ~ td")
     press_each(page)
     page.get_by_label("Name", exact=True).fill("mine")
-    page.get_by_role("button", name="Save as my button").click()
+    page.locator(".opt-compared").get_by_role("button", name="Save as my button").click()
     page.get_by_role("link", name="Edit mine").click()
     page.wait_for_selector("main[data-page=edit]")
     assert (studio.project / "buttons" / "mine.fdvv.json").exists()
@@ -282,22 +293,48 @@ def test_a_suggestion_is_changed_before_it_is_played_and_a_trial_abandoned(
 
 
 def test_a_simulated_person_goes_on_while_the_page_is_away(page: Page, studio: RunningStudio) -> None:
-    page.goto(f"{page.url.partition('#')[0]}#/optimize")
-    page.get_by_label("How").select_option("simulated")
-    begin(page)
-    page.get_by_role("button", name="Let them play").click()
-    page.wait_for_selector("text=/of 3 trials/")
+    begin(page, kind="A simulated person plays", Retest="2")
+    page.wait_for_selector("text=/of 7 trials/", state="attached")
     page.reload()
-    page.wait_for_selector("text=simulated person 0: 3 of 3 trials, done")
+    page.wait_for_selector("section.verdict >> text=/, simulated[.;]/", timeout=LONG_ms)
+    page.get_by_role("tab", name="Play").click()
+    page.wait_for_selector("text=/^simulated person 0: . of 7 trials, done/")
     assert page.locator(".tag.simulated").count() >= 2
-    expect(page.locator("tbody tr")).to_have_count(3)
+    expect(page.locator("[aria-label=Progress] tbody tr")).to_have_count(3)
+    with Optimization.open(studio.project / "optimize" / "1") as session:
+        assert (len(session.trials), session.finished) == (3, True)
+        assert len(session.retests) == (0 if session.recommended() == session.start else 4)
+
+
+def test_the_best_design_is_played_again_against_the_start_and_nobody_knows_which_is_which(
+    page: Page, studio: RunningStudio
+) -> None:
+    begin(page, Budget="2", Retest="1")
+    page.get_by_role("button", name="Play trial 1").click()  # all three bullets are missed
+    page.wait_for_selector(".opt-line >> text=/^Trial 1: asynchrony 400/", timeout=60_000)
+    play(page, 2)
+    for number in (1, 2):
+        page.get_by_role("button", name=f"Play again, blind: {number} of 2").click()
+        for press in range(1, ROUNDS + 1):
+            page.wait_for_selector(f".opt-line >> text=/^Press {press} of/")
+            wait_for_bullet(page)
+            page.keyboard.press(" ", delay=80)
+        page.wait_for_selector(
+            ".opt-line >> text=/which of the two it was is not shown/", state="attached", timeout=60_000
+        )
+    expect(page.get_by_role("region", name="Verdict")).to_contain_text("mx-clear")
+    page.get_by_role("tab", name="Play").click()
+    expect(page.locator("[aria-label=Progress] tbody tr")).to_have_count(2)
 
 
 def test_a_run_begins_from_what_others_did_if_there_is_any(page: Page, studio: RunningStudio) -> None:
-    page.goto(f"{page.url.partition('#')[0]}#/optimize")
+    form(page)
+    page.get_by_label("Designs").select_option("paper")
     expect(page.locator(".opt-fields code")).to_contain_text("fdvv optimize population others/easy")
     grid(studio.project / "others" / "easy", "easy")
     page.reload()
+    form(page)
+    page.get_by_label("Designs").select_option("paper")
     page.get_by_label("Others").select_option("easy")
     page.get_by_label("Designs").select_option("FDV")
     expect(page.get_by_label("Others")).to_have_count(0)
@@ -308,12 +345,12 @@ def test_a_run_begins_from_what_others_did_if_there_is_any(page: Page, studio: R
 
 
 def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: RunningStudio) -> None:
-    page.goto(f"{page.url.partition('#')[0]}#/optimize")
-    page.get_by_label("How").select_option("prefer")
-    page.get_by_label("Budget", exact=True).fill("2")
-    page.keyboard.press("Enter")
+    form(page, "I compare")
+    for label, value in (("Budget", "2"), ("Retest", "1")):
+        page.get_by_label(label, exact=True).fill(value)
+        page.keyboard.press("Enter")
     page.get_by_role("button", name="Begin", exact=True).click()
-    for number, key in ((1, "2"), (2, "0")):
+    for number, key in ((1, "2"), (2, "0"), (3, "1")):
         page.wait_for_selector(f"h2:has-text('Comparison {number}')")
         for side in ("A", "B"):
             press_once(page, side)
@@ -325,29 +362,30 @@ def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: 
     page.wait_for_selector("a.opt-run")
     with Optimization.open(studio.project / "optimize" / "1") as session:
         assert [one.answer for one in session.comparisons] == [Answer.SECOND, Answer.EQUAL]
+        assert [one.answer for one in session.retest_comparisons] in ([Answer.FIRST], [])
 
 
 @pytest.mark.parametrize(
     ("how", "tab"),
     [
-        ("simulated", "Play"),
-        ("simulated", "Result"),
-        ("play", "Play"),
-        ("play", "Timing"),
-        ("prefer", "Compare"),
+        ("A simulated person plays", "Play"),
+        ("A simulated person plays", "Result"),
+        ("I play", "Play"),
+        ("I play", "Timing"),
+        ("I compare", "Compare"),
     ],
 )
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_nothing_serious_in_a_run(page: Page, how: str, tab: str, scheme: Any) -> None:
     page.emulate_media(color_scheme=scheme)
-    page.goto(f"{page.url.partition('#')[0]}#/optimize")
-    page.get_by_label("How").select_option(how)
-    page.get_by_label("Budget", exact=True).fill("2")
-    page.keyboard.press("Enter")
+    form(page, how)
+    for label in ("Budget", "Retest"):
+        page.get_by_label(label, exact=True).fill("2")
+        page.keyboard.press("Enter")
+    assert audit(page) == []
     page.get_by_role("button", name="Begin", exact=True).click()
-    if how == "simulated":
-        page.get_by_role("button", name="Let them play").click()
-        page.wait_for_selector("text=2 of 2 trials, done")
+    if "simulated" in how:
+        page.wait_for_selector("section.verdict >> text=/, simulated[.;]/", timeout=LONG_ms)
     page.get_by_role("tab", name=tab).click()
     page.wait_for_load_state("networkidle")
     assert audit(page) == []

@@ -19,7 +19,20 @@ from tests.support.executors import Here
 
 from .conftest import Ran, Run
 
-SHORT = ("--trials", "4", "--presses", "4", "--person", "3", "--seed", "4", "--engine", "sobol")
+SHORT = (
+    "--trials",
+    "4",
+    "--presses",
+    "4",
+    "--person",
+    "3",
+    "--seed",
+    "4",
+    "--engine",
+    "sobol",
+    "--space",
+    "paper",
+)
 
 
 def run_optimize(fdvv: Run, folder: str = "run", *more: str) -> Ran:

@@ -261,6 +261,7 @@ def model_space(
     names: Sequence[str] = ("FDV",),
     bounds: Mapping[str, tuple[float, float]] | None = None,
     constraints: Sequence[Constraint] = (),
+    most_cN: float | None = None,
 ) -> DesignSpace:
     """Return the space of variations of a button.
 
@@ -272,6 +273,7 @@ def model_space(
     bounds : (low, high) by name, where the default ones do not serve.
     constraints : on top of those that a button must hold: points within the travel and in order, a force
         that brings the cap back and that a motor gives.
+    most_cN : no force is larger; None: what the motor gives.
 
     Raises InputError on a name that the button does not have.
     """
@@ -283,7 +285,8 @@ def model_space(
             raise unknown(name, known)
     own = [handle.parameter for name, handle in known.items() if name in chosen]
     parameters = tuple(Parameter(p.name, *limits[p.name]) if p.name in limits else p for p in own)
-    return DesignSpace(f"variations of {base.name}", parameters, (*_held(chosen, base, known), *constraints))
+    held = _held(chosen, base, known, LARGEST_cN if most_cN is None else most_cN)
+    return DesignSpace(f"variations of {base.name}", parameters, (*held, *constraints))
 
 
 def neutral_design(space: DesignSpace, base: FDVVModel) -> dict[str, float]:
@@ -293,7 +296,11 @@ def neutral_design(space: DesignSpace, base: FDVVModel) -> dict[str, float]:
 
 def model_of(base: FDVVModel, design: Design, name: str = "design") -> FDVVModel:
     """Make the variation of a button that a design names; what it does not name stays the base's."""
-    known, model = handles(base), base
+    return _made(base, handles(base), design, name)
+
+
+def _made(base: FDVVModel, known: Mapping[str, Handle], design: Design, name: str = "design") -> FDVVModel:
+    model = base
     for one, handle in known.items():
         # three numbers make one bump, which is added in the place of the first
         if one == BUMP[0]:
@@ -317,7 +324,9 @@ def _expanded(base: FDVVModel, names: Sequence[str], known: Collection[str]) -> 
     return tuple(dict.fromkeys(one for name in names for one in words.get(name, (name,))))
 
 
-def _held(chosen: Collection[str], base: FDVVModel, known: Mapping[str, Handle]) -> Iterator[Constraint]:
+def _held(
+    chosen: Collection[str], base: FDVVModel, known: Mapping[str, Handle], most_cN: float
+) -> Iterator[Constraint]:
     """Return what a button must hold, with slacks in mm and cN; points first, for they cost nothing."""
 
     def value(design: Design, name: str) -> float:
@@ -331,28 +340,33 @@ def _held(chosen: Collection[str], base: FDVVModel, known: Mapping[str, Handle])
     if "reset_mm" in chosen:
         order = "the contact opens no deeper than it closes"
         yield Constraint("order", order, lambda d: value(d, "actuation_mm") - value(d, "reset_mm"))
-    text = f"force stays between {LEAST_cN:g} and {LARGEST_cN:g} cN past the first part of the travel"
-    yield Constraint("force", text, lambda d: _force_slack(_curves_of(base, d)))
+    text = f"force stays between {LEAST_cN:g} and {most_cN:.0f} cN past the first part of the travel"
+    yield Constraint("force", text, lambda d: _force_slack(_curves_of(base, known, d), most_cN))
 
 
-def _curves_of(base: FDVVModel, design: Design) -> FDVVModel:
+def _curves_of(base: FDVVModel, known: Mapping[str, Handle], design: Design) -> FDVVModel:
     """Make a design's curves, whatever its points: those out of order make no model at all."""
-    return model_of(base, {name: value for name, value in design.items() if name not in POINTS})
+    return _made(base, known, {name: value for name, value in design.items() if name not in POINTS})
 
 
-def _force_slack(model: FDVVModel) -> float:
-    """Return how far the forces of all curves stay within limits, cN; at contact a cap may be free."""
+def _force_slack(model: FDVVModel, most_cN: float) -> float:
+    low_cN, high_cN = force_ends_cN(model)
+    return min(low_cN - LEAST_cN, most_cN - high_cN)
+
+
+def force_ends_cN(model: FDVVModel) -> tuple[float, float]:
+    """Return the least and the largest force of all curves; at contact a cap may be free."""
     x = np.arange(0.1 * model.travel_mm, 0.98 * model.travel_mm, STEP_mm)
     force = np.concatenate([curve.force_cN(x) for curve in model.curves])
-    return float(min(force.min() - LEAST_cN, LARGEST_cN - force.max()))
+    return float(force.min()), float(force.max())
 
 
 def monotone_constraint(base: FDVVModel) -> Constraint:
     """Ask that a faster press is nowhere softer than a slower one, as dampers make it; slack in cN."""
-    x = np.linspace(0.1, 0.9, 17)
+    x, known = np.linspace(0.1, 0.9, 17), handles(base)
 
     def slack(design: Design) -> float:
-        model = _curves_of(base, design)
+        model = _curves_of(base, known, design)
         means = [curve.force_cN(x * model.travel_mm).mean() for curve in model.of(Stroke.PRESS)]
         return float(np.diff(means).min(initial=0.0))
 

@@ -72,10 +72,11 @@ class SimulatedPlay:
         with self._runs.session(self._run) as session:
             task, seed = pointing_of(session.setup), session.setup.seed
             waiting = [one for one in session.trials if one.state is TrialState.SUGGESTED]
-            trials = waiting[:1] or session.ask()
-            if not trials:
+            trial = next(iter(waiting or session.ask()), None) or session.retest()
+            if trial is None:
                 return False
-            trial = session.show(trials[0].number)
+            if trial.state is TrialState.SUGGESTED:
+                trial = session.show(trial.number)
             model = session.model(trial.design)
         # the person learns from every press, so the trials before this one count; the session is left while
         # the trial is simulated, which takes long, so that pages can read the run
@@ -194,10 +195,8 @@ class Optimizations:
         if not done:
             return None
         if self._found.get(run, (0, {}))[0] != done:
-            # designs that are compared have no scores, however many objectives an older run names
-            several = len(session.problem.objectives) > 1 and not session.setup.preference
-            self._found[run] = (done, session.front().knee().design if several else session.best())
-        return self._found[run][1]
+            self._found[run] = (done, session.recommended() or {})
+        return self._found[run][1] or None
 
     def announce(self, run: int) -> None:
         self.watchers.tell(OptimizeChanged(run))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from msgspec import Meta
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize.problem import Trial, TrialState
+from fdvv.optimize.problem import OPEN, Trial, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.run.task_rounds import ClockSource, RoundTiming, TaskRounds
@@ -169,14 +169,13 @@ class PlayedTrial:
 
 
 def _open_trial(session: Optimization, number: int) -> Trial:
-    trials = session.trials
-    if not 0 <= number < len(trials):
+    trial = session.trial(number)
+    if trial is None:
         raise InputError("optimise", f"trial {number + 1}", "there is none", "ask for the next one")
-    trial = trials[number]
-    if trial not in open_trials(session):
+    if trial.state not in OPEN:
         raise InputError("optimise", f"trial {number + 1}", f"is {trial.state}", "ask for the next one")
     return trial
 
 
 def open_trials(session: Optimization) -> tuple[Trial, ...]:
-    return tuple(one for one in session.trials if one.state in (TrialState.SUGGESTED, TrialState.SHOWN))
+    return tuple(one for one in session.trials if one.state in OPEN)

@@ -80,15 +80,14 @@ def run_on_strip(
     ready: Callable[[Trial], None] | None = None,
     presser: Presser | None = None,
 ) -> Iterator[Trial]:
-    """Play trial after trial on rig and strip until the budget is spent; return each as it then stands.
+    """Play trial after trial on rig and strip until the run is over; return each as it then stands.
 
     Stop between two, or kill the process at any moment: the session continues where it was. ready : called
     before each, such as to wait for the person. The strip's clock tells more than whole frames, so scores are
     not quantised. Raises InputError if the session is about another task, DeviceError if rig or strip fail.
     """
     task = _task(session, rounds)
-    while asked := session.ask():
-        (trial,) = asked
+    while trial := next(iter(session.ask()), None) or session.retest():
         if ready:
             ready(trial)
         yield try_on_strip(session, trial, device, strip, task, presser)

@@ -36,10 +36,15 @@ def optimize() -> None:
 @optimize.command()
 @ui.option("--folder", required=True, type=ui.PATH, help="New or empty folder of the run.")
 @ui.option(
-    "--space", default="paper", help="paper, or a button whose numbers are varied: a built-in one or a file."
+    "--space",
+    help="paper, or a button whose numbers are varied, built in or a file: mx-clear, but paper with --prior.",
 )
 @ui.option(
     "--vary", multiple=True, default=("FDV",), help="Of a button: FDV, FDVV or single numbers; repeatable."
+)
+@ui.option("--wide", is_flag=True, help="Of a button: also what no real button is like.")
+@ui.option(
+    "--retest", type=click.IntRange(0, 1000), default=40, help="Pairs of trials, result against start."
 )
 @ui.option(
     "--within", metavar="RIG", help="Only designs that this rig can render: a *.rig.json or a shipped one."
@@ -130,7 +135,7 @@ def _request(
 
 def _play(session: Optimization, play: Play | None, as_json: bool) -> None:
     ui.print_warnings(session.warnings)
-    budget = session.setup.budget
+    budget = session.setup.budget + session.retest_left + len(session.retests)
     with ui.progress("trials", budget) as move:
         try:
             if play is None:
@@ -167,6 +172,9 @@ def _print(session: Optimization, document: dict[str, Any]) -> None:
     name = session.problem.objectives[0].name
     ui.print_table(["trial", "state", name, "error"], rows, left=2, digits={name: 1, "error": 1})
     if document["best"]:
-        values = ", ".join(f"{key} {value:.2f}" for key, value in document["best"].items())
-        click.echo(f"recommended: {values}")
+        at = {name: f" (the {which} allowed)" for name, which in document["at_bound"].items()}
+        values = (f"{key} {value:.2f}{at.get(key, '')}" for key, value in document["best"].items())
+        click.echo(f"recommended: {', '.join(values)}")
     click.echo(f"kept in {session.folder}")
+    if document["verdict"]:
+        click.echo(document["verdict"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -16,7 +16,7 @@ from fdvv.optimize.experiment.setup import LEVELS
 from fdvv.optimize.model_space import model_space, neutral_design
 from fdvv.optimize.population.population import RESULT_FILE, PopulationResult, read_population
 from fdvv.optimize.problem import Trial
-from fdvv.optimize.run.player import POINTING, about_player, task_named
+from fdvv.optimize.run.player import POINTING, SIMULATED_PAIRS, about_player, task_named
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS, SUFFIX
@@ -80,7 +80,7 @@ def experiment_prior(folders: Sequence[Path], seed: int) -> dict[str, tuple[Tria
     return {level: grids[level].prior() for level in LEVELS if level in grids}
 
 
-PAPER = "paper"
+PAPER, BUTTON = "paper", "mx-clear"
 
 
 @dataclass(frozen=True)
@@ -89,13 +89,17 @@ class RunRequest:
 
     Attributes
     ----------
-    space, vary : paper, or a button and what of it is varied. within : a rig that must be able to render
+    space, vary : paper, or a button and what of it is varied; None: paper with a prior, else BUTTON.
+    wide : bounds are those of `model_space`, not of real buttons. within : a rig that must be able to render
         every design: a shipped one's name, or a *.rig.json. prior : folder of a finished grid of others.
+    retest : pairs of trials that retest the result.
     task, level, presses : what is played. engine, options, budget, seed : of the run.
     person, rig : the simulated one, and what is pressed; person None: a human plays.
     """
 
-    space: str = PAPER
+    space: str | None = None
+    wide: bool = False
+    retest: int = SIMULATED_PAIRS
     vary: Sequence[str] = ("FDV",)
     within: str | None = None
     prior: Path | None = None
@@ -112,6 +116,7 @@ class RunRequest:
 
 def begin_run(folder: Path, request: RunRequest) -> Optimization:
     """Begin a run in a folder that is new or empty. Raises InputError, BuildError, OSError."""
+    request = replace(request, space=request.space or (PAPER if request.prior else BUTTON))
     with _shelf_of(request.within) as (project, rig_id):
         space, start = _space(request, rig_id)
         task = task_named(request.task, request.level, request.presses)
@@ -134,17 +139,18 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
 
 def _space(request: RunRequest, rig_id: str | None) -> tuple[SpaceSetup, dict[str, float] | None]:
     """Return the space, and the design a run starts from: a button that is varied is tried as it is first."""
-    if request.space == PAPER:
+    if request.space in (PAPER, None):
         return SpaceSetup(rig=rig_id), None
     base = open_button(request.space)
-    setup = model_space_setup(base, request.vary, rig=rig_id)
-    return setup, neutral_design(model_space(base, request.vary), base)
+    setup = model_space_setup(base, request.vary, {} if request.wide else None, rig_id)
+    return setup, neutral_design(model_space(base, request.vary, setup.bounds), base)
 
 
 def _about(request: RunRequest) -> dict[str, Any]:
+    retest = {OptimizeSetup.RETEST: request.retest}
     if request.person is None:
-        return {OptimizeSetup.PRESSES: request.presses}
-    return about_player(request.person, request.rig, request.presses)
+        return {OptimizeSetup.PRESSES: request.presses, **retest}
+    return {**about_player(request.person, request.rig, request.presses), **retest}
 
 
 def _prior(request: RunRequest) -> tuple[Trial, ...]:

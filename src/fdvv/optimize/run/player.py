@@ -41,15 +41,14 @@ class SimulatedPlayer:
     presses_before: int = 0
 
     def try_next(self, session: Optimization) -> Trial | None:
-        """Try the next trial of a run; None when its budget is spent.
+        """Try the next trial of a run, then of its retest; None when both are over.
 
         What the rig's firmware cannot hold fails with its reason; nobody presses it.
         """
-        trials = session.ask()
-        if not trials:
+        trial = next(iter(session.ask()), None) or session.retest()
+        if trial is None:
             return None
         # a run killed in the middle of a trial has shown it already
-        (trial,) = trials
         shown = trial if trial.state is TrialState.SHOWN else session.show(trial.number)
         model = session.model(shown.design)
         if refusal := refusal_of(model, self.rig):
@@ -60,7 +59,7 @@ class SimulatedPlayer:
         return session.done(shown.number, scores)
 
     def play(self, session: Optimization, report: TrialDone = lambda _trial: None) -> None:
-        """Try trials until the budget is spent. An interrupted run continues with the same trials."""
+        """Try trials until the run is over. An interrupted run continues with the same trials."""
         while (trial := self.try_next(session)) is not None:
             report(trial)
 
@@ -86,6 +85,10 @@ def task_named(name: str, level: str | None, presses: int = 20) -> Task:
         return RapidTapping(presses) if name == TAPPING else Accuracy(presses)
     except ModelError as error:
         raise InputError("presses", str(presses), str(error), "give more") from error
+
+
+SIMULATED_PAIRS = 40
+"""Of a retest; 20 presses of a simulated person take 25 ms."""
 
 
 def about_player(person: int, rig: str, presses: int) -> dict[str, Any]:

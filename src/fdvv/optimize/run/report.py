@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.problem import Trial, TrialState
 from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.verdict import at_bound, retest_of, verdict_sentence
 from fdvv.report import style
 from fdvv.report.report import Section, Table, render_html
 from fdvv.report.score_figures import TrainingScores, plot_training
@@ -97,8 +98,11 @@ SIMULATED = "a simulated person pressed the twin; no human and no hardware took 
 
 
 def optimize_report(session: Optimization) -> dict[str, Any]:
-    """Return trials, the recommended design and how the run was made; units are in the names."""
-    setup = session.setup
+    """Return trials, the recommended design and how the run was made; units are in the names.
+
+    at_bound : its values that are the least or the most allowed. retest : see `Retest`; None of none.
+    """
+    setup, best, retest = session.setup, best_of(session), retest_of(session)
     return {
         "space": session.space.name,
         "engine": setup.engine,
@@ -108,7 +112,10 @@ def optimize_report(session: Optimization) -> dict[str, Any]:
         "budget": setup.budget,
         "finished": session.finished,
         "trials": [trial_report(trial) for trial in session.trials],
-        "best": best_of(session),
+        "best": best,
+        "at_bound": at_bound(session.space, best, session.start) if best else {},
+        "retest": asdict(retest) if retest else None,
+        "verdict": verdict_sentence(session),
         "simulated": setup.simulated,
     }
 
@@ -131,12 +138,7 @@ def trial_report(trial: Trial) -> dict[str, Any]:
 
 def best_of(session: Optimization) -> dict[str, float] | None:
     """Return the recommended design; None as long as nothing is done, or with several objectives."""
-    if len(session.problem.objectives) > 1:
-        return None
-    try:
-        return session.best()
-    except ModelError:
-        return None
+    return None if len(session.problem.objectives) > 1 else session.recommended()
 
 
 def optimize_html(session: Optimization) -> str:
@@ -145,7 +147,7 @@ def optimize_html(session: Optimization) -> str:
     done = [t for t in session.trials if t.state is TrialState.DONE]
     counts = f"{len(session.trials)} of {setup.budget} trials, {len(done)} of them scored"
     title = f"{setup.task}, {setup.level}" if setup.level else setup.task
-    sections = [_found(session, report["best"]), _scores(session), _trials(session)]
+    sections = [_verdict(report), _found(session, report), _scores(session), _trials(session)]
     footer = f"fdvv {__version__}; engine {setup.engine}, seed {setup.seed}, begun {setup.created}"
     shown = [section for section in sections if section is not None]
     summary = f"Space {session.space.name}, engine {setup.engine}: {counts}."
@@ -162,19 +164,35 @@ def control_points(design: dict[str, float]) -> FloatArray | None:
         return None
 
 
-def _found(session: Optimization, best: dict[str, float] | None) -> Section:
+def _verdict(report: dict[str, Any]) -> Section | None:
+    if report["verdict"] is None:
+        return None
+    text, retest = [report["verdict"]], report["retest"]
+    if retest:
+        text.append(
+            f"Start and recommended design were played again, blind, in {retest['pairs']} pairs of drawn "
+            f"order; the chance that the design is better is {100 * retest['chance']:.1f} %."
+        )
+    return Section("Verdict", tuple(text))
+
+
+def _found(session: Optimization, report: dict[str, Any]) -> Section:
     """Show the recommended design beside the one that was begun from."""
-    if best is None:
+    best, start = report["best"], session.start
+    if best is None or start is None:
         return Section("Design found", ("Nothing is scored yet, or there are several objectives.",))
-    start = session.setup.start or session.trials[0].design
     panels = [
         DesignPanel(name, session.model(design, name), control_points(design))
-        for name, design in (("first design", dict(start)), ("recommended", best))
+        for name, design in ((session.setup.start_name, start), ("recommended", best))
     ]
     svg = figure_svg(plot_designs(panels, simulated=session.setup.simulated), "First and recommended design")
-    rows = tuple((name, f"{start[name]:.2f}", f"{best[name]:.2f}") for name in session.space.names)
-    text = ("The recommendation is by what the engine believes of all trials, not by the luckiest score.",)
-    return Section("Design found", text, (svg,), (Table(("parameter", "first", "recommended"), rows),))
+    limits = {one.name: (f"{one.low:.2f}", f"{one.high:.2f}") for one in session.space.parameters}
+    rows = tuple((name, f"{start[name]:.2f}", f"{best[name]:.2f}", *limits[name]) for name in limits)
+    text = ["The recommendation is by what the engine believes of all trials, not by the luckiest score."]
+    for name, which in report["at_bound"].items():
+        text.append(f"{name} is the {which} allowed: a better design may lie beyond.")
+    columns = ("parameter", "start", "recommended", "least", "most")
+    return Section("Design found", tuple(text), (svg,), (Table(columns, rows),))
 
 
 def _scores(session: Optimization) -> Section | None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fdvv.errors import InputError
+import numpy as np
+
+from fdvv.errors import InputError, ModelError
 from fdvv.io.files import require_new_folder, write_atomic
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.multi_objective import ParetoFront, pareto_front
@@ -24,7 +26,7 @@ from fdvv.optimize.space import Design
 from fdvv.rendering.rig_catalog import RigCatalog
 
 LEDGER_FILE = "trials.jsonl"
-START, PERSON = "start", "person"
+START, PERSON, RETEST = "start", "person", "retest"
 
 
 class Optimization:
@@ -78,11 +80,27 @@ class Optimization:
 
     @property
     def trials(self) -> tuple[Trial, ...]:
-        return self._ledger.trials
+        """The trials of the search; those of the retest are `retests`."""
+        return tuple(trial for trial in self._ledger.trials if trial.origin != RETEST)
+
+    @property
+    def retests(self) -> tuple[Trial, ...]:
+        """The trials of the retest that count, two of every pair, in the order they are played in."""
+        retests = (trial for trial in self._ledger.trials if trial.origin == RETEST)
+        return tuple(trial for trial in retests if trial.state is not TrialState.ABANDONED)
+
+    def trial(self, number: int) -> Trial | None:
+        """Return a trial of the search or the retest; None if there is none."""
+        return self._ledger.trials[number] if 0 <= number < len(self._ledger.trials) else None
 
     @property
     def comparisons(self) -> tuple[Comparison, ...]:
-        return self._ledger.comparisons
+        """The comparisons of the search; those beyond the budget are the retest's."""
+        return self._ledger.comparisons[: self.setup.budget]
+
+    @property
+    def retest_comparisons(self) -> tuple[Comparison, ...]:
+        return self._ledger.comparisons[self.setup.budget :]
 
     @property
     def left(self) -> int:
@@ -91,10 +109,25 @@ class Optimization:
         return max(0, self.setup.budget - (len(self.comparisons) if self.pair_engine else spent))
 
     @property
-    def finished(self) -> bool:
-        """Whether the budget is spent and nothing is open."""
+    def searched(self) -> bool:
+        """Whether the budget is spent and nothing of the search is open."""
         unanswered = any(one.answer is None for one in self.comparisons)
         return not self.left and not unanswered and not any(trial.state in OPEN for trial in self.trials)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the search is over, and the retest where there is one."""
+        return self.searched and self.retest_left == 0 and not any(t.state in OPEN for t in self.retests)
+
+    @property
+    def retest_left(self) -> int:
+        """How many trials or comparisons of the retest are still to be suggested or answered."""
+        pairs = self.setup.retest_pairs if self.start is not None else 0
+        if not pairs or (self.searched and self.recommended() in (None, self.start)):
+            return 0
+        if self.pair_engine:
+            return pairs - sum(one.answer is not None for one in self.retest_comparisons)
+        return max(0, 2 * pairs - len(self.retests))
 
     def ask(self, count: int = 1) -> tuple[Trial, ...]:
         """Return the next trials, at most count: first those left open by an earlier run, then new ones.
@@ -103,8 +136,8 @@ class Optimization:
         the budget is spent. InputError where designs are compared, not scored.
         """
         self._scored()
-        left = [t for t in self.trials if t.state in OPEN and t.number not in self._given]
-        trials = left[:count]
+        open_ = [t for t in self.trials if t.state in OPEN and t.number not in self._given]
+        trials = open_[:count]
         while len(trials) < count and self.left:
             trials.append(self._suggested())
         self._given |= {trial.number for trial in trials}
@@ -121,6 +154,48 @@ class Optimization:
         if self.engine is None:
             raise InputError("run", "task", "designs of this run are compared", "ask for comparisons instead")
         return self.engine
+
+    @property
+    def start(self) -> dict[str, float] | None:
+        """The design that the result is compared with: the person's own, or the first; None at first."""
+        if self.setup.start is not None:
+            return self.space.checked(self.setup.start)
+        if self.comparisons:
+            return self.comparisons[0].first
+        return self.trials[0].design if self.trials else None
+
+    def recommended(self) -> dict[str, float] | None:
+        """Return `best`, or the knee of the front; None while nothing is done. What is retested stays."""
+        retested = [one.design for one in self.retests]
+        retested += [design for one in self.retest_comparisons for design in (one.first, one.second)]
+        if fixed := next((design for design in retested if design != self.start), None):
+            return fixed
+        try:
+            several = len(self.problem.objectives) > 1 and not self.setup.preference
+            return self.front().knee().design if several else self.best()
+        except ModelError:
+            return None
+
+    def retest(self) -> Trial | None:
+        """Return the next trial of the retest, on the disk when this returns; None where there is none.
+
+        Each pair of trials is one of the start and one of the recommended design, in an order that is drawn:
+        who plays does not know which is which.
+        """
+        if open_ := next((one for one in self.retests if one.state in OPEN), None):
+            return open_
+        if self.pair_engine or not self.searched or not self.retest_left:
+            return None
+        count = len(self.retests)
+        return self._ledger.suggest(self._blind(count // 2)[count % 2], RETEST)
+
+    def _blind(self, pair: int) -> tuple[dict[str, float], dict[str, float]]:
+        """Return both designs of a pair in its drawn order; every two pairs have both orders."""
+        start, found = self.start, self.recommended()
+        assert start is not None
+        assert found is not None
+        turned = bool(np.random.default_rng([self.setup.seed, pair // 2, 1]).integers(2)) != bool(pair % 2)
+        return (found, start) if turned else (start, found)
 
     def edit(self, number: int, design: Design) -> Trial:
         """Put a person's own design in the place of a suggestion that was not shown yet.
@@ -162,15 +237,19 @@ class Optimization:
         return pareto_front(self.problem, self.trials)
 
     def compare(self) -> Comparison | None:
-        """Return the next two designs to be compared: the unanswered first; None once the budget is spent.
+        """Return the next two designs to be compared: the unanswered first; None once all is answered.
 
-        They are on the disk when this returns. InputError where the run's task is not preference.
+        Behind the budget come those of the retest, start and recommended design, in a drawn order. They are
+        on the disk when this returns. InputError where the run's task is not preference.
         """
         if self.pair_engine is None:
             raise InputError("run", "task", "designs of this run are scored", "ask for trials instead")
-        unanswered = next((one for one in self.comparisons if one.answer is None), None)
-        if unanswered is not None or not self.left:
+        unanswered = next((one for one in self._ledger.comparisons if one.answer is None), None)
+        if unanswered is not None:
             return unanswered
+        if not self.left:
+            more = self.retest_left > 0
+            return self._ledger.pair(*self._blind(len(self.retest_comparisons))) if more else None
         return self._ledger.pair(*self.pair_engine.pair(self.problem, self.comparisons))
 
     def answer(self, number: int, answer: Answer | str) -> Comparison:

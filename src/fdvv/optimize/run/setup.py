@@ -20,6 +20,7 @@ from fdvv.model.model import FDVVModel
 from fdvv.optimize.model_space import model_of, model_space
 from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.problem import Objective, Problem, Trial
+from fdvv.optimize.realistic import realistic_bounds, realistic_cN
 from fdvv.optimize.space import Constraint, Design, DesignSpace
 from fdvv.optimize.tasks import ASYNCHRONY, TemporalPointing
 from fdvv.rendering.feasibility import CurveFeasibility, feasibility
@@ -93,6 +94,7 @@ class SpaceSetup(Struct, frozen=True, forbid_unknown_fields=True):
     ----------
     kind : paper, its eight parameters; model, variations of a button.
     base : that button, as its file says. names, bounds : what of it is varied, see `model_space`.
+    most_cN : no force of a variation is larger; None: what a motor gives.
     rig : id of a rig that must be able to render a design; velocities_mm_s : at which.
     """
 
@@ -100,6 +102,7 @@ class SpaceSetup(Struct, frozen=True, forbid_unknown_fields=True):
     base: dict[str, Any] | None = None
     names: tuple[str, ...] = ("FDV",)
     bounds: dict[str, tuple[float, float]] = {}
+    most_cN: float | None = None
     rig: str | None = None
     velocities_mm_s: tuple[float, ...] = (100.0,)
 
@@ -113,10 +116,13 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     task, level : what a person does, as tasks are named; level None where there is one only.
     budget : trials, or comparisons, that may be asked; failed ones count, abandoned ones do not.
     start : a person's own design, tried first. prior : finished trials of others to begin from.
-    about : whatever else belongs to a run: who presses, on what, and how many PRESSES make a score.
+    about : whatever else belongs to a run: who presses, on what, how many PRESSES make a score, how many
+        pairs of trials RETEST the result, and the NAME of the button it starts from.
     """
 
     PRESSES: ClassVar[str] = "presses"
+    RETEST: ClassVar[str] = "retest"
+    NAME: ClassVar[str] = "start_name"
 
     format: Literal["fdvv-optimize"] = "fdvv-optimize"
     version: Literal[1] = 1
@@ -146,6 +152,18 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
         presses = self.about.get(self.PRESSES)
         return presses if isinstance(presses, int) else TemporalPointing.rounds
 
+    @property
+    def retest_pairs(self) -> int:
+        """How many pairs of trials, or comparisons, retest the result; 0 in runs of an earlier fdvv."""
+        pairs = self.about.get(self.RETEST)
+        return pairs if isinstance(pairs, int) else 0
+
+    @property
+    def start_name(self) -> str:
+        """Name of the button that the result is compared with."""
+        name = self.about.get(self.NAME) or (self.space.base or {}).get("name")
+        return str(name) if name and self.start is not None else "the first design"
+
 
 def read_setup(path: Path) -> OptimizeSetup:
     """Read a setup. Raises InputError."""
@@ -163,12 +181,15 @@ def setup_text(setup: Struct) -> str:
 
 def space_of(setup: SpaceSetup, rigs: RigCatalog) -> DesignSpace:
     """Return the space of a setup with its constraints. Raises InputError."""
-    paper = setup.kind == "paper"
-    free = paper_space() if paper else model_space(_base(setup), setup.names, setup.bounds)
+    free = paper_space() if setup.kind == "paper" else _variations(setup)
     if setup.rig is None:
         return free
     limits = rig_constraints(rigs.rig(setup.rig), designer_of(setup), setup.velocities_mm_s)
     return replace(free, constraints=(*free.constraints, *limits))
+
+
+def _variations(setup: SpaceSetup) -> DesignSpace:
+    return model_space(_base(setup), setup.names, setup.bounds, most_cN=setup.most_cN)
 
 
 def _base(setup: SpaceSetup) -> FDVVModel:
@@ -191,9 +212,11 @@ def model_space_setup(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     rig: str | None = None,
 ) -> SpaceSetup:
-    """Make the setup of variations of a button, the button in it."""
+    """Make the setup of variations of a button, the button in it; bounds None: as real buttons are."""
     record = json.loads(model_to_json(base))
-    return SpaceSetup(kind="model", base=record, names=tuple(names), bounds=dict(bounds or {}), rig=rig)
+    limits = realistic_bounds(base, names) if bounds is None else dict(bounds)
+    most_cN = realistic_cN(base) if bounds is None else None
+    return SpaceSetup("model", record, tuple(names), limits, most_cN, rig)
 
 
 def problem_of(setup: OptimizeSetup, space: DesignSpace) -> Problem:

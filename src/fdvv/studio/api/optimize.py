@@ -10,9 +10,17 @@ from msgspec import Meta, field
 from fdvv.errors import FdvvError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.problem import Answer, Objective, Score, TrialState
+from fdvv.optimize.problem import OPEN, Answer, Objective, Score, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
+from fdvv.optimize.run.verdict import (
+    Kind,
+    Retest,
+    at_bound,
+    retest_of,
+    verdict_kind,
+    verdict_sentence,
+)
 from fdvv.optimize.space import Parameter
 from fdvv.optimize.tasks import TemporalPointing
 from fdvv.studio.contract import Empty, Message, call, error_line, message_of, watch_channel
@@ -28,7 +36,7 @@ class OptimizeRow(Message):
     """A run in short.
 
     spent : trials, or comparisons, that count. problem : why it cannot be read; empty if it can.
-    best : the least score of the first objective. simulated : played by a simulated person. made : when, UTC.
+    sentence : what was found, None before the end. simulated : a simulated person plays. made : when, UTC.
     """
 
     run: int
@@ -39,7 +47,7 @@ class OptimizeRow(Message):
     level: str
     spent: int
     budget: int
-    best: Score | None
+    sentence: str | None
     made: str
     problem: str
 
@@ -108,11 +116,29 @@ class OptimizeSimulated(Message):
     fault: str
 
 
+class OptimizeRetest(Message):
+    """The start and the recommended design, played again blind.
+
+    done, total : trials, or comparisons. open : number of the trial under way. at_bound : values of the
+    recommended design that are the "least" or the "most" allowed. sentence, kind, found : what was found;
+    None before its end, found also where nothing was to be retested.
+    """
+
+    done: int
+    total: int
+    open: int | None
+    at_bound: dict[str, Literal["least", "most"]]
+    sentence: str | None
+    kind: Kind | None
+    found: Retest | None
+
+
 class OptimizeDetail(Message):
     """A run and all of its trials.
 
     rounds : presses of a score. rules : what every design must hold. start : the design the run began with,
-    None while there is none. start_name : the button it is near; empty if an engine chose it.
+    None while there is none. start_name : the button it is. start_button : its id; empty if there is none.
+    searched : the budget is spent; what is left is the retest.
     others : what it began from; empty if from nothing. playable : a person can play its task here.
     """
 
@@ -127,6 +153,9 @@ class OptimizeDetail(Message):
     pairs: list[OptimizePair]
     start: dict[str, float] | None
     start_name: str
+    start_button: str
+    searched: bool
+    retest: OptimizeRetest
     others: str
     simulated: OptimizeSimulated | None
     playable: bool
@@ -136,7 +165,7 @@ class OptimizeSimulate(OptimizeAsk):
     """Have a simulated person play so many trials. person : seed that draws them."""
 
     person: Number
-    trials: Annotated[int, Meta(ge=1, le=500)]
+    trials: Annotated[int, Meta(ge=1, le=2000)]
 
 
 PICTURE_POINTS = 40
@@ -149,9 +178,6 @@ def run_row(run: int, session: Optimization) -> OptimizeRow:
     setup, trials = session.setup, session.trials
     counting = sum(one.state is not TrialState.ABANDONED for one in trials)
     answered = sum(one.answer is not None for one in session.comparisons)
-    name = setup.objectives[0].name
-    scores = [one.scores[name] for one in trials if one.state is TrialState.DONE and name in one.scores]
-    best = min(scores, key=lambda score: score.value, default=None)
     return message_of(
         OptimizeRow,
         setup,
@@ -159,7 +185,7 @@ def run_row(run: int, session: Optimization) -> OptimizeRow:
         title=str(setup.about.get(TITLE, "")) or f"run {run}",
         level=setup.level or "",
         spent=answered if setup.preference else counting,
-        best=best,
+        sentence=verdict_sentence(session),
         made=setup.created,
         problem="",
     )
@@ -193,7 +219,7 @@ def pair_list(session: Optimization) -> list[OptimizePair]:
 
     return [
         message_of(OptimizePair, one, first_curve=picture(one.first), second_curve=picture(one.second))
-        for one in session.comparisons
+        for one in (*session.comparisons, *session.retest_comparisons)
     ]
 
 
@@ -232,21 +258,31 @@ def detail(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeDetail:
             strip_of(setup),
             trial_list(session),
             pair_list(session),
-            _start(session),
+            session.start,
+            setup.start_name,
             str(setup.about.get(START) or ""),
+            session.searched,
+            retest_state(session),
             str(setup.about.get(OTHERS) or ""),
             message_of(OptimizeSimulated, play, about=f"simulated person {play.person}") if play else None,
             playable(setup),
         )
 
 
-def _start(session: Optimization) -> dict[str, float] | None:
-    """Return the design the run began with: the person's own button, or the first suggestion."""
-    if session.setup.start is not None:
-        return session.setup.start
-    if session.comparisons:
-        return session.comparisons[0].first
-    return session.trials[0].design if session.trials else None
+def retest_state(session: Optimization) -> OptimizeRetest:
+    retests, answered = session.retests, [one.answer is not None for one in session.retest_comparisons]
+    played = [one.state not in OPEN for one in retests] or answered
+    open_ = next((one.number for one in retests if one.state in OPEN), None)
+    best = session.recommended() if session.searched else None
+    return OptimizeRetest(
+        sum(played),
+        sum(played) + session.retest_left + len(retests) - sum(played[: len(retests)]),
+        open_,
+        at_bound(session.space, best, session.start) if best else {},
+        verdict_sentence(session),
+        verdict_kind(session),
+        retest_of(session) if session.finished else None,
+    )
 
 
 @call("optimize.simulate")

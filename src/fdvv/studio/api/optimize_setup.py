@@ -57,7 +57,7 @@ class OptimizeCreate(Message):
     the engine suggests. rig : must be able to render every design; None asks for none.
     budget : trials, or comparisons.
     task_presses : of a score, 20 in the paper. others : a grid to begin from, in the paper's space; None
-    begins from nothing.
+    begins from nothing. retest : pairs of trials, or comparisons, of the result with the start.
     """
 
     title: Name
@@ -73,6 +73,7 @@ class OptimizeCreate(Message):
     budget: Annotated[int, Meta(ge=1, le=500)]
     task_presses: Annotated[int, Meta(ge=2, le=100)] = 20
     others: Annotated[str, Meta(max_length=300)] | None = None
+    retest: Annotated[int, Meta(ge=0, le=200)] = 6
 
 
 PAPER = "paper"
@@ -87,9 +88,9 @@ ENGINE_DESCRIPTIONS = {
     "botorch": "the strongest; needs the extra fdvv[botorch]",
 }
 SPACE_DESCRIPTIONS = {
-    PAPER: "eight parameters of the paper, three points, activation, vibration",
-    "FDV": "variations of the button you start from: force, bump, activation, vibration",
+    "FDV": "force, bump, actuation and vibration of your button, as real buttons have them",
     "FDVV": "the same and a scale of force for every speed it knows",
+    PAPER: "the paper's eight parameters, 35 to 310 cN; begun near your button",
 }
 PAIR_ENGINE_DESCRIPTIONS = {
     "preference": "learns from which of two you prefer",
@@ -138,6 +139,8 @@ def create(studio: Studio, ask: OptimizeCreate) -> OptimizeAsk:
             START: ask.start,
             OTHERS: others,
             OptimizeSetup.PRESSES: ask.task_presses,
+            OptimizeSetup.RETEST: ask.retest,
+            OptimizeSetup.NAME: _start_name(studio, ask),
         },
     )
     if playable(setup):
@@ -146,6 +149,15 @@ def create(studio: Studio, ask: OptimizeCreate) -> OptimizeAsk:
         except ModelError as error:
             raise InputError("optimise", "setup", str(error), "choose another") from error
     return OptimizeAsk(studio.part(Optimizations).create(setup))
+
+
+def _start_name(studio: Studio, ask: OptimizeCreate) -> str:
+    if ask.start is None:
+        return ""
+    name = studio.catalog.model(ask.start).name
+    names = {choice.id: choice.name for choice in button_choices(studio.catalog)}
+    name = names.get(ask.start, name)
+    return f"the paper's design nearest to {name}" if ask.space == PAPER else name
 
 
 def _space(studio: Studio, ask: OptimizeCreate) -> tuple[SpaceSetup, dict[str, float] | None]:
@@ -161,7 +173,7 @@ def _space(studio: Studio, ask: OptimizeCreate) -> tuple[SpaceSetup, dict[str, f
         reason = "varies a button, and none was named"
         raise InputError("optimise", ask.space, reason, "choose one to start from")
     setup = model_space_setup(base, (ask.space,), rig=ask.rig)
-    return setup, neutral_design(model_space(base, (ask.space,)), base)
+    return setup, neutral_design(model_space(base, (ask.space,), setup.bounds), base)
 
 
 def _others(studio: Studio, ask: OptimizeCreate) -> tuple[str, tuple[Trial, ...]]:

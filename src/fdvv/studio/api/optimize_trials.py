@@ -81,11 +81,11 @@ def _changed(optimizations: Optimizations, run: int) -> Iterator[Optimization]:
 def next_trial(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeTrialAsk:
     """Return the open trial, or ask the engine for one."""
     with _changed(optimizations, ask.run) as session:
-        waiting = open_trials(session) or session.ask()
-        if not waiting:
+        trial = next(iter(open_trials(session) or session.ask()), None) or session.retest()
+        if trial is None:
             remedy = "look at what was found, or begin another run"
             raise InputError("optimise", f"run {ask.run}", "its trials are all played", remedy)
-        return OptimizeTrialAsk(ask.run, waiting[0].number)
+        return OptimizeTrialAsk(ask.run, trial.number)
 
 
 @call("optimize.edit")

@@ -44,7 +44,14 @@ export class Board {
 
   /** Whether the budget is used up and nothing is under way. */
   spent(): boolean {
-    return this.store.full() && !this.store.open();
+    return this.store.full() && !this.store.open() && !this.store.retesting();
+  }
+
+  /** What the button says that begins the next trial. */
+  next(): string {
+    const retest = this.store.detail()?.retest;
+    if (retest && this.store.retesting()) return `Play again, blind: ${retest.done + 1} of ${retest.total}`;
+    return `Play trial ${(this.store.openNumber() ?? this.store.detail()?.trials.length ?? 0) + 1}`;
   }
 
   /** Ask for the next design and put it under the finger. */
@@ -79,8 +86,9 @@ export class Board {
     if (this.play.reason()) return this.play.reason();
     const [last, spent] = [this.last(), this.spent()];
     if (last !== null)
-      return `${this.scored(last)} ${spent ? "The budget is used up: see the result." : "Play the next one when you are ready."}`;
-    if (spent) return "The budget is used up: see the result.";
+      return `${this.scored(last)} ${spent ? "The run is over: see the result." : "Play the next one when you are ready."}`;
+    if (spent) return "The run is over: see the result.";
+    if (this.store.retesting()) return "The best design and your button come in a drawn order.";
     return "Press so that the key goes down as the bullet reaches the middle of the zone.";
   }
 
@@ -89,7 +97,8 @@ export class Board {
     const name = this.store.objective();
     const { label, unit } = named(name);
     if (trial?.state === "shown") return `Trial ${number + 1} is being scored.`;
-    if (!this.scores() || !trial) return `Trial ${number + 1} is done.`;
+    if (!trial) return "It is scored; which of the two it was is not shown.";
+    if (!this.scores()) return `Trial ${number + 1} is done.`;
     return trial.state === "done"
       ? `Trial ${number + 1}: ${label} ${scoreText(trial.scores[name], unit)}.`
       : `Trial ${number + 1} failed: ${trial.reason}.`;

@@ -14,7 +14,7 @@ import type { FDVVModel } from "../../model";
 import { call } from "../../net";
 import type { OptimizeDetail } from "../../net/messages";
 import { shown } from "../../ui";
-import { type Design, headed, scoreText } from "./store";
+import { type Design, headed } from "./store";
 
 export const SIDES = ["start", "found"] as const;
 export type Side = (typeof SIDES)[number];
@@ -88,15 +88,11 @@ function line(model: ButtonLike, stroke: "press" | "release"): { x_mm: Float64Ar
   return { x_mm, y_cN: curve ? force_cN(curve, x_mm) : new Float64Array(POINTS).fill(NaN) };
 }
 
-/** Write the scores, parameters and landmarks of both designs. */
+/** Write the parameters and landmarks of both designs; scores of single trials say less than the retest. */
 export function numbers(detail: OptimizeDetail, models: Models, found: Design): Row[] {
   const { start, parameters } = detail;
   const [before, after] = [marksOf(models.start), marksOf(models.found)];
-  const scored = detail.row.preference ? [] : detail.objectives;
   return [
-    ...scored.map(
-      ({ name }): Row => [headed(name), scoreOf(detail, start, name), scoreOf(detail, found, name), ""],
-    ),
     ...parameters.map(({ name }) => row(name, start?.[name], found[name])),
     ...ROWS.filter((name) => !parameters.some((one) => one.name === name)).map((name) =>
       row(name, before?.[name], after?.[name]),
@@ -117,15 +113,4 @@ function marksOf(model: ButtonLike): Landmarks | null {
     if (error instanceof ModelError) return null;
     throw error;
   }
-}
-
-/** Return the score of a design that was tried as it is. */
-function scoreOf(detail: OptimizeDetail, design: Design | null, name: string): string {
-  const tried = detail.trials.find(
-    (one) =>
-      design &&
-      one.state === "done" &&
-      Object.entries(design).every(([key, value]) => one.design[key] === value),
-  );
-  return tried ? scoreText(tried.scores[name], "") : "not tried";
 }

@@ -1,13 +1,16 @@
 /** One run as the server knows it, and followed while the page is open. */
 
+import { workOn } from "../../app/current";
 import { Followed } from "../../app/followed";
 import { call, type LiveChannel, live } from "../../net";
 import type { OptimizeCurve, OptimizeDetail, OptimizeScore, OptimizeTrial } from "../../net/messages";
-import { onCleanup, type Signal, signal } from "../../ui";
+import { onCleanup, type Signal, signal, tell, toast } from "../../ui";
 
 export type Design = Readonly<Record<string, number>>;
 
 export class RunStore extends Followed<OptimizeDetail> {
+  /** Id of the button that the best design was saved as; empty before. */
+  readonly saved: Signal<string> = signal("");
   /** Number of the trial that is looked at; null: the newest. */
   readonly chosen: Signal<number | null> = signal<number | null>(null);
 
@@ -39,10 +42,35 @@ export class RunStore extends Followed<OptimizeDetail> {
     );
   }
 
+  /** Number of the trial that waits or is under way, of the search or the retest. */
+  openNumber(): number | null {
+    return this.open()?.number ?? this.detail()?.retest.open ?? null;
+  }
+
+  /** Whether the best design and the start are played again now, blind. */
+  retesting(): boolean {
+    const detail = this.detail();
+    return !!detail?.searched && detail.retest.done < detail.retest.total;
+  }
+
   /** Whether the budget is used up. */
   full(): boolean {
     const row = this.detail()?.row;
     return !!row && row.spent >= row.budget;
+  }
+
+  /** Save a design, null : the recommended one, as a button of one's own, which is worked on from then on. */
+  async save(chosen: Design | null, name: string): Promise<void> {
+    try {
+      const design = chosen ?? (await call("optimize.best", { run: this.run })).design ?? {};
+      const { model } = await call("optimize.model", { run: this.run, design, name });
+      const made = await call("document.create", { name: name || null, template: null, model });
+      this.saved.set(made.button);
+      workOn(made.button);
+      toast(`Saved as ${made.button.replace(/^own:/, "")}.`, "done");
+    } catch (error) {
+      tell(error);
+    }
   }
 
   /** Name of the first objective. */
@@ -58,6 +86,11 @@ export class RunStore extends Followed<OptimizeDetail> {
   done(): readonly OptimizeTrial[] {
     return (this.detail()?.trials ?? []).filter((trial) => trial.state === "done");
   }
+}
+
+/** Propose a name for the best design of a run. */
+export function foundName({ start_name, row }: OptimizeDetail): string {
+  return `${start_name.replace(/^.* nearest to |^the first design$/, "") || "Run"} found ${row.run}`;
 }
 
 const UNITS: Readonly<Record<string, string>> = {
