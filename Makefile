@@ -35,6 +35,7 @@ check: setup ## Format, lint and type checks
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/python -m tools.check_words
+	$(BIN)/python -m tools.check_sentences
 	$(BIN)/lint-imports --no-logo || { echo 'An import points up. Move the shared record down, or pass in a callable: see ARCHITECTURE.md.' >&2; exit 1; }
 
 # the packages with changes that are not committed, else model; make quick PKG="rendering live" picks others
