@@ -5,11 +5,13 @@ import { followAddress } from "./app/route";
 import Shell from "./app/Shell.svelte";
 import { followTheme } from "./app/theme";
 import { live } from "./net/live";
+import { rememberForceUnit } from "./ui/force";
 import { listenForShortcuts } from "./ui/keys";
 import "./tokens.css";
 import "./style.css";
 
 followTheme();
+rememberForceUnit();
 followAddress();
 listenForShortcuts();
 live().open();

@@ -2,6 +2,7 @@
 
 export * from "./controls";
 export * from "./element";
+export * from "./force";
 export * from "./keys";
 export * from "./later";
 export * from "./pointer";

@@ -2,7 +2,7 @@
 
 import { type DataPoint, Plot, palette, type Range, type View } from "../../draw";
 import { curveAt } from "../../model";
-import { computed, effect, h, type Signal, signal } from "../../ui";
+import { computed, effect, force, h, type Signal, signal } from "../../ui";
 import type { EditorController } from "./editor_controller";
 import { paintBumps, paintPositions } from "./handles";
 import { lineOf, wordsOf } from "./look";
@@ -154,8 +154,8 @@ function readout(editor: EditorController, rig: RigView, pointer: PointerOverlay
   const position = () => {
     const at = pointer.hover();
     if (!at) return wordsOf(editor.active());
-    const force = forceNear_cN(sampled(editor.curve()), at.x);
-    return `${at.x.toFixed(3)} mm · ${at.y.toFixed(1)} cN · curve ${force.toFixed(2)} cN`;
+    const curve_cN = forceNear_cN(sampled(editor.curve()), at.x);
+    return `${at.x.toFixed(3)} mm · ${force(at.y)} · curve ${force(curve_cN, 2)}`;
   };
   return h(
     "div",

@@ -23,6 +23,7 @@ import {
   setPoints,
 } from "../../model";
 import type { HandleShown } from "../../tools/reach";
+import { force } from "../../ui/force";
 import { forceNear_cN, sampled } from "./samples";
 
 /** A handle at a position of the travel. */
@@ -158,7 +159,7 @@ export function paintBumps(brush: Brush, view: View, curve: ForceCurve, travel_m
     const [tip, base] = [y + up * 10, y + up * 19];
     brush.area([x, x - 6, x + 6], [tip, base, base], { colour: accent });
     // the rows of the places come first
-    const words = `${name} ${force_cN.toFixed(1)} cN at ${x_mm.toFixed(2)} mm`;
+    const words = `${name} ${force(force_cN)} at ${x_mm.toFixed(2)} mm`;
     const half_px = 0.5 * LETTER_px * words.length;
     const last_px = view.box.left + view.box.width - half_px;
     const at = {
@@ -175,7 +176,7 @@ export function paintBumps(brush: Brush, view: View, curve: ForceCurve, travel_m
   const [y, rows] = [view.y.px(end), rowOf(view, PLACES)];
   // the rows of the places come first: below the curve where both would be in one line
   const at = { x_px: view.x.px(travel_mm) - 12, y_px: y - 14 < rows ? y + 18 : y - 14 };
-  brush.text(`bottom-out ${end.toFixed(1)} cN`, at, {
+  brush.text(`bottom-out ${force(end)}`, at, {
     colour: text,
     size_px: 11,
     align: "right",

@@ -1,6 +1,7 @@
 /** The axes of the surface view: a floor with its grid, and along its front edges the units. */
 
 import { type Brush, palette, tickStep, ticks, tickText } from "../../draw";
+import { perUnit, unitText } from "../../ui/force";
 import { type Corner, frontEdges, type Seen, type Turn } from "./surface_scene";
 
 /** The ranges of the box. */
@@ -42,7 +43,8 @@ export function paintAxes(
       over: (t: number): Corner => [-right, t, -1],
     },
     {
-      label: "force, cN",
+      label: `force, ${unitText("cN")}`,
+      per: perUnit("cN"),
       low: ranges.force_cN[0],
       high: ranges.force_cN[1],
       position: (t: number, out: number): Corner => [-right * out, back * out, t],
@@ -50,10 +52,10 @@ export function paintAxes(
     },
   ];
   const { grid, muted, text } = palette();
-  for (const { label, low, high, position, over } of axes) {
-    const range = { low, high };
+  for (const { label, low, high, per = 1, position, over } of axes) {
+    const range = { low: low * per, high: high * per };
     for (const value of ticks(range, COUNT)) {
-      const t = (2 * (value - low)) / (high - low || 1) - 1;
+      const t = (2 * (value / per - low)) / (high - low || 1) - 1;
       line(brush, at(position(t, 1)), at(over(t)), grid);
       const { x, y } = at(position(t, OUT));
       brush.text(

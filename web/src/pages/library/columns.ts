@@ -1,5 +1,7 @@
 /** The figures of a button as the library shows them: label, unit, decimals. */
 
+import { inUnit } from "../../ui/force";
+
 export interface Column {
   readonly name: string;
   readonly label: string;
@@ -90,10 +92,8 @@ export const MORE_FILTERS = [
 /** Those that every row of the list shows. */
 export const LISTED = ["peak_cN", "drop_cN", "bottom_out_cN", "travel_mm"] as const;
 
-export function figure(value: number | null | undefined, digits: number): string {
-  return value === null || value === undefined || !Number.isFinite(value)
-    ? "–"
-    : value.toFixed(digits).replace("-", "−");
+export function figure(value: number | null | undefined, digits: number, unit = ""): string {
+  return value === null || value === undefined || !Number.isFinite(value) ? "–" : inUnit(value, unit, digits);
 }
 
 /** Return the reason why a figure is not there, as the server says it. */

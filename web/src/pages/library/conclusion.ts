@@ -4,7 +4,7 @@ import { address } from "../../app/route";
 import type { Step, Verdict } from "../../app/verdict";
 import { call } from "../../net";
 import type { LibraryButton } from "../../net/messages";
-import { effect, type Signal, signal, untracked } from "../../ui";
+import { effect, force, type Signal, signal, unitText, untracked } from "../../ui";
 import { figure } from "./columns";
 import { MOST_SHARED, share } from "./export";
 import { asked, EVERYTHING } from "./state";
@@ -45,11 +45,8 @@ function sharing(store: LibraryStore): Step {
 /** What one button is like. */
 export function about({ name, kind, numbers }: LibraryButton): string {
   const { peak_cN, drop_cN, bottom_out_cN, travel_mm } = numbers;
-  const bump =
-    peak_cN && drop_cN
-      ? `a bump of ${figure(drop_cN, 1)} cN under its peak of ${figure(peak_cN, 1)} cN, `
-      : "";
-  return `${name} is ${kind.replace("?", "")}: ${bump}${figure(bottom_out_cN, 1)} cN at the end of ${figure(travel_mm, 2)} mm.`;
+  const bump = peak_cN && drop_cN ? `a bump of ${force(drop_cN)} under its peak of ${force(peak_cN)}, ` : "";
+  return `${name} is ${kind.replace("?", "")}: ${bump}${figure(bottom_out_cN, 1, "cN")} ${unitText("cN")} at the end of ${figure(travel_mm, 2)} mm.`;
 }
 
 /** How two buttons differ: the figure that differs most, and whether a finger notices. */
@@ -59,10 +56,10 @@ export function two(first: LibraryButton, second: LibraryButton, away: ReadonlyM
     return a && b ? Math.abs(Math.log(a / b)) : -1;
   };
   const [name, word, unit, digits] = [...FIGURES].sort((a, b) => off(b) - off(a))[0]!;
-  const values = [first, second].map((one) => figure(one.numbers[name], digits));
+  const values = [first, second].map((one) => figure(one.numbers[name], digits, unit));
   const jnd = away.get(second.id);
   const felt = jnd === undefined ? "" : `; ${jndText(jnd)} apart: ${notices(jnd)}`;
-  return `${first.name} against ${second.name}: ${word} ${values.join(" against ")} ${unit}${felt}.`;
+  return `${first.name} against ${second.name}: ${word} ${values.join(" against ")} ${unitText(unit)}${felt}.`;
 }
 
 function many(

@@ -1,7 +1,7 @@
 /** The list of buttons: only the rows in sight are made, and they are used again as it scrolls. */
 
 import { palette } from "../../draw";
-import { effect, h, onCleanup } from "../../ui";
+import { effect, h, onCleanup, unitText } from "../../ui";
 import { columnOf, figure, LISTED } from "./columns";
 import type { LibraryStore } from "./store";
 import { drawThumbnail, SIZE_px } from "./thumbnail";
@@ -227,12 +227,12 @@ export class ButtonList {
     view.figures.forEach((element, i) => {
       const column = columnOf(columns[i] as string);
       const value = column ? rows.number(column.name, at) : null;
-      element.textContent = figure(value, column?.digits ?? 1);
+      element.textContent = figure(value, column?.digits ?? 1, column?.unit);
       element.title = column
-        ? `${column.label}${value === null ? ": not detected" : `, ${column.unit}`}`
+        ? `${column.label}${value === null ? ": not detected" : `, ${unitText(column.unit)}`}`
         : "";
       element.ariaLabel = column
-        ? `${column.short} ${value === null ? "not known" : `${element.textContent} ${column.unit}`}`
+        ? `${column.short} ${value === null ? "not known" : `${element.textContent} ${unitText(column.unit)}`}`
         : "";
     });
   }

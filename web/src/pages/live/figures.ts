@@ -1,6 +1,7 @@
 /** Tables of a job's figures: heads, and rows whose first cell names them. */
 
 import type { CurveNoticed, CurveProgress, PaceProgress, TakeEvent, TuneRanking } from "../../net";
+import { forceUnit, inUnit, withForces } from "../../ui/force";
 import type { NumberedPress, StrokeName } from "./picture";
 
 export interface Figures {
@@ -13,6 +14,9 @@ const PARTS = { compensate: "learn", baseline: "uncompensated", probe: "evaluate
 const STEPS = { rest: "at rest", probe: "slow probe", press: "" } as const;
 
 const fixed = (value: number | null | undefined, digits: number) => value?.toFixed(digits) ?? "–";
+const inForce = (label: string) => `${label}, ${forceUnit()}`;
+const errorText = (cN: number | null | undefined, digits: number) =>
+  typeof cN === "number" ? inUnit(cN, "cN", digits) : "–";
 const curveName = (curve: { velocity_mm_s: number; stroke: string }) =>
   `${curve.velocity_mm_s} mm/s ${curve.stroke}`;
 
@@ -21,11 +25,11 @@ export function errorRows(curves: readonly CurveProgress[]): Figures {
     (a, b) => a.velocity_mm_s - b.velocity_mm_s || a.stroke.localeCompare(b.stroke),
   );
   return {
-    heads: ["curve", "presses", "first, cN", "last, cN", "mean, cN", "largest, cN"],
+    heads: ["curve", "presses", ...["first", "last", "mean", "largest"].map(inForce)],
     rows: sorted.map((c) => [
       curveName(c),
       c.error_cN.length,
-      ...[c.error_cN[0], c.error_cN.at(-1), c.mean_error_cN, c.max_error_cN].map((cN) => fixed(cN, 2)),
+      ...[c.error_cN[0], c.error_cN.at(-1), c.mean_error_cN, c.max_error_cN].map((cN) => errorText(cN, 2)),
     ]),
   };
 }
@@ -34,15 +38,15 @@ export function errorRows(curves: readonly CurveProgress[]): Figures {
 export function noticedRows(curves: readonly CurveNoticed[]): Figures {
   const percent = (ratio: number | null | undefined) =>
     typeof ratio === "number" ? `${Math.round(100 * ratio)} %` : "";
-  const error = (cN: number | null | undefined) => cN?.toFixed(1) ?? "";
+  const error = (cN: number | null | undefined) => (typeof cN === "number" ? errorText(cN, 1) : "");
   const fell = (...texts: string[]) => texts.filter(Boolean).join(" → ") || "–";
   const vibrates = curves.some(({ vibration }) => vibration !== NOT_ASKED);
   return {
     heads: [
       "curve",
       "noticed",
-      "mean error, cN",
-      "largest, cN",
+      inForce("mean error"),
+      inForce("largest"),
       ...(vibrates ? ["noticed with vibration", "vibration"] : []),
     ],
     rows: curves.map((c) => [
@@ -57,13 +61,21 @@ export function noticedRows(curves: readonly CurveNoticed[]): Figures {
 
 export function pressRows(presses: readonly NumberedPress[]): Figures {
   return {
-    heads: ["press", "part", "speed, mm/s", "achieved, mm/s", "error down, cN", "error up, cN", "outcome"],
+    heads: [
+      "press",
+      "part",
+      "speed, mm/s",
+      "achieved, mm/s",
+      inForce("error down"),
+      inForce("error up"),
+      "outcome",
+    ],
     rows: presses.map(({ number, press }) => {
       const error = (stroke: StrokeName) =>
         press.skipped
           ? "–"
-          : fixed(press.curves.find((curve) => curve.stroke === stroke)?.error_cN.at(-1), 2);
-      const said = press.skipped ? `rejected: ${press.skipped}` : press.told;
+          : errorText(press.curves.find((curve) => curve.stroke === stroke)?.error_cN.at(-1), 2);
+      const said = press.skipped ? `rejected: ${press.skipped}` : withForces(press.told);
       const achieved = fixed(press.achieved_mm_s, 0);
       return [
         number,

@@ -2,7 +2,7 @@
 
 import { type Brush, CanvasBrush, linear, palette, type Scale, series } from "../../draw";
 import type { PressFrame, PressReady } from "../../net/messages";
-import { effect, onCleanup, shown } from "../../ui";
+import { effect, force, onCleanup, shown } from "../../ui";
 
 /** How far above the resting cap, and below the stop, there is room, mm. */
 const ABOVE_mm = 3.2;
@@ -171,7 +171,7 @@ function drawForce(brush: Brush, p: Place, force_cN: number, cap_mm: number): vo
     });
   }
   const at = { x_px: p.left_px + 4, y_px: foot + 14 };
-  brush.text(`${shown(force_cN, 0)} cN`, at, {
+  brush.text(force(force_cN, 0), at, {
     colour: palette().text,
     weight: 600,
     size_px: 13,

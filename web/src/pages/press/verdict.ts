@@ -1,7 +1,7 @@
 /** What a press was like, in one sentence, and what comes after it. */
 
 import type { Step, Verdict } from "../../app/verdict";
-import { shown } from "../../ui";
+import { force, shown } from "../../ui";
 import type { PressSession, Stroke } from "./session";
 
 /** How to press, where one does it and in a sentence. */
@@ -22,7 +22,7 @@ export function verdictOf(session: PressSession, next: Step): Verdict | null {
 export function sentence({ clicked, reset_mm, deepest_mm }: Stroke): string {
   const let_go = reset_mm === null ? "it stayed down" : `it let go at ${shown(reset_mm, 1)} mm`;
   if (clicked)
-    return `Clicked at ${shown(clicked.displacement_mm, 1)} mm under ${shown(clicked.force_cN, 0)} cN; ${let_go}.`;
+    return `Clicked at ${shown(clicked.displacement_mm, 1)} mm under ${force(clicked.force_cN, 0)}; ${let_go}.`;
   if (reset_mm !== null) return `Pressed to ${shown(deepest_mm, 1)} mm: ${let_go}.`;
   return `Pressed to ${shown(deepest_mm, 1)} mm, without a click: push harder.`;
 }

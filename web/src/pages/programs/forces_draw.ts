@@ -12,7 +12,7 @@ import {
 } from "../../programs/document";
 import { vibrationsIn } from "../../programs/edits_parts";
 import { forceAt_cN } from "../../programs/surface";
-import { shown } from "../../ui";
+import { force, shown } from "../../ui";
 import { handlesOf } from "./forces_points";
 
 /** What there is to draw of a state. */
@@ -197,7 +197,7 @@ export function drawHeat(brush: Brush, view: View, picture: ForcePicture): void 
       opacity: 0.7,
     });
   }
-  mapWords(brush, view, `darkest: ${shown(strongest_cN, 0)} cN; dashed: velocities that have a row`);
+  mapWords(brush, view, `darkest: ${force(strongest_cN, 0)}; dashed: velocities that have a row`);
 }
 
 /** Whole pixels, so that neighbouring cells neither overlap nor leave a gap. */
