@@ -28,6 +28,8 @@ from tests.studio.memory import Memory
 from tests.studio.running import RunningStudio
 
 CALLS, CHANNELS = load_parts().calls, load_parts().channels
+SHORT = 2
+"""Rounds of a usual run; by hand, FDVV_ROUNDS=8, or 84 for 50,000 calls and messages."""
 SELDOM = {
     "jobs.start": 0.2,
     "studies.freeze": 0.1,
@@ -205,18 +207,18 @@ def test_calls_and_messages_with_known_ids_cause_no_internal_error(page: Page) -
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(3600)
-@pytest.mark.skipif("FDVV_ROUNDS" not in os.environ, reason="by hand: FDVV_ROUNDS=8, or 84 for 50,000 calls")
+@pytest.mark.timeout(4 * 3600)
 def test_many_calls_and_messages_reach_nearly_every_call_and_leak_nothing(
     page: Page, studio: RunningStudio
 ) -> None:
     after_first = (0, 0)
-    for turn in range(int(os.environ["FDVV_ROUNDS"])):
+    rounds = int(os.environ.get("FDVV_ROUNDS", SHORT))
+    for turn in range(rounds):
         page.ask_many(500)
         page.talk(100)
         page.end_all()
         after_first = after_first if turn else held(studio)
-    assert len(page.reached) >= 70
+    assert len(page.reached) >= (70 if rounds > SHORT else 55)
     files, threads = held(studio)
     assert files <= after_first[0] + 10
     assert threads <= after_first[1] + 10

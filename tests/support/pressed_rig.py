@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 from fdvv.device.serve import RigServer
 from fdvv.protocol.frame import FrameDecoder
 from fdvv.protocol.tables import Message, Settings

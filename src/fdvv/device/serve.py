@@ -38,8 +38,9 @@ class RigServer(threading.Thread):
     Attributes
     ----------
     path : of the terminal that a host opens. counts : of "ticks" and "presses" so far.
-    over : set when it ends. tick_s : when the tick under way began, on the host's clock; the board's own clock
-        goes with it, as a real one does, whatever ticks a busy machine leaves out.
+    over : set when it ends.
+    tick_s : when the tick under way began, on the host's clock; the board's own clock goes with it, as a real
+        one does, whatever ticks a busy machine leaves out.
     """
 
     def __init__(self, person: Person, presses: int | None = None, between_s: float = BETWEEN_s) -> None:
