@@ -69,14 +69,15 @@ function ended({ line, done, total }: JobRow): string {
 /** The server's headline; what to do next depends on whether it can be felt. */
 function rendered(row: JobRow, found: JobOutcome): Verdict {
   const curves = found.noticed ?? [];
-  const felt = (curve: CurveNoticed) => curve.force_ratio > FEW_ratio;
+  const speeds = (of: readonly CurveNoticed[]) => new Set(of.map(({ velocity_mm_s }) => velocity_mm_s)).size;
+  const felt = curves.filter(({ force_ratio }) => force_ratio > FEW_ratio);
   const bare = curves.length > 0 && curves.every((curve) => typeof curve.before_ratio !== "number");
   const next = bare
     ? compensate(row.button ?? "")
     : row.simulated
       ? pressIt(row.button ?? "")
       : study(row.button ?? "");
-  const kind = curves.length && curves.every(felt) ? "warning" : "good";
+  const kind = curves.length && speeds(felt) === speeds(curves) ? "warning" : "good";
   return { sentence: `${found.headline || found.sentence}.`, kind, ...(row.button && { next }) };
 }
 

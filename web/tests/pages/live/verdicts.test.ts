@@ -73,7 +73,14 @@ describe("a job that is over", () => {
       kind: "good",
       next: { label: "Press it", to: "#/press/builtin%3Amx-clear" },
     });
-    expect(over(probed(0.9))?.kind).toBe("warning");
+    const [slow, fast] = [
+      probed(0).noticed,
+      probed(0.9).noticed?.map((one) => ({ ...one, velocity_mm_s: 300 })),
+    ];
+    expect(over({ ...probed(0), noticed: [...(slow ?? []), ...(fast ?? [])] })?.kind).toBe("good");
+    // as the headline: what is noticed of one stroke is noticed at its speed
+    const both = [...(probed(0).noticed ?? []), ...(probed(0.9).noticed ?? [])];
+    expect(over({ ...probed(0), noticed: both })?.kind).toBe("warning");
   });
 
   it("leads to people where a real rig was pressed, and to compensation where there was none", () => {
