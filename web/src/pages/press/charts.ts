@@ -15,7 +15,7 @@ function calm(): boolean {
 }
 
 /** Force over displacement: the target of slow presses, and the trail of the rendered force. */
-export function forcePlot(session: PressSession, height_px: number | null): Plot {
+export function forcePlot(session: PressSession): Plot {
   const plot = new Plot({
     label: "Rendered force over displacement, beside the target force",
     x: { label: "displacement", unit: "mm" },
@@ -29,7 +29,6 @@ export function forcePlot(session: PressSession, height_px: number | null): Plot
     },
     still: (brush, view) => drawMeant(brush, view, session),
     moving: (brush, view) => drawTrail(brush, view, session),
-    ...(height_px === null ? {} : { height_px }),
   });
   effect(() => {
     session.frame();

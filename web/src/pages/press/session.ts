@@ -147,6 +147,8 @@ export class PressSession {
   }
 
   private takeReady(ready: PressReady): void {
+    // of a choice that was changed before it was there
+    if (ready.mode !== this.choice?.mode) return;
     this.rows.clear();
     this.going = NO_STROKE;
     batch(() => {

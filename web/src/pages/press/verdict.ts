@@ -2,17 +2,24 @@
 
 import type { Step, Verdict } from "../../app/verdict";
 import { force, shown } from "../../ui";
-import type { PressSession, Stroke } from "./session";
+import type { Mode, PressSession, Stroke } from "./session";
 
 /** How to press, where one does it and in a sentence. */
 export const [HERE, HOW] = globalThis.matchMedia?.("(pointer: coarse)").matches
   ? ["Press and hold here", "Press the cap and hold it."]
   : ["Hold Space, or press here", "Hold the space bar, or press the cap with the pointer."];
 
+const LOADING: Readonly<Record<Mode, string>> = {
+  intended: "It is being put under the finger …",
+  compensated: "The simulated rig learns the button: about ten seconds …",
+  rendered: "It is being put on the simulated rig …",
+};
+
 /** Say what the press found, and what comes `next`; before the first one, how to press. */
-export function verdictOf(session: PressSession, next: Step): Verdict | null {
+export function verdictOf(session: PressSession, next: Step, mode: Mode): Verdict {
   if (session.fault()) return { sentence: "The firmware found a fault: there is no force.", kind: "warning" };
   if (session.standing() === "over") return { sentence: "Nothing is under the finger.", kind: "warning" };
+  if (session.standing() === "starting") return { sentence: LOADING[mode] };
   const stroke = session.stroke();
   if (!stroke) return { sentence: HOW };
   const clicked = stroke.clicked !== null || stroke.reset_mm !== null;
