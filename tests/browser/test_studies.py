@@ -58,15 +58,31 @@ def test_a_study_is_declared_changed_checked_and_frozen(page: Page, studio: Runn
     page.wait_for_selector(".sts-good")
     page.get_by_role("button", name="Keep").click()
     expect(page.locator(".sts-preview")).to_contain_text("12 trials")
+    expect(page.get_by_label("Rounds")).to_have_value("2")
+    page.get_by_label("Participants").fill("6")
+    page.keyboard.press("Enter")
+    assert "people = 6 " in text.input_value()
+    assert text.input_value().replace("people = 6 ", "people = 12 ") == before.replace(
+        "rounds = 6", "rounds = 2"
+    )
+    page.get_by_role("button", name="Keep").click()
+    expect(page.get_by_role("region", name="Verdict")).to_contain_text(
+        "Ready to freeze: 6 participants × 12 trials"
+    )
+    freeze.click()
+    expect(page.get_by_role("alertdialog")).to_contain_text("can no longer be changed")
+    assert audit(page) == []
+    sure = page.get_by_role("button", name="Freeze for good")
     page.fill("#sts-pass", PASSPHRASE)
     page.fill("#sts-again", "something else")
-    freeze.click()
+    sure.click()
     page.wait_for_selector("text=the two do not match")
     page.fill("#sts-again", PASSPHRASE)
-    freeze.click()
+    sure.click()
     page.wait_for_selector("text=No participant has started yet")
+    expect(page.get_by_role("region", name="Verdict")).to_contain_text("0 of 6 participants done.")
     study = Study.open(studio.project / "studies" / NAME)
-    assert study.plan.rounds == 2
+    assert (study.plan.rounds, study.plan.people) == (2, 6)
     tab(page, "Seal and results")
     expect(page.locator("[data-fingerprint]")).to_have_text(study.fingerprint)
     tab(page, "Plan")
@@ -106,6 +122,7 @@ def test_people_are_seated_followed_paused_and_their_study_opened_and_reported(
     page.fill("#sts-open", PASSPHRASE)
     page.get_by_role("button", name="Unseal permanently").click()
     page.wait_for_selector("[aria-label=Results]")
+    expect(page.get_by_role("region", name="Verdict")).to_contain_text("Main claim")
     expect(page.locator(".sts-history")).to_contain_text("the last person is done")
     with page.expect_download() as saving:
         page.get_by_role("button", name="Save the report").click()

@@ -10,6 +10,7 @@ import { listenForShortcuts } from "./ui/keys";
 import "./tokens.css";
 import "./style.css";
 
+seat();
 followTheme();
 rememberForceUnit();
 followAddress();

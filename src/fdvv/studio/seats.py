@@ -59,12 +59,18 @@ def digest_of(word: str) -> str:
 
 
 class Seats:
-    """The seats of all studies of a project."""
+    """The seats of all studies of a project.
+
+    Attributes
+    ----------
+    unkept : studies whose seats are in memory only: those that are tried.
+    """
 
     def __init__(self, studio: Studio) -> None:
         self._folder = studio.project / FOLDER
         self._lock = RLock()
         self._seats: dict[str, tuple[str, Seat]] = {}
+        self.unkept: set[str] = set()
         for path in sorted(self._folder.glob(f"*{SUFFIX}")):
             try:
                 seats = read_record(path, SEATS, SeatsFile, LARGEST_bytes).seats
@@ -99,7 +105,8 @@ class Seats:
         with self._lock:
             before = {one.word: one for one in self.of(study)}
             kept = SeatsFile(seats=(*({**before, seat.word: seat}).values(),))
-            write_atomic(self._path(study), pretty(msgspec.to_builtins(kept)) + "\n", private=True)
+            if study not in self.unkept:
+                write_atomic(self._path(study), pretty(msgspec.to_builtins(kept)) + "\n", private=True)
             self._seats[seat.word] = study, seat
 
     def _path(self, study: str) -> Path:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+import secrets
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from threading import Lock, RLock
 from typing import TYPE_CHECKING, Literal
 
@@ -23,6 +25,8 @@ from fdvv.study.admin.review import device_problems
 from fdvv.study.admin.study import Study
 from fdvv.study.files.people import EVERYBODY
 from fdvv.study.files.run_key import CLOSED, OPEN_FIRST, RunKey
+from fdvv.study.files.seal import Cost
+from fdvv.study.plan.plan_file import STUDY_FILE
 
 if TYPE_CHECKING:
     from fdvv.studio.api.study import StudyScreen
@@ -30,6 +34,10 @@ if TYPE_CHECKING:
 DEVICE_SUFFIX = ".device"
 TWIN = "twin"
 PATIENCE_s = 10.0
+TRIED = "try."
+"""Before the name of a study that is tried: no study that is kept can be called so."""
+QUICK = Cost(1, 8192)
+"""Of a passphrase that nobody knows."""
 NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,39}")
 
 StudyState = Literal["draft", "frozen", "unsealed", "broken"]
@@ -63,6 +71,7 @@ class Studies:
         self._screens: dict[tuple[str, str], StudyScreen] = {}
         self._person_locks: dict[tuple[str, str], Lock] = {}
         self._run_keys: dict[str, RunKey] = {}
+        self._tried: dict[str, TemporaryDirectory[str]] = {}
         self._waiting_for_key: dict[str, list[Callable[[], None]]] = {}
         # held briefly only: the thread of a screen may take it
         self._lock = RLock()
@@ -74,10 +83,38 @@ class Studies:
 
     def path(self, name: str) -> Path:
         """Return the folder of a study, which need not exist. InputError on an invalid name."""
+        if tried := self._tried.get(name):
+            return Path(tried.name) / name
         if not NAME.fullmatch(name):
             remedy = "use small letters, digits and hyphens, 40 at most"
             raise InputError("study", "name", f"{name!r:.60} is no name of a study", remedy)
         return self.folder / name
+
+    def rehearse(self, name: str) -> str:
+        """Make a seat in a copy of a study's plan that is frozen for this, and forgotten with the studio.
+
+        Nothing of it comes to the study; its name is TRIED and the study's. InputError on problems of it.
+        """
+        tried, study = f"{TRIED}{name}", self.study(name)
+        text = (study.folder / STUDY_FILE).read_text(encoding="utf-8")
+        folder = TemporaryDirectory(prefix="fdvv-try-")
+        try:
+            copy = Study.declare_text(Path(folder.name) / tried, text, study.folder)
+            copy.freeze(secrets.token_urlsafe(), QUICK)
+        except BaseException:
+            folder.cleanup()
+            raise
+        with self._lock:
+            screens = [screen for (of, _), screen in self._screens.items() if of == tried]
+            self._tried[tried], before = folder, self._tried.get(tried)
+            self._run_keys.pop(tried, None)
+        for screen in screens:
+            screen.leave("it is tried elsewhere")
+        if before:
+            before.cleanup()
+        self._seats.unkept.add(tried)
+        self._keep_key(tried, copy)
+        return self._seats.make(tried)
 
     def study(self, name: str) -> Study:
         """Open a study, with its run key while its sessions are open. InputError."""
@@ -245,6 +282,8 @@ class Studies:
             screens = list(self._screens.values())
         for screen in screens:
             screen.leave("the studio was closed")
+        for folder in self._tried.values():
+            folder.cleanup()
 
 
 def state_of(study: Study) -> StudyState:

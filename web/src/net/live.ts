@@ -86,9 +86,20 @@ export class Live {
   }
 }
 
-/** The word of the seat that this page is confined to, from its address; empty on the studio's own page. */
+const SEAT = "fdvv-seat";
+let word: string | null = null;
+
+/** The word of the seat that this page is confined to; empty on the studio's own page.
+ *
+ * It is taken out of the address at once, so that it is not in the history, and kept in this tab for a reload. */
 export function seat(): string {
-  return new URLSearchParams(location.search).get("seat") ?? "";
+  const asked = new URLSearchParams(location.search).get("seat");
+  if (asked !== null) {
+    sessionStorage.setItem(SEAT, asked);
+    history.replaceState(null, "", location.pathname + location.hash);
+  }
+  word ??= location.hash.startsWith("#/study/") ? (sessionStorage.getItem(SEAT) ?? "") : "";
+  return word;
 }
 
 let page: Live | null = null;

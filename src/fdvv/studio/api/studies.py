@@ -12,9 +12,11 @@ from fdvv.errors import FdvvError, InputError
 from fdvv.studio.api.study_steps import text_in
 from fdvv.studio.contract import Empty, Message, call, error_line, message_of, watch_channel
 from fdvv.studio.devices import available_devices, device_names
-from fdvv.studio.studies import TWIN, Studies, StudiesChanged, StudyState, state_of
+from fdvv.studio.studies import TRIED, TWIN, Studies, StudiesChanged, StudyState, state_of
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.operator_view import PersonView, operator_view
+from fdvv.study.admin.review import review_study
+from fdvv.study.admin.standing import Kind, draft_sentence, standing
 from fdvv.study.admin.study import Study
 from fdvv.study.analysis.analyse import analyse
 from fdvv.study.analysis.read_answers import read_answers
@@ -126,6 +128,13 @@ class StudiesSeat(Message):
 
     study: str
     seat: str
+
+
+class StudiesStanding(Message):
+    """How far a study is, or what it found, in a sentence."""
+
+    sentence: str
+    kind: Kind
 
 
 class StudiesPause(StudiesAsk):
@@ -271,6 +280,20 @@ def open_sessions(studies: Studies, ask: StudiesOpen) -> StudiesDetail:
 @call("studies.seat")
 def seat(studies: Studies, ask: StudiesAsk) -> StudiesSeat:
     return StudiesSeat(ask.study, studies.invite(ask.study))
+
+
+@call("studies.rehearse")
+def rehearse(studies: Studies, ask: StudiesAsk) -> StudiesSeat:
+    """Make a seat in a copy of the study that records nothing."""
+    return StudiesSeat(f"{TRIED}{ask.study}", studies.rehearse(ask.study))
+
+
+@call("studies.standing")
+def study_standing(studies: Studies, ask: StudiesAsk) -> StudiesStanding:
+    study = studies.study(ask.study)
+    if study.frozen is None:
+        return StudiesStanding(*draft_sentence(study.plan, review_study(study.folder).problems))
+    return StudiesStanding(*standing(study))
 
 
 @call("studies.use")

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import json
+import re
 import tempfile
 from pathlib import Path
 
 from fdvv.errors import InputError
+from fdvv.io.files import write_atomic
+from fdvv.model.file import model_to_json
 from fdvv.report.report import Section
+from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.studies import TEMPLATE_DESCRIPTIONS, Name, StudiesAsk, Text
 from fdvv.studio.contract import Empty, Message, Offer, call, error_line
 from fdvv.studio.studies import Studies
@@ -31,10 +36,14 @@ class StudiesOffers(Message):
 
 
 class StudiesCreate(Message):
-    """Declare a study from a template."""
+    """Declare a study from a template.
+
+    button : what it is about, where the template compares renderings of one button; None: the template's own.
+    """
 
     name: Name
     template: Name
+    button: ButtonId | None = None
 
 
 class StudiesTable(Message):
@@ -83,12 +92,37 @@ def offers(_studio: Studio, _ask: Empty) -> StudiesOffers:
 
 
 @call("studies.create")
-def create(studies: Studies, ask: StudiesCreate) -> StudiesAsk:
-    template_text(ask.template)  # a wrong name leaves no folder
+def create(studio: Studio, ask: StudiesCreate) -> StudiesAsk:
+    text, studies = template_text(ask.template), studio.part(Studies)  # a wrong name leaves no folder
+    if ask.button is not None:
+        text = with_button(text, studio.catalog.model(ask.button).name, OWN)
     with tempfile.TemporaryDirectory() as building:
-        Study.declare(studies.path(ask.name), write_template(ask.template, Path(building)))
+        path = write_template(ask.template, Path(building))
+        if OWN in text and ask.button is not None:
+            write_atomic(path, text)
+            write_atomic(path.parent / OWN, model_to_json(studio.catalog.model(ask.button)))
+        Study.declare(studies.path(ask.name), path)
     studies.announce(ask.name)
     return StudiesAsk(ask.name)
+
+
+OWN = "buttons/button.fdvv.json"
+ITEMS = re.compile(r"^\[\[items\]\]\n(?:(?!\[|# ).*\n|    \{.*\n)*", re.M)
+
+
+def with_button(text: str, name: str, file: str) -> str:
+    """Put one button in the place of a template's, where each is rendered in two ways: realism and abx."""
+    plan = read_plan_text(text, STUDY_FILE)
+    if plan.kind not in ("realism", "abx"):
+        return text
+    first, quoted = plan.items[0], json.dumps(name, ensure_ascii=False)
+    rows = (
+        f'    {{ name = "{one.name}", button = "{file}", rendered = "{one.rendered}" }},\n'
+        for one in first.stimuli
+    )
+    item = f"[[items]]\nname = {quoted}\nstimuli = [\n{''.join(rows)}]\n\n"
+    place = next(ITEMS.finditer(text)).start()
+    return text[:place] + item + ITEMS.sub("", text[place:])
 
 
 @call("studies.plan")

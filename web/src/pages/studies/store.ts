@@ -2,12 +2,22 @@
 
 import { Followed } from "../../app/followed";
 import { call, type LiveChannel, live } from "../../net";
-import type { StudiesDetail } from "../../net/messages";
-import { onCleanup, tell } from "../../ui";
+import type { StudiesDetail, StudiesStanding } from "../../net/messages";
+import { onCleanup, type Signal, signal, tell } from "../../ui";
 
 export class StudyStore extends Followed<StudiesDetail> {
+  /** How far it is, in a sentence. */
+  readonly standing: Signal<StudiesStanding | null> = signal<StudiesStanding | null>(null);
+
   constructor(readonly study: string) {
-    super(() => call("studies.detail", { study }));
+    super(async () => {
+      const [detail, standing] = await Promise.all([
+        call("studies.detail", { study }),
+        call("studies.standing", { study }),
+      ]);
+      this.standing.set(standing);
+      return detail;
+    });
     watchStudies((changed) => (changed === null || changed === study) && void this.refresh());
     void this.refresh();
   }
@@ -16,6 +26,7 @@ export class StudyStore extends Followed<StudiesDetail> {
   async act(work: () => Promise<StudiesDetail>): Promise<boolean> {
     try {
       this.detail.set(await work());
+      void this.refresh();
       return true;
     } catch (error) {
       tell(error);
