@@ -4,7 +4,7 @@ import { mount } from "svelte";
 import { followAddress } from "./app/route";
 import Shell from "./app/Shell.svelte";
 import { followTheme } from "./app/theme";
-import { live } from "./net/live";
+import { live, seat } from "./net/live";
 import { rememberForceUnit } from "./ui/force";
 import { listenForShortcuts } from "./ui/keys";
 import "./tokens.css";

@@ -13,8 +13,8 @@ import {
 import type { FDVVModel } from "../../model";
 import { call } from "../../net";
 import type { OptimizeDetail } from "../../net/messages";
-import { shown } from "../../ui";
-import { type Design, headed } from "./store";
+import { digitsOf, perUnit, shown } from "../../ui";
+import { type Design, headed, named } from "./store";
 
 export const SIDES = ["start", "found"] as const;
 export type Side = (typeof SIDES)[number];
@@ -101,8 +101,10 @@ export function numbers(detail: OptimizeDetail, models: Models, found: Design): 
 }
 
 function row(name: string, start?: number | null, found?: number | null): Row {
-  const text = (value?: number | null) => (value == null ? "–" : shown(value, 2));
-  const off = start == null || found == null ? "" : shown(found - start, 2);
+  const { unit } = named(name);
+  const inShown = (value: number) => shown(value * perUnit(unit), digitsOf(unit, 2));
+  const text = (value?: number | null) => (value == null ? "–" : inShown(value));
+  const off = start == null || found == null ? "" : inShown(found - start);
   return [headed(name), text(start), text(found), off];
 }
 

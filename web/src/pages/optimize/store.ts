@@ -4,7 +4,7 @@ import { workOn } from "../../app/current";
 import { Followed } from "../../app/followed";
 import { call, type LiveChannel, live } from "../../net";
 import type { OptimizeCurve, OptimizeDetail, OptimizeScore, OptimizeTrial } from "../../net/messages";
-import { onCleanup, type Signal, signal, tell, toast } from "../../ui";
+import { onCleanup, type Signal, signal, tell, toast, unitText } from "../../ui";
 
 export type Design = Readonly<Record<string, number>>;
 
@@ -115,7 +115,7 @@ export function named(name: string): { readonly label: string; readonly unit: st
 /** Write a name with its unit for the head of a column or row. */
 export function headed(name: string): string {
   const { label, unit } = named(name);
-  return unit ? `${label}, ${unit}` : label;
+  return unit ? `${label}, ${unitText(unit)}` : label;
 }
 
 export function scoreText(score: OptimizeScore | undefined, unit: string): string {
