@@ -37,10 +37,11 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 
 def test_a_rig_is_identified_learned_on_and_kept(fdvv: Run, tmp_path: Path, taught: bytes) -> None:
-    ran = fdvv(*LEARN, "-o", "clear.actuation.json")
+    ran = fdvv(*LEARN, "-v", "-o", "clear.actuation.json")
     assert ran.status == 0
     lines = ran.out.splitlines()
     assert lines[0] == "mx-clear on twin (simulated), 6 presses"
+    assert re.fullmatch(r"mean error \d\.\d cN, largest \d+\.\d", lines[2].removesuffix(" cN"))
     assert lines[1].startswith("method: force-loop: the loop at the finger closed on an identified rig")
     assert lines[-2:] == ["written to clear.actuation.json", "written to bench.rig.json"]
     assert "1 of 4 identification presses" in ran.err

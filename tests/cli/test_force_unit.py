@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.cli.force_unit import chosen, force_of, in_unit
+from fdvv.force_text import force_of
 
 from .conftest import Run
 
@@ -38,16 +38,6 @@ def test_the_variable_is_the_setting_and_json_stays_in_cN(fdvv: Run, monkeypatch
     assert fdvv("show", "mx-clear", "--json").out == as_json
     assert "rms gf" in fdvv("compare", "mx-clear", "mx-red").out
     assert "peak_cN" in fdvv("--force-unit", "cN", "show", "mx-clear").out
-
-
-def test_sentences_keep_their_digits_and_options_their_names(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(chosen, "unit", "N")
-    assert (
-        in_unit("errs by 2 to 15 cN rms, −3.5 cN at most") == "errs by 0.02 to 0.15 N rms, −0.035 N at most"
-    )
-    assert in_unit("see --max-rmse-cN and 3 mm") == "see --max-rmse-cN and 3 mm"
-    monkeypatch.setitem(chosen, "unit", "gf")
-    assert in_unit("falls by 98.1 cN/mm") == "falls by 100.0 gf/mm"
 
 
 @pytest.mark.parametrize(("text", "force_cN"), [("5", 5.0), ("5cN", 5.0), ("5 gf", 5 * GF), ("0.05N", 5.0)])

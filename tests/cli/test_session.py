@@ -141,7 +141,7 @@ def test_a_full_disk_is_reported_in_one_line_and_the_session_goes_on_once_there_
 
 def test_on_a_terminal_the_rows_are_redrawn_in_place(tmp_path: Path) -> None:
     screen, terminal = pty.openpty()
-    running = started("compensate", "mx-clear", *SHORT, folder=tmp_path, stderr=terminal)
+    running = started("compensate", "mx-clear", *SHORT, "-v", folder=tmp_path, stderr=terminal)
     os.close(terminal)
     shown = b""
     try:

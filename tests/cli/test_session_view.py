@@ -56,11 +56,11 @@ def test_a_person_without_a_terminal_gets_a_line_before_and_after_each_press(
     ]
 
 
-def test_simulated_presses_are_shown_in_about_ten_lines_and_not_at_all_when_json_is_printed(
+def test_of_simulated_presses_the_last_is_shown_all_if_asked_and_none_when_json_is_printed(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    for quiet, lines in ((False, 12), (True, 0)):
-        view = LineView(person=False, quiet=quiet)
+    for quiet, verbose, lines in ((False, False, 1), (False, True, 12), (True, True, 0)):
+        view = LineView(False, quiet, verbose)
         for done in range(1, 13):
             view.ask(ASK)
             view.done(event(done))
@@ -77,6 +77,15 @@ def test_the_table_has_a_row_per_velocity_with_what_is_known() -> None:
     assert re.search(r"100 mm/s +3 +5\.2 +2\.5 +7\.8 +5\.2 +2\.5 +7\.8", text)
     assert "best mean" in text
     assert "achieved 96 mm/s" in text
+
+
+def test_one_line_of_progress_replaces_the_table_unless_details_are_asked_for() -> None:
+    _, live, stream = table(person=False)
+    view = TableView(False, live, verbose=False)
+    view.done(event())
+    live.stop()
+    assert "achieved 96 mm/s" in plain(stream)
+    assert "best mean" not in plain(stream)
 
 
 def test_the_means_of_a_probe_are_called_medians() -> None:

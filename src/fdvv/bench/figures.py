@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.force_text import force_text
 from fdvv.model.curve import Stroke
 from fdvv.preprocess.average import AveragedCurve
 from fdvv.preprocess.paper import PaperRecipe, paper_average
@@ -159,7 +160,7 @@ def plot_force(recording: Recording, processed: Processed, number: int, simulate
     top.plot(stream.t_s[inside], read_cN[inside], color=style.PALETTE[1], label="as read, zero taken off")
     label = f"filter of {recording.bench.force_filter_ms:g} ms undone"
     if recording.bench.force_play_cN:
-        label += f", play of {recording.bench.force_play_cN:g} cN too"
+        label += f", play of {force_text(recording.bench.force_play_cN)} too"
     top.plot(press.t_s[shown], press.force_cN[shown], color=style.PALETTE[0], linewidth=1.1, label=label)
     change_cN = press.force_cN[shown] - np.interp(press.t_s[shown], stream.t_s, read_cN)
     below.plot(press.t_s[shown], change_cN, color=style.INK, linewidth=0.9)

@@ -16,6 +16,7 @@ from fdvv.bench.figures import (
 )
 from fdvv.bench.model import RecordedModel, used_and_left_out
 from fdvv.button.compare import vibration_spread
+from fdvv.force_text import force_number, force_text, force_unit
 from fdvv.model.curve import Stroke
 from fdvv.model.landmarks import landmark_errors, landmarks
 from fdvv.preprocess.reject import Judged
@@ -81,7 +82,7 @@ def _force(recorded: RecordedModel) -> Section:
     plot = plot_force(recorded.recording, recorded.processed, number)
     text = (
         f"The filter before the converter ({bench.force_filter_ms:g} ms) and the sensor's play "
-        f"({bench.force_play_cN:g} cN) are undone; what is 0 had nothing to undo."
+        f"({force_text(bench.force_play_cN)}) are undone; what is 0 had nothing to undo."
     )
     return Section("Force", (text,), (figure_svg(plot, f"Force of take {number} before and after"),))
 
@@ -148,14 +149,15 @@ def _curves(recorded: RecordedModel) -> Section:
             _speed(c.velocity_mm_s),
             f"{c.achieved_mm_s:.1f} ± {c.achieved_spread_mm_s:.1f}",
             str(c.presses),
-            f"{np.median(c.spread_cN):.2f}",
-            f"{c.spread_cN.max():.2f}",
+            force_number(float(np.median(c.spread_cN)), ".2f"),
+            force_number(float(c.spread_cN.max()), ".2f"),
             f"{c.width_mm:.2f}",
         )
         for c in recorded.processed.curves
     )
     columns = (
-        "stroke", "asked (mm/s)", "achieved (mm/s)", "presses", "median SD (cN)", "largest SD (cN)",
+        "stroke", "asked (mm/s)", "achieved (mm/s)", "presses", f"median SD ({force_unit()})",
+        f"largest SD ({force_unit()})",
         "smoothed over (mm)",
     )  # fmt: skip
     plot = plot_averages(recorded.processed, recorded.recording.simulated)
@@ -194,18 +196,23 @@ def _with(value: float, spread: float | None, decimals: int, scale: float = 1.0)
     return f"{scale * value:.{decimals}f}" + ("" if spread is None else f" ± {scale * spread:.{decimals}f}")
 
 
+def _with_force(force_cN: float, error_cN: float | None) -> str:
+    more = "" if error_cN is None else f" ± {force_number(error_cN, '.2f')}"
+    return force_number(force_cN, ".2f") + more
+
+
 def _model(recorded: RecordedModel) -> Section:
     model = recorded.model
     fits = tuple(
         (
             f"{fit.curve.stroke}, {fit.curve.velocity_mm_s:g} mm/s",
-            f"{fit.rmse_cN:.3f}",
-            f"{fit.max_cN:.2f}",
+            force_number(fit.rmse_cN, ".3f"),
+            force_number(fit.max_cN, ".2f"),
             "no bump" if fit.bump_kept_ratio is None else f"{100 * fit.bump_kept_ratio:.1f} %",
         )
         for fit in recorded.fits
     )
-    columns = ("curve", "RMSE (cN)", "max (cN)", "bump kept")
+    columns = ("curve", f"RMSE ({force_unit()})", f"max ({force_unit()})", "bump kept")
     tables = [Table(columns, fits, "Splines against averaged curves.")]
     if model.of(Stroke.PRESS):
         tables.append(_landmarks(recorded))
@@ -218,7 +225,10 @@ def _landmarks(recorded: RecordedModel) -> Table:
     for velocity in recorded.model.velocities_mm_s(Stroke.PRESS):
         marks = landmarks(recorded.model, velocity).to_dict()
         errors = {name: error.error for name, error in landmark_errors(recorded.model, velocity).items()}
-        cells = ["–" if (at := marks[name]) is None else _with(at, errors.get(name), 2) for name in FORCES]
+        cells = ["–" if (at := marks[name]) is None else _with_force(at, errors.get(name)) for name in FORCES]
         rows.append((f"{velocity:g}", *cells))
-    columns = ("speed (mm/s)", *(name.replace("_cN", " (cN)").replace("_", " ") for name in FORCES))
+    columns = (
+        "speed (mm/s)",
+        *(name.replace("_cN", f" ({force_unit()})").replace("_", " ") for name in FORCES),
+    )
     return Table(columns, tuple(rows), "Landmarks; ± is the standard error over presses.")

@@ -14,6 +14,7 @@ from fdvv.bench.vibration import RecordedVibrations, recorded_vibrations
 from fdvv.button.compare import curve_spread, spread_reports
 from fdvv.button.fit import DECIMALS_mm, FitSettings, fit_report, one_line
 from fdvv.errors import FdvvError, InputError
+from fdvv.force_text import force_text
 from fdvv.model.curve import MeasuredCurve, Stroke, reading_order
 from fdvv.model.fit import CurveFit, fit_curve
 from fdvv.model.landmarks import landmark_errors, landmarks
@@ -48,7 +49,7 @@ def method_of(recording: Recording, processed: Processed) -> str:
     if bench.force_filter_ms:
         steps.append(f"the force filter of {bench.force_filter_ms:g} ms undone")
     if bench.force_play_cN:
-        steps.append(f"the force sensor's play of {bench.force_play_cN:g} cN undone")
+        steps.append(f"the force sensor's play of {force_text(bench.force_play_cN)} undone")
     steps.append("paths between frames found from frames and force together")
     steps.append(used_and_left_out(processed))
     if processed.probe:
@@ -79,7 +80,7 @@ def assumptions_of(recording: Recording, settings: Settings) -> tuple[str, ...]:
     facts = [
         (bench.tip_mass_g, f"the force sensor's tip weighs {bench.tip_mass_g:g} g"),
         (bench.force_filter_ms, f"the filter before its converter has {bench.force_filter_ms:g} ms"),
-        (bench.force_play_cN, f"it reads {bench.force_play_cN:g} cN more on the way back"),
+        (bench.force_play_cN, f"it reads {force_text(bench.force_play_cN)} more on the way back"),
         (bench.exposure_ms, f"the camera exposes for {bench.exposure_ms:g} ms"),
     ]
     return (

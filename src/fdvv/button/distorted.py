@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from fdvv.button.plausible import ROWS, UNITS, Implausible
+from fdvv.force_text import force_number, force_text
 from fdvv.model.bump import LOADED_cN, find_contact_mm
 from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.units import FloatArray
@@ -89,13 +90,16 @@ def distorted_whole(stroke: MeasuredCurve) -> Iterator[Implausible]:
         reason = f"the force is exactly the same from {start:.2f} to {end:.2f} mm"
         yield Implausible(where, reason, CELL)
     if x.size >= LEVEL_samples and level_cN > LEVEL_cN:
-        reason = f"the force comes in steps of {level_cN:.3g} cN"
+        reason = f"the force comes in steps of {force_text(level_cN, '.3g')}"
         yield Implausible(where, reason, CELL)
     if force.size > REPEATS * x.size and x.size > 1 and np.median(np.diff(x)) >= REPEATS_mm:
         reason = f"{force.size} rows have only {x.size} displacements"
         yield Implausible(where, reason, "check that no decimals were lost")
     if -means.min() > PULL_ratio * means.max():
-        reason = f"the force goes down to {means.min():.3g} cN and up to {means.max():.3g} cN"
+        reason = (
+            f"the force goes down to {force_text(means.min(), '.3g')} and up to "
+            f"{force_text(means.max(), '.3g')}"
+        )
         yield Implausible(where, reason, UNITS)
 
 
@@ -118,7 +122,7 @@ def distorted_active(stroke: MeasuredCurve) -> Iterator[Implausible]:
     least = max(SWING_cN, SWING_ratio * float(np.ptp(force)))
     turns = _turns(force, least)
     if turns > SWINGS:
-        reason = f"the force turns {turns} times by more than {least:.3g} cN"
+        reason = f"the force turns {turns} times by more than {force_text(least, '.3g')}"
         yield Implausible(where, reason, "check the bench for hum and loose contacts")
     step = np.diff(x)
     if np.median(step) <= FINE_mm:
@@ -148,7 +152,10 @@ def _leaps(stroke: Stroke, x: FloatArray, force: FloatArray) -> Iterator[Implaus
         later = np.flatnonzero((leap * leap[i] < 0) & (np.abs(leap) > LEAP_cN) & (x[:-1] > x[i]))
         for j in later[x[later + 1] <= x[i] + LEAP_mm]:
             if abs(force[j + 1] - force[i]) <= RESTORED_ratio * min(abs(leap[i]), abs(leap[j])):
-                reason = f"the force leaps by {leap[i]:.3g} cN at {x[i]:.2f} mm, and back at {x[j]:.2f} mm"
+                reason = (
+                    f"the force leaps by {force_text(leap[i], '.3g')} at {x[i]:.2f} mm, and back at "
+                    f"{x[j]:.2f} mm"
+                )
                 yield Implausible(str(stroke), reason, CELL)
                 return
 
@@ -161,7 +168,10 @@ def _jumps(stroke: Stroke, x: FloatArray, force: FloatArray) -> Iterator[Implaus
     ratio[(x < x[0] + CONTACT_mm) | (np.maximum(force, after) < LOADED_cN)] = 1.0
     for at in (int(ratio.argmax()), int(ratio.argmin())):
         if not FALL_ratio[stroke] <= ratio[at] <= RISE_ratio[stroke]:
-            reason = f"the force jumps from {force[at]:.3g} to {after[at]:.3g} cN at {x[at]:.2f} mm"
+            reason = (
+                f"the force jumps from {force_number(force[at], '.3g')} to {force_text(after[at], '.3g')} at "
+                f"{x[at]:.2f} mm"
+            )
             yield Implausible(str(stroke), reason, f"{CELL}, and the units")
 
 
@@ -171,12 +181,12 @@ def distorted_rest(press: MeasuredCurve, release: MeasuredCurve) -> Iterator[Imp
     for stroke in (press, release):
         air = stroke.force_cN[stroke.displacement_mm < contact_mm - AIR_mm]
         if air.size >= AIR_samples and abs(float(np.median(air))) > AIR_cN:
-            reason = f"reads {float(np.median(air)):.3g} cN where nothing is touched"
+            reason = f"reads {force_text(float(np.median(air)), '.3g')} where nothing is touched"
             yield Implausible(str(stroke.stroke), reason, CELL)
     rest_cN = float(release.by_displacement()[1][0])
     begun_cN = float(press.by_displacement()[1][0])
     begun = float(release.displacement_mm[0]) <= contact_mm + REST_mm and abs(begun_cN) <= AIR_cN
     most_cN = max(REST_cN, REST_ratio * float(release.force_cN.max()))
     if begun and not -AIR_cN <= rest_cN <= most_cN:
-        reason = f"ends with {rest_cN:.3g} cN where the press began"
+        reason = f"ends with {force_text(rest_cN, '.3g')} where the press began"
         yield Implausible("release", reason, f"{CELL}, and {ROWS.removeprefix('check ')}")

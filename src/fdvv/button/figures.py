@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.force_text import force_text
 from fdvv.model.curve import MeasuredCurve
 from fdvv.model.fit import CurveFit, FitMethod
 from fdvv.report import style
@@ -68,7 +69,7 @@ def _draw_fit(ax: Axes, fit: CurveFit, colour: str, row: int) -> None:
     curve = fit.curve
     drawn = curve.sample(0.01)
     count = curve.control_points_cN.size
-    label = f"{fit.method}, {count} control points, RMSE {fit.rmse_cN:.2f} cN"
+    label = f"{fit.method}, {count} control points, RMSE {force_text(fit.rmse_cN, '.2f')}"
     ax.plot(drawn.displacement_mm, drawn.force_cN, color=colour, label=label)
     ax.plot(curve.control_points_mm, curve.control_points_cN, color=colour, **POINTS)
     # ticks in axes heights, so that they stay at the foot whatever the force

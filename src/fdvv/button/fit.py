@@ -22,6 +22,7 @@ from fdvv.button.plausible import (
     implausible_whole,
 )
 from fdvv.errors import FdvvError, InputError
+from fdvv.force_text import force_text
 from fdvv.formats.force.average import Averaged, average_by_velocity
 from fdvv.formats.force.read import find_force_files, read_force_file
 from fdvv.formats.force.split import CYCLE
@@ -234,8 +235,9 @@ def _cut_short(part: MeasuredCurve) -> str:
     if part.stroke is Stroke.PRESS or place_mm <= CUT_SHORT_mm or force_cN <= CONTACT_cN:
         return ""
     return (
-        f"the release ends {place_mm:.2f} mm from contact, at {force_cN:.1f} cN: what it gives back, and the "
-        f"loss, are not known"
+        f"the release ends {place_mm:.2f} mm from contact, at {force_text(force_cN, '.1f')}: what it gives "
+        "back, and the "
+        "loss, are not known"
     )
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fdvv.force_text import force_number, force_text, force_unit
 from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.model.fit import CurveFit, FitMethod
 from fdvv.model.residual import noise_cN
@@ -120,14 +121,20 @@ def _of_stroke(where: str, stroke: MeasuredCurve) -> Iterator[Implausible]:
         reason = f"{step.max():.2f} mm of its travel are missing from {x[int(np.argmax(step))]:.2f} mm on"
         yield Implausible(where, reason, "check that the file is whole")
     if highest > PEAK_cN:
-        yield Implausible(where, f"the force reaches {highest:.4g} cN, more than {PEAK_cN:g}", UNITS)
+        yield Implausible(
+            where, f"the force reaches {force_text(highest, '.4g')}, more than {force_number(PEAK_cN)}", UNITS
+        )
     if span < RANGE_ratio * highest:
-        reason = f"the force hardly changes, from {highest - span:.4g} to {highest:.4g} cN"
+        reason = (
+            f"the force hardly changes, from {force_number(highest - span, '.4g')} to "
+            f"{force_text(highest, '.4g')}"
+        )
         yield Implausible(where, reason, "check the load cell and the force column")
     noise = noise_cN(force)
     if noise > (NOISE_ratio if x.size >= COARSE_samples else COARSE_ratio) * span:
         reason = (
-            f"the force jumps by {noise:.3g} cN (RMS) from sample to sample, over a range of {span:.4g} cN"
+            f"the force jumps by {force_text(noise, '.3g')} (RMS) from sample to sample, over a range of "
+            f"{force_text(span, '.4g')}"
         )
         yield Implausible(where, reason, ROWS)
     if stroke.velocity_mm_s is not None and stroke.velocity_mm_s > FASTEST_mm_s:
@@ -139,7 +146,12 @@ def _of_mean(where: str, stroke: MeasuredCurve) -> Iterator[Implausible]:
     x, force, _ = stroke.by_displacement()
     mean = float(np.trapezoid(force, x) / (x[-1] - x[0]))
     if not MEAN_cN[0] <= mean <= MEAN_cN[1]:
-        yield Implausible(where, f"the mean force is {mean:.4g} cN, not {_range(MEAN_cN)} cN", UNITS)
+        yield Implausible(
+            where,
+            f"the mean force is {force_text(mean, '.4g')}, not {' to '.join(map(force_number, MEAN_cN))} "
+            f"{force_unit()}",
+            UNITS,
+        )
 
 
 def _of_pair(press: MeasuredCurve, release: MeasuredCurve) -> Iterator[Implausible]:
@@ -167,11 +179,13 @@ def implausible_whole(stroke: MeasuredCurve) -> Iterator[Implausible]:
     _, force, _ = stroke.by_displacement()
     highest = float(force.max())
     if highest > WHOLE_cN:
-        reason = f"the force reaches {highest:.4g} cN in the stop, more than {WHOLE_cN:g}"
+        reason = (
+            f"the force reaches {force_text(highest, '.4g')} in the stop, more than {force_number(WHOLE_cN)}"
+        )
         yield Implausible(str(stroke.stroke), reason, UNITS)
     drop = highest - float(force[-1])
     if drop > END_DROP_ratio[stroke.stroke] * highest:
-        reason = f"the force falls by {drop:.4g} cN before the deepest displacement"
+        reason = f"the force falls by {force_text(drop, '.4g')} before the deepest displacement"
         yield Implausible(f"deep end of the {stroke.stroke}", reason, ROWS)
 
 
@@ -180,7 +194,7 @@ def implausible_start(press: MeasuredCurve, release: MeasuredCurve) -> Iterator[
     further = float(press.displacement_mm[0] - release.displacement_mm[0])
     force_cN = float(press.by_displacement()[1][0])
     if further > FURTHER_mm and force_cN > BEGINS_cN:
-        reason = f"begins at {force_cN:.4g} cN, and the release goes on for {further:.2f} mm"
+        reason = f"begins at {force_text(force_cN, '.4g')}, and the release goes on for {further:.2f} mm"
         yield Implausible("press", reason, "check that the file is whole")
 
 
@@ -192,8 +206,10 @@ def implausible_cycles(cycles: Sequence[MeasuredCurve]) -> Iterator[Implausible]
     }
     for what, values in figures.items():
         if values and max(values) > CYCLES_ratio * max(min(values), 1e-9):
-            units = "mm" if what != "force" else "cN"
-            reason = f"the {what} of its cycles goes from {min(values):.3g} to {max(values):.3g} {units}"
+            ends = (min(values), max(values))
+            low, high = (force_number(v, ".3g") if what == "force" else f"{v:.3g}" for v in ends)
+            units = "mm" if what != "force" else force_unit()
+            reason = f"the {what} of its cycles goes from {low} to {high} {units}"
             yield Implausible("run", reason, "put each button in a file of its own")
 
 
@@ -202,7 +218,10 @@ def implausible_fit(fit: CurveFit, measured: MeasuredCurve) -> Iterator[Implausi
     enough = fit.method is FitMethod.ADAPTIVE and fit.curve.control_points_cN.size >= MISFIT_POINTS
     span = float(np.ptp(measured.by_displacement()[1]))
     if enough and fit.smoothing_mm == 0 and fit.rmse_cN > MISFIT_ratio * span:
-        reason = f"no smooth curve follows it: RMSE {fit.rmse_cN:.3g} cN over a range of {span:.4g} cN"
+        reason = (
+            f"no smooth curve follows it: RMSE {force_text(fit.rmse_cN, '.3g')} over a range of "
+            f"{force_text(span, '.4g')}"
+        )
         yield Implausible(str(fit.curve.stroke), reason, ROWS)
 
 

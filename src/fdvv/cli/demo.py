@@ -10,6 +10,7 @@ from fdvv.cli import ui
 from fdvv.cli.demo_report import demo_report
 from fdvv.cli.demo_run import DemoResult
 from fdvv.cli.demo_run import demo as run
+from fdvv.force_text import ForceTitle, force_number, force_unit
 from fdvv.io.files import write_atomic
 from fdvv.model.file import MODEL_SUFFIX, save_model
 from fdvv.rendering.tuning import open_device
@@ -53,14 +54,15 @@ def _print(result: DemoResult) -> None:
     name, count = result.switch.adaptive.model.name, fits[0].curve.control_points_cN.size
     click.echo(f"{name}, fitted with {count} control points")
     ui.print_table(
-        ["curve", "RMSE cN", "uniform knots", "bump kept"],
+        ["curve", ForceTitle("RMSE {}", 3), ForceTitle("uniform knots, {}", 3), "bump kept"],
         [
             [fit.curve.stroke, fit.rmse_cN, uniform.rmse_cN, ui.bump_kept(fit.bump_kept_ratio)]
             for fit, uniform in zip(fits, result.switch.uniform, strict=True)
         ],
-        digits={"RMSE cN": 3, "uniform knots": 3},
     )
-    ui.echo(f"\n{result.button.name} on the simulated rig: error in cN, mean / max, on fresh presses")
+    click.echo(
+        f"\n{result.button.name} on the simulated rig: error in {force_unit()}, mean / max, on fresh presses"
+    )
     labels = [r.label for r in result.renderings]
     ui.print_table(
         ["curve", *labels],
@@ -68,7 +70,8 @@ def _print(result: DemoResult) -> None:
             [
                 ui.curve_name(row),
                 *(
-                    f"{ui.number(row[k]['mean_error_cN'])} / {ui.number(row[k]['max_error_cN'], 1)}"
+                    f"{force_number(row[k]['mean_error_cN'], '.2f')} / "
+                    f"{force_number(row[k]['max_error_cN'], '.1f')}"
                     for k in labels
                 ),
             ]

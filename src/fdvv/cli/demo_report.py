@@ -12,10 +12,11 @@ from fdvv import __version__
 from fdvv.button.figures import plot_fit, plot_scan
 from fdvv.cli.demo_run import DemoResult
 from fdvv.cli.ui import bump_kept
+from fdvv.force_text import force_number, force_text, force_unit
 from fdvv.rendering.evaluation.probe_figures import rendered_curves
 from fdvv.rendering.evaluation.probe_report import sources_section, vibration_section
 from fdvv.rendering.evaluation.verdict import headline, headline_figures, verdict
-from fdvv.rendering.figures import plot_convergence, plot_rendering
+from fdvv.rendering.figures import PAPER_ERROR_cN, plot_convergence, plot_rendering
 from fdvv.report.model_figures import plot_model, plot_surface
 from fdvv.report.records import ErrorHistory, RenderedCurve
 from fdvv.report.report import Headline, Section, Table, render_html
@@ -71,15 +72,22 @@ def _switch(result: DemoResult) -> Section:
     rows = [
         (
             f"{fit.curve.stroke}, {fit.method} knots",
-            f"{fit.rmse_cN:.3f}",
-            f"{fit.max_cN:.2f}",
+            force_number(fit.rmse_cN, ".3f"),
+            force_number(fit.max_cN, ".2f"),
             f"{fit.curve.control_points_cN.size}",
             bump_kept(fit.bump_kept_ratio),
             f"{fit.time_s * 1e3:.1f}",
         )
         for fit in (*fitted.fits, *result.switch.uniform)
     ]
-    columns = ("curve", "RMSE (cN)", "max (cN)", "control points", "bump kept", "time (ms)")
+    columns = (
+        "curve",
+        f"RMSE ({force_unit()})",
+        f"max ({force_unit()})",
+        "control points",
+        "bump kept",
+        "time (ms)",
+    )
     press = (fitted.fits[0], result.switch.uniform[0])
     drawn = plot_fit(fitted.measured[0], press, title=fitted.model.name)
     figures = (_figure(drawn, "Raw press and two fits"),)
@@ -109,11 +117,14 @@ def _button(result: DemoResult) -> Section:
 
 def _every_rendering(result: DemoResult) -> Section:
     labels = [r.label for r in result.renderings]
-    columns = ("curve", *(f"{label}, mean / max (cN)" for label in labels))
+    columns = ("curve", *(f"{label}, mean / max ({force_unit()})" for label in labels))
     rows = [
         (
             f"{row['stroke']} at {row['velocity_mm_s']:g} mm/s",
-            *(f"{row[k]['mean_error_cN']:.2f} / {row[k]['max_error_cN']:.2f}" for k in labels),
+            *(
+                " / ".join(force_number(row[k][f"{name}_error_cN"], ".2f") for name in ("mean", "max"))
+                for k in labels
+            ),
         )
         for row in result.rows()
     ]
@@ -157,7 +168,7 @@ def _learning(result: DemoResult) -> Section:
     ]
     text = (
         f"{learned.method}. {learned.outcome.sentence}",
-        "The line at 2.93 cN is what the paper's hardware reached.",
+        f"The line at {force_text(PAPER_ERROR_cN)} is what the paper's hardware reached.",
     )
     figure = _figure(
         plot_convergence(histories, paper=True, simulated=True), "Error of each press while learning"

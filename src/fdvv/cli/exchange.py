@@ -13,6 +13,7 @@ from fdvv.button.fit import FitSettings
 from fdvv.button.import_file import ImportSettings, import_file
 from fdvv.button.plausible import OPTION
 from fdvv.cli import ui
+from fdvv.force_text import ForceTitle, force_name, force_number
 from fdvv.formats.exchange.exchange_format import ExportSettings
 from fdvv.formats.exchange.exported import Exported
 from fdvv.model.curve import Stroke
@@ -77,8 +78,14 @@ def _print(made: Exported, output: Path) -> None:
         if phrases:
             ui.print_wrapped(f"{label}: {'; '.join(phrases)}")
     if made.figures:
-        shown = [[name, "–" if value is None else f"{value:.4g}"] for name, value in made.figures.items()]
+        shown = [_figure(*one) for one in made.figures.items()]
         ui.print_table(["figure", "value"], shown)
+
+
+def _figure(name: str, value: float | None) -> list[str]:
+    title = force_name(name)
+    write = force_number if isinstance(title, ForceTitle) else format
+    return [title, "–" if value is None else write(value, ".4g")]
 
 
 @click.command("import")

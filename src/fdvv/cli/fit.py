@@ -10,6 +10,7 @@ import click
 from fdvv.button.fit import FitSettings, FolderFit, ModelFit, fit_file, fit_files, measured_files, summarise
 from fdvv.button.plausible import OPTION
 from fdvv.cli import ui
+from fdvv.force_text import ForceTitle, force_text
 from fdvv.model.file import MODEL_SUFFIX, save_model
 from fdvv.model.fit import FitMethod
 
@@ -59,7 +60,7 @@ def fit(
     settings = FitSettings(FitMethod(method), **options)
     worst, where = (_folder if path.is_dir() else _file)(path, settings, output, as_json)
     if max_rmse_cN is not None and worst > max_rmse_cN:
-        reason = f"RMSE of {worst:.3f} cN exceeds the bound of {max_rmse_cN:g} cN"
+        reason = f"RMSE of {force_text(worst, '.3f')} exceeds the bound of {force_text(max_rmse_cN)}"
         raise ui.failed(f"{ui.one_line(where)}: {reason}")
 
 
@@ -84,7 +85,7 @@ def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool)
 def _print_fit(found: ModelFit) -> None:
     click.echo(f"{ui.one_line(found.model.name)}: {found.model.provenance.method}")
     ui.print_table(
-        ["curve", "RMSE cN", "max cN", "points", "bump kept", "ms"],
+        ["curve", ForceTitle("RMSE {}", 3), ForceTitle("max {}"), "points", "bump kept", "ms"],
         [
             [
                 f"{f.curve.stroke}" + (f" {f.curve.velocity_mm_s:g} mm/s" if f.curve.velocity_mm_s else ""),
@@ -93,7 +94,7 @@ def _print_fit(found: ModelFit) -> None:
             ]
             for f in found.fits
         ],
-        digits={"RMSE cN": 3, "ms": 1},
+        digits={"ms": 1},
     )
     ui.print_warnings(found.warnings)
 
@@ -134,11 +135,11 @@ def _print_folder(results: list[FolderFit], summary: dict[str, Any]) -> None:
         ui.print_warnings([f"{result.file.name}: {w}" for w in result.fit.warnings])
     click.echo(f"{ui.counted(summary['files'], 'file')}, {summary['refused']} refused")
     ui.print_table(
-        ["stroke", "RMSE cN median", "90 %", "ms median", "90 %"],
+        ["stroke", ForceTitle("RMSE {} median", 3), ForceTitle("90 %", 3), "ms median", "90 %"],
         [
             [
                 stroke,
-                *(ui.number(value, 3) for value in s["rmse_cN"].values()),
+                *s["rmse_cN"].values(),
                 *(ui.number(1e3 * value, 1) for value in s["time_s"].values()),
             ]
             for stroke, s in summary["strokes"].items()

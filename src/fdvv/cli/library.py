@@ -9,6 +9,7 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import Workers, executor_options
+from fdvv.force_text import force_name
 from fdvv.library.build import build_library
 from fdvv.library.library import By as LikeBy
 from fdvv.library.library import Library, library_query, write_hits
@@ -52,7 +53,7 @@ def list_(as_json: bool) -> None:
         [m.name, m.provenance.source.partition(",")[0], *(k[c] for c in columns)]
         for m, k in zip(models, marks, strict=True)
     ]
-    ui.print_table(["button", "source", *columns], rows, left=2)
+    ui.print_table(["button", "source", *map(force_name, columns)], rows, left=2)
 
 
 @library.command()
@@ -156,7 +157,11 @@ def _print_hits(
         ]
         for hit in hits[:count]
     ]  # fmt: skip
-    ui.print_table(["button", "folder", "type", *(["JND"] if near else []), *FIGURES, "id"], rows, left=3)
+    ui.print_table(
+        ["button", "folder", "type", *(["JND"] if near else []), *map(force_name, FIGURES), "id"],
+        rows,
+        left=3,
+    )
     more = f", {len(hits) - count} more with -n" if len(hits) > count else ""
     click.echo(f"{len(hits)} found{more}")
     ui.print_written(output)

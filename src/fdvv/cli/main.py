@@ -13,8 +13,8 @@ import click
 
 from fdvv import __version__, extras
 from fdvv.cli import ui
-from fdvv.cli.force_unit import UNITS, chosen
 from fdvv.errors import BuildError, DeviceError, FdvvError, InputError, WorkerError
+from fdvv.force_text import UNITS, shown_in
 
 COMMANDS = {
     "assign": ("models", "Assign a curve, or a segment of one, to press or release of a model."),
@@ -129,12 +129,12 @@ class Interrupted(Exception):  # noqa: N818 - nothing failed
     default="cN",
     envvar="FDVV_FORCE_UNIT",
     show_default=True,
-    help="Of the forces that are shown; FDVV_FORCE_UNIT sets it too; JSON and files stay in cN.",
+    help="Of the forces that are shown; FDVV_FORCE_UNIT sets it too; figures in JSON and files stay in cN.",
 )
 @click.pass_context
 def cli(ctx: click.Context, force_unit: str) -> None:
     """Capture, model, render and compare the feel of push-buttons."""
-    chosen["unit"] = force_unit
+    ctx.with_resource(shown_in(force_unit))
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help(), err=True)
         ctx.exit(2)

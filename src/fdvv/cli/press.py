@@ -8,13 +8,14 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
+from fdvv.force_text import ForceTitle, force_text
 from fdvv.live.simulated_press import press_button
 
 FIGURES = {
     "asked_mm_s": "asked mm/s",
     "achieved_mm_s": "reached mm/s",
-    "before_stop_cN": "before stop cN",
-    "largest_cN": "largest cN",
+    "before_stop_cN": "before stop {}",
+    "largest_cN": "largest {}",
     "closing_ms": "closing ms",
 }
 """Of a press, each with the heading of its column."""
@@ -46,10 +47,11 @@ def press(output: Path | None, as_json: bool, **options: Any) -> None:
         document = {"button": found.button, "travel_mm": found.travel_mm, "simulated": True}
         ui.print_json({**document, "quasi_static_peak_cN": found.quasi_static_peak_cN, "presses": rows})
         return
-    ui.echo(
+    click.echo(
         f"{found.button} (simulated): travel {found.travel_mm:.2f} mm, "
-        f"{found.quasi_static_peak_cN:.1f} cN before the stop at 0.5 mm/s"
+        f"{force_text(found.quasi_static_peak_cN, '.1f')} before the stop at 0.5 mm/s"
     )
-    ui.print_table(list(FIGURES.values()), [[getattr(p, key) for key in FIGURES] for p in found.presses])
+    columns = [ForceTitle(title) if "{}" in title else title for title in FIGURES.values()]
+    ui.print_table(columns, [[getattr(p, key) for key in FIGURES] for p in found.presses])
     if output:
         click.echo(f"written: {output}")

@@ -11,6 +11,7 @@ import click
 from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.errors import InputError
+from fdvv.force_text import force_name, force_number, force_text
 from fdvv.io.files import write_atomic
 from fdvv.program.check import Report, check_program, require_accepted
 from fdvv.program.compile import compile_program
@@ -84,7 +85,9 @@ def show(program: str, as_json: bool) -> None:
     ui.print_wrapped(title)
     click.echo(f"  travel {parts.travel_mm:g} mm, starts in {parts.start!r}")
     rows = [_row(state) for state in parts.states]
-    ui.print_table(["state", "press", "release", "plays", "key", "fade_ms", "bias_cN"], rows, left=4)
+    ui.print_table(
+        ["state", "press", "release", "plays", "key", "fade_ms", force_name("bias_cN")], rows, left=4
+    )
     for state in parts.states:
         for transition in state.transitions:
             click.echo(f"{state.name}: {transition}")
@@ -95,7 +98,9 @@ def _row(state: State) -> list[object]:
         state.enter_signal or "",
         f"{state.repeat_signal}/{state.repeat_ms} ms" if state.repeat_ms else "",
     ]
-    bias = ui.number(state.bias_cN) if not state.bias_ms else f"{state.bias_cN:g}…{state.bias_end_cN:g}"
+    bias: object = state.bias_cN
+    if state.bias_ms:
+        bias = "…".join(map(force_number, (state.bias_cN, state.bias_end_cN)))
     played = ", ".join(filter(None, plays)) or "–"
     return [state.name, state.press, state.release, played, state.key, state.fade_ms, bias]
 
@@ -153,7 +158,10 @@ def check(program: str, weight_cN: float | None, opposing_cN: float | None, as_j
         click.echo(f"{opened.name}: {'refused' if report.refused else 'accepted'}")
         if report.return_s is not None:
             click.echo(f"  back at the top within {report.return_s:.2f} s of letting go")
-        ui.echo(f"  steepest {report.stiffness_cN_mm:.0f} cN/mm, coil {report.rise_K:.1f} K warmer if held")
+        click.echo(
+            f"  steepest {force_text(report.stiffness_cN_mm, '.0f', per='/mm')}, coil {report.rise_K:.1f} K "
+            "warmer if held"
+        )
     if report.refused:
         raise click.exceptions.Exit(1)
 
@@ -203,7 +211,7 @@ def compile_(
         ui.print_json({"output": str(output), "bytes": len(compiled.image), "surfaces": surfaces})
     else:
         worst_cN = max(compiled.grid_error_cN.values())
-        ui.echo(f"{output}: {len(compiled.image)} bytes, forces within {worst_cN:.2f} cN")
+        click.echo(f"{output}: {len(compiled.image)} bytes, forces within {force_text(worst_cN, '.2f')}")
     ui.print_warnings([str(finding) for finding in report.warnings])
 
 

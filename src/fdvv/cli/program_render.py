@@ -14,6 +14,7 @@ from fdvv.compensation.identification.rig_file import LearnedRig, load_learned_r
 from fdvv.device.contract import Device
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import InputError
+from fdvv.force_text import ForceTitle, force_text
 from fdvv.io.files import write_atomic
 from fdvv.program.library import open_program
 from fdvv.program.program import Program
@@ -86,12 +87,15 @@ def _print(report: ProgramReport, as_json: bool) -> None:
         for row in report.rendered
         if row.bins
     ]
-    ui.print_table(["state", "as it is: mean cN", "mean cN", "median cN", "max cN"], rows)
+    ui.print_table(["state", *map(ForceTitle, ("as it is: mean {}", "mean {}", "median {}", "max {}"))], rows)
     ui.print_wrapped(report.verdict)
     for row in report.worse:
         ui.print_warnings([f"{row.state!r} on the {row.stroke} is rendered worse than as it is"])
     if report.impact_cN > HARD_cN:
         ui.print_warnings(
-            [f"a cap that was free meets the finger with {report.impact_cN:.0f} cN: weaken its throw"]
+            [
+                f"a cap that was free meets the finger with {force_text(report.impact_cN, '.0f')}: weaken "
+                "its throw"
+            ]
         )
     ui.print_wrapped(f"next: {report.next_step}")

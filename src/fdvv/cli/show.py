@@ -13,6 +13,7 @@ from fdvv.button.compare import compare as compare_models
 from fdvv.button.open import button_files, open_button, open_files, open_models
 from fdvv.cli import ui
 from fdvv.errors import InputError
+from fdvv.force_text import ForceTitle, force_name, force_number, force_unit
 from fdvv.io.documents import ACTUATION, own_kind
 from fdvv.library.kind import kind_sentence
 from fdvv.model.curve import Stroke
@@ -103,7 +104,7 @@ def _write_page(path: Path, models: Sequence[FDVVModel], velocity_mm_s: float | 
 def _print_columns(result: Comparison) -> None:
     pairs = [(m.to_dict(), e) for m, e in zip(result.landmarks, result.errors, strict=True)]
     rows = [
-        [key, *((marks[key], getattr(errors.get(key), "error", None)) for marks, errors in pairs)]
+        [force_name(key), *((marks[key], getattr(errors.get(key), "error", None)) for marks, errors in pairs)]
         for key in pairs[0][0]
     ]
     ui.print_table(["landmark", *result.names], rows, digits=dict.fromkeys(result.names, 3))
@@ -111,19 +112,24 @@ def _print_columns(result: Comparison) -> None:
         click.echo("±: standard error over presses")
     click.echo("")
     ui.print_table(
-        [f"force less {result.names[0]}", "stroke", "rms cN", "mean cN", "max cN", "at mm"],
+        [
+            f"force less {result.names[0]}",
+            "stroke",
+            *map(ForceTitle, ("rms {}", "mean {}", "max {}")),
+            "at mm",
+        ],
         [[d.name, d.stroke, d.rms_cN, d.mean_cN, d.max_cN, d.max_mm] for d in result.differences],
     )
 
 
 def _print_lines(result: Comparison) -> None:
-    ui.echo(f"rms cN: force of the press less that of {ui.one_line(result.names[0])}")
+    click.echo(f"rms {force_unit()}: force of the press less that of {ui.one_line(result.names[0])}")
     rms = {d.index: d.rms_cN for d in result.differences if d.stroke == "press"}
     rows = [
         [ui.one_line(name, NAME_WIDTH), *(marks.to_dict()[key] for key in LANDMARKS), rms.get(i)]
         for i, (name, marks) in enumerate(zip(result.names, result.landmarks, strict=True))
     ]
-    ui.print_table(["button", *LANDMARKS, "rms cN"], rows)
+    ui.print_table(["button", *map(force_name, LANDMARKS), ForceTitle("rms {}")], rows)
 
 
 @click.command()
@@ -184,11 +190,19 @@ def show(
 
 def _print_landmarks(marks: dict[str, float | None], errors: dict[str, LandmarkError]) -> None:
     if not errors:
-        ui.print_table(["landmark", "value"], marks.items(), digits={"value": 3})
+        plain = [[force_name(name), value] for name, value in marks.items()]
+        ui.print_table(["landmark", "value"], plain, digits={"value": 3})
         return
-    known = {name: [f"± {error.error:.3f}", error.presses] for name, error in errors.items()}
-    rows = [[name, value, *known.get(name, ["", ""])] for name, value in marks.items()]
+    known = {name: [_plus_minus(name, error.error), error.presses] for name, error in errors.items()}
+    rows: list[list[object]] = [
+        [force_name(name), value, *known.get(name, ["", ""])] for name, value in marks.items()
+    ]
     ui.print_table(["landmark", "value", "standard error", "presses"], rows, digits={"value": 3})
+
+
+def _plus_minus(name: str, error: float) -> str:
+    write = force_number if isinstance(force_name(name), ForceTitle) else format
+    return f"± {write(error, '.3f')}"
 
 
 def _print_spreads(report: dict[str, Any]) -> None:
@@ -198,7 +212,14 @@ def _print_spreads(report: dict[str, Any]) -> None:
         return
     click.echo("")
     ui.print_table(
-        ["measured curve", "mm/s", "achieved mm/s", "presses", "median spread cN", "largest"],
+        [
+            "measured curve",
+            "mm/s",
+            "achieved mm/s",
+            "presses",
+            ForceTitle("median spread {}"),
+            ForceTitle("largest"),
+        ],
         [
             [
                 *(c["stroke"], c["velocity_mm_s"], (c["achieved_mm_s"], c["achieved_spread_mm_s"])),
@@ -243,7 +264,7 @@ def _show_folder(folder: Path, velocity_mm_s: float | None, as_json: bool) -> No
         ui.print_json({"results": [{"file": f, "landmarks": m} for f, m in found], "refused": refused})
     elif found:
         rows = [[ui.one_line(Path(f).name, NAME_WIDTH), *(m[key] for key in TABLE)] for f, m in found]
-        ui.print_table(["button", *TABLE], rows)
+        ui.print_table(["button", *map(force_name, TABLE)], rows)
     ui.print_warnings([f"refused: {r['reason']}" for r in refused])
     if not found:
         raise ui.failed(f"{folder}: no button of it can be shown; the reasons are above", 2)

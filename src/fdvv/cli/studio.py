@@ -12,6 +12,7 @@ import click
 
 from fdvv.cli import ui
 from fdvv.errors import InputError
+from fdvv.force_text import shown_in
 from fdvv.library.library import Library
 from fdvv.studio.auth import opening_file
 from fdvv.studio.server import serve
@@ -70,7 +71,9 @@ def studio(
                 page = written(address).absolute().as_uri()
                 threading.Thread(target=webbrowser.open, args=(page,), daemon=True).start()
 
-        serve(Studio(project, folders, libraries), host, port, ready, keep_address)
+        # the page has a unit of its own
+        with shown_in("cN"):
+            serve(Studio(project, folders, libraries), host, port, ready, keep_address)
     ui.print_stderr("the studio is closed; everything is kept")
 
 

@@ -10,6 +10,7 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import Workers, executor_options
+from fdvv.force_text import ForceTitle, force_name
 from fdvv.sweep.plan import read_sweep_plan
 from fdvv.sweep.sweep import preview_sweep, run_sweep, sweep_summary
 
@@ -50,11 +51,16 @@ def _run(sweep_plan: Any, plan: Path, output: Path, where: Workers, as_json: boo
     click.echo(f"{sweep_plan.measure}: {cells} (simulated), {result.failed} failed")
     for part in document["summary"]:
         figure, factor = part["figure"], part["factor"]
+        title = force_name(figure)
+        columns: list[str] = ["median", "5 %", "95 %"]
+        if isinstance(title, ForceTitle):
+            columns = [ForceTitle(column, 3) for column in columns]
         rows = [
-            [str(row["value"]), row["cells"], *(ui.number(row[k], 3) for k in ("median", "low", "high"))]
+            [str(row["value"]), row["cells"], *(row[k] for k in ("median", "low", "high"))]
             for row in part["rows"]
         ]
-        ui.print_table([f"{figure} by {factor}", "cells", "median", "5 %", "95 %"], rows)
+        head = [f"{title} by {force_name(factor)}", "cells", *columns]
+        ui.print_table(head, rows, digits=dict.fromkeys(columns, 3))
     if result.failed:
         ui.print_warnings([f"{ui.counted(result.failed, 'cell')} failed; the first: {result.first_reason()}"])
     click.echo(f"written to {result.path}")

@@ -12,6 +12,7 @@ import click
 import numpy as np
 import numpy.typing as npt
 
+from fdvv.force_text import force_number, force_unit
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
@@ -71,7 +72,7 @@ def chart_lines(curves: Sequence[TerminalCurve], columns: int) -> list[str]:
             colours[row // 4, at // 2] = one.colour
     lines = [f"{_label(i, top_cN)} {_signs(bits[i], colours[i])}" for i in range(ROWS)]
     across = f"{ends_mm[0]:.1f}" + "mm".center(wide // 2 - 6) + f"{ends_mm[1]:.1f}"
-    return [f"{'cN':>{LEFT}}", *lines, f"{' ' * LEFT} {across}"]
+    return [f"{force_unit():>{LEFT}}", *lines, f"{' ' * LEFT} {across}"]
 
 
 def _inside(curve: ForceCurve, x_mm: FloatArray) -> FloatArray:
@@ -104,8 +105,8 @@ def _signs(bits: npt.NDArray[np.int32], colours: npt.NDArray[np.int32]) -> str:
 def _label(row: int, top_cN: float) -> str:
     """Return the force at the left of a row: the highest, the half, and none."""
     known = {
-        0: f"{top_cN:.0f}",
-        ROWS // 2: f"{top_cN * (1 - 0.5 * (2 * (ROWS // 2) + 1) / ROWS):.0f}",
+        0: force_number(top_cN, ".0f"),
+        ROWS // 2: force_number(top_cN * (1 - 0.5 * (2 * (ROWS // 2) + 1) / ROWS), ".0f"),
         ROWS - 1: "0",
     }
     return known.get(row, "").rjust(LEFT)

@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from fdvv import extras
-from fdvv.cli.force_unit import force_of, in_unit, table_in_unit
 from fdvv.errors import InputError
+from fdvv.force_text import ForceTitle, force_of, shown_force, shown_in
 
 if TYPE_CHECKING:
     from rich.live import Live
@@ -94,8 +94,24 @@ def choice_option(name: str, choices: Sequence[str], help: str) -> Callable[[Com
     return option(name, type=click.Choice(choices), default=choices[0], help=help)
 
 
+def _json_in_cN(ctx: click.Context, _param: click.Parameter, as_json: bool) -> bool:
+    if as_json:
+        ctx.with_resource(shown_in("cN"))
+    return as_json
+
+
 json_option = click.option(
-    "--json", "as_json", is_flag=True, help="Print one JSON document and nothing else."
+    "--json",
+    "as_json",
+    is_flag=True,
+    is_eager=True,
+    callback=_json_in_cN,
+    help="Print one JSON document and nothing else.",
+)
+
+
+verbose_option = click.option(
+    "-v", "--verbose", is_flag=True, help="Show every step, not one line of progress."
 )
 
 
@@ -148,11 +164,11 @@ def print_table(
     """Print aligned columns: the first ``left`` ones to the left, the others to the right.
 
     A float or None is written by ``number``, with the column's digits or 2; a pair is a number and its
-    spread; any other cell is written by ``str``.
+    spread; any other cell is written by ``str``. Cells of a column, or a row, with a ForceTitle hold cN.
     """
-    columns, rows, digits = table_in_unit(columns, list(rows), digits)
-    places = [digits.get(column, 2) for column in columns]
-    texts = [[_cell(cell, n) for cell, n in zip(row, places, strict=True)] for row in rows]
+    texts = [
+        [_cell(cell, title, row[0], digits) for cell, title in zip(row, columns, strict=True)] for row in rows
+    ]
     table = [[one_line(cell) for cell in row] for row in (columns, *texts)]
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     for row in table:
@@ -162,21 +178,22 @@ def print_table(
         click.echo("  ".join(cells).rstrip())
 
 
-def _cell(value: object, digits: int) -> str:
+def _cell(value: object, column: str, row: object, digits: Mapping[str, int]) -> str:
+    title = next((one for one in (column, row) if isinstance(one, ForceTitle)), None)
+    places = title.digits if title else digits.get(column, 2)
+    if title and row is title:
+        places += digits.get(column, 2) - 2
     if isinstance(value, tuple):
-        middle, spread = value
-        return with_spread(middle, spread, digits)
-    return number(value, digits) if value is None or isinstance(value, float) else str(value)
-
-
-def echo(text: str) -> None:
-    """Print a line, its forces in the unit that was chosen."""
-    click.echo(in_unit(text))
+        middle, spread = (shown_force(one) if title and one is not None else one for one in value)
+        return with_spread(middle, spread, places)
+    if value is None or isinstance(value, float):
+        return number(shown_force(value) if title and value is not None else value, places)
+    return str(value)
 
 
 def print_wrapped(text: str) -> None:
     """Print a sentence over as many lines as it takes, those after the first indented."""
-    click.echo(click.wrap_text(one_line(in_unit(text)), WIDTH, subsequent_indent="  "))
+    click.echo(click.wrap_text(one_line(text), WIDTH, subsequent_indent="  "))
 
 
 def simulated(flag: bool) -> str:
@@ -198,7 +215,7 @@ def print_written(*paths: Path | None) -> None:
 
 
 def print_stderr(text: str) -> None:
-    click.echo(in_unit(text), err=True)
+    click.echo(text, err=True)
 
 
 def notice(text: str, quiet: bool) -> None:
@@ -373,7 +390,9 @@ def stages(report: Callable[[str], None] = print_stderr) -> Iterator[Callable[[s
 def save_figure(figure: Any, path: Path) -> None:
     """Write a matplotlib figure in the format of the path's ending (FIGURES), whole or not at all."""
     from fdvv.io.files import write_atomic
+    from fdvv.report.style import show_force_unit
 
+    show_force_unit(figure)
     buffer = io.BytesIO()
     figure.savefig(buffer, format=path.suffix.lstrip(".").lower(), bbox_inches="tight", dpi=150)
     write_atomic(path, buffer.getvalue())

@@ -20,6 +20,7 @@ from fdvv.compensation.tables import (
     smooth,
 )
 from fdvv.errors import ModelError
+from fdvv.force_text import force_number, force_text, force_unit
 from fdvv.units import FloatArray
 
 RIG_DELAYS = Delays(position_s=0.0005, command_s=0.002)
@@ -104,7 +105,7 @@ class PaperLaw:
         if self.hold_ends:
             names.append("corrections held beyond the visited bins")
         if self.hold_cN:
-            names.append(f"at least {self.hold_cN:g} cN in the first {HOME_mm:g} mm")
+            names.append(f"at least {force_text(self.hold_cN)} in the first {HOME_mm:g} mm")
         if self.start != "random":
             names.append(f"rounds start from the {self.start}")
         return tuple(names)
@@ -185,9 +186,10 @@ class PaperLaw:
     def _sentence(self, state: CurveState, bests: tuple[BestPress, ...], step_mm: float) -> str:
         kept = bump_kept_ratio(state.grid_mm, state.target_cN, self.smoothing_mm)
         bump = "the target has no bump" if kept is None else f"keeps {kept:.0%} of the target's bump"
-        ends = ", ".join(f"{b.error_cN:.1f}" for b in bests)
+        ends = ", ".join(force_number(b.error_cN, ".1f") for b in bests)
         return (
-            f"error_k {state.errors_cN[0]:.1f} cN at press 1, best of each round {ends} cN; "
+            f"error_k {force_text(state.errors_cN[0], '.1f')} at press 1, best of each round {ends} "
+            f"{force_unit()}; "
             f"smoothing sigma {self.smoothing_mm:g} mm ({bump})"
         )
 

@@ -12,6 +12,7 @@ from fdvv.compensation.paper import PaperLaw
 from fdvv.compensation.presses import rig_columns, split_strokes
 from fdvv.compensation.tables import CurveState
 from fdvv.errors import ModelError
+from fdvv.force_text import force_text
 from fdvv.model.curve import Stroke
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
@@ -133,4 +134,7 @@ class PerCurve:
             rest = "the tables are averaged" if done == self.law.rounds else "the next round begins"
             return f"round {done} of {self.law.rounds} is over; {rest}"
         moved = [float(np.abs(a.command_cN - b.command_cN).max()) for a, b in zip(after, before, strict=True)]
-        return f"moved the press by up to {moved[0]:.1f} cN, the release by up to {moved[1]:.1f} cN"
+        return (
+            f"moved the press by up to {force_text(moved[0], '.1f')}, the release by up to "
+            f"{force_text(moved[1], '.1f')}"
+        )

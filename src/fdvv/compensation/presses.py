@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.force_text import force_text
 from fdvv.model.press import Press
 from fdvv.units import FloatArray
 
@@ -157,7 +158,7 @@ def _constant_force(press: Press) -> str:
     # a broken wire reads one value throughout
     if press.sensed_cN is None or np.ptp(press.sensed_cN) > 0:
         return ""
-    return f"the force sensor read {press.sensed_cN[0]:g} cN throughout; check it and its cable"
+    return f"the force sensor read {force_text(press.sensed_cN[0])} throughout; check it and its cable"
 
 
 def _off_pace(achieved_mm_s: float, requested_mm_s: float, bound: float) -> str:

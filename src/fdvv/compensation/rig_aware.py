@@ -30,6 +30,7 @@ from fdvv.compensation.rig_learning import (
 )
 from fdvv.compensation.stroke_samples import StrokeSample, stroke_samples
 from fdvv.errors import FitError, ModelError
+from fdvv.force_text import force_number, force_text, force_unit
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 
@@ -61,14 +62,19 @@ def explain_rig(rig: RigModel, middle_mm: float = 2.0) -> str:
         error = rig.error.get(name, 0.0)
         scale = 1000.0 if unit == "ms" else 1.0
         digits = 2 if unit in ("", "ms") else 1
-        end = f" {unit}" if unit else ""
-        found.append(f"{words} {scale * value:.{digits}f} +- {scale * error:.{digits}f}{end}")
+        write = force_number if unit == "cN" else format
+        end = f" {unit.replace('cN', force_unit())}" if unit else ""
+        about, off = (write(scale * number, f".{digits}f") for number in (value, error))
+        found.append(f"{words} {about} +- {off}{end}")
         if error > abs(value) or name in rig.at_bound:
             unknown.append(words)
         elif error > WEAK_ratio * abs(value):
             weak.append(words)
     found += _own_force(rig)
-    text = f"{', '.join(found)}, from {rig.presses} presses; {rig.residual_cN:.1f} cN rms unexplained"
+    text = (
+        f"{', '.join(found)}, from {rig.presses} presses; {force_text(rig.residual_cN, '.1f')} rms "
+        "unexplained"
+    )
     text = f"{text}; not known: {', '.join(unknown)}" if unknown else text
     text = f"{text}; weak: {', '.join(weak)}" if weak else text
     return f"{text}; {rig.misfit}" if rig.misfit else text
@@ -79,7 +85,10 @@ def _own_force(rig: RigModel) -> list[str]:
     span, error = float(np.ptp(rig.own_cN)) if rig.own_cN else 0.0, rig.error.get("own_cN", 0.0)
     if span < max(NOTICED_cN, NOTICED_errors * error):
         return []
-    return [f"own force over displacement {span:.1f} +- {error:.1f} cN from least to most"]
+    return [
+        f"own force over displacement {force_number(span, '.1f')} +- {force_text(error, '.1f')} from least "
+        "to most"
+    ]
 
 
 ANY_SPEED_ratio, LOOSE_SPEED_TOLERANCE_ratio = float("inf"), 0.6

@@ -16,6 +16,7 @@ from fdvv.compensation.presses import FROM_mm, HOME_mm, STOP_GUARD_mm
 from fdvv.compensation.stroke_samples import StrokeSample
 from fdvv.compensation.tables import SharedTable, bin_force
 from fdvv.errors import ModelError
+from fdvv.force_text import force_number, force_text
 from fdvv.model.curve import Stroke
 from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray
@@ -248,7 +249,8 @@ def least_command_cN(rig: RigModel, grid_mm: FloatArray, limit_cN: float) -> Flo
     if least.max() > limit_cN:
         at = int(least.argmax())
         raise ModelError(
-            f"the cap would hang at {grid_mm[at]:.2f} mm: to lift it takes a command of {least[at]:.0f} cN, "
+            f"the cap would hang at {grid_mm[at]:.2f} mm: to lift it takes a command of "
+            f"{force_text(least[at], '.0f')}, "
             f"the limit is {limit_cN:.0f}; take weight or friction off the rig, or support its spring"
         )
     return np.asarray(least)
@@ -356,13 +358,19 @@ def curves_of(
 
 def _curve(stroke: Stroke, speed_mm_s: float, errors: list[PressError], expected_cN: float) -> CurveOutcome:
     if not errors:
-        left = f"{expected_cN:.1f} cN expected: the error left on the button that the rig was identified on"
+        left = (
+            f"{force_text(expected_cN, '.1f')} expected: the error left on the button that the rig was "
+            "identified on"
+        )
         sentence = left if np.isfinite(expected_cN) else "not pressed"
         return CurveOutcome(stroke, speed_mm_s, (), expected_cN, float("nan"), sentence)
     better = better_press(errors)
     used = better or errors[-1]
     first_cN, last_cN = errors[0].error_cN, errors[-1].error_cN
-    sentence = f"error_k {first_cN:.1f} cN at press 1, {last_cN:.1f} at press {len(errors)}"
+    sentence = (
+        f"error_k {force_text(first_cN, '.1f')} at press 1, {force_number(last_cN, '.1f')} at press "
+        f"{len(errors)}"
+    )
     sentence += "; the best table is kept, since the last press was worse" if better else ""
     history = tuple(e.error_cN for e in errors)
     return CurveOutcome(stroke, speed_mm_s, history, used.mean_cN, used.max_cN, sentence)
@@ -375,7 +383,9 @@ def press_summary(
     (down, up), speed = errors, float(tables[0][0].speeds_mm_s[at])
     moved = [float(np.abs(new.rows_cN[at] - old.rows_cN[at]).max()) for old, new in zip(*tables, strict=True)]
     return (
-        f"mean error {down.mean_cN:.1f} cN on the press, {up.mean_cN:.1f} on the release; tables moved by up "
-        f"to {moved[0]:.1f} and {moved[1]:.1f} cN; two such presses differ by about "
-        f"{unrepeatable_cN(rig, speed):.1f} cN"
+        f"mean error {force_text(down.mean_cN, '.1f')} on the press, {force_number(up.mean_cN, '.1f')} on "
+        "the release; tables moved by up "
+        f"to {force_number(moved[0], '.1f')} and {force_text(moved[1], '.1f')}; two such presses differ by "
+        "about "
+        f"{force_text(unrepeatable_cN(rig, speed), '.1f')}"
     )

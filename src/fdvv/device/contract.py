@@ -8,6 +8,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from fdvv.errors import DeviceError
+from fdvv.force_text import force_text
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import CellSpec, Fault, ForceLoopGains, Settings
@@ -101,7 +102,7 @@ class FaultReport:
             return "no fault"
         return (
             f"{self.fault.name.lower()}: {self.value}, allowed {self.bound}, "
-            f"at {self.displacement_mm:.3f} mm and {self.commanded_cN:.1f} cN, "
+            f"at {self.displacement_mm:.3f} mm and {force_text(self.commanded_cN, '.1f')}, "
             f"{self.time_s:.3f} s on the device's clock{self._part}"
         )
 
@@ -150,7 +151,8 @@ def check_table(info: DeviceInfo, surface: ForceSurface, travel_mm: float) -> No
     largest = max(float(np.abs(table).max()) for table in (surface.press_cN, surface.release_cN))
     if largest > info.force_limit_cN:
         raise DeviceError(
-            f"{info.name}: the table reaches {largest:.4g} cN, the limit is {info.force_limit_cN:g} cN; "
+            f"{info.name}: the table reaches {force_text(largest, '.4g')}, the limit is "
+            f"{force_text(info.force_limit_cN)}; "
             "clip the table before uploading it"
         )
     check_travel(info, travel_mm)

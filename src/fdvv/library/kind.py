@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
+from fdvv.force_text import force_text
 from fdvv.library.row import ButtonType
 from fdvv.library.stated import Stated
 from fdvv.model.bump import Bump, find_bump
@@ -75,32 +77,46 @@ def _samples(model: FDVVModel, stroke: Stroke) -> tuple[FloatArray, FloatArray] 
     return x, curve.force_cN(x)
 
 
+WriteForce = Callable[[float, str], str]
+"""Writes a force by its specification, with the unit."""
+
+
+def _in_cN(force_cN: float, spec: str) -> str:
+    return f"{force_cN:{spec}} cN"
+
+
 def kind_of(model: FDVVModel) -> ButtonKind:
-    """Decide what the force does, from the slowest press and its release."""
-    kind, fact = _kind_of(model)
+    """Decide what the force does, from the slowest press and its release.
+
+    The fact names forces in cN, for files keep it.
+    """
+    kind, fact = _kind_of(model, _in_cN)
     sure = SURE if model.of(Stroke.RELEASE) else SURE_press_alone
     return ButtonKind(kind, fact, sure.get(kind))
 
 
 def kind_sentence(model: FDVVModel) -> str:
     """Say what kind of button the curve suggests, and by which fact."""
-    found = kind_of(model)
-    return f"{str(found.kind).capitalize().rstrip('?')}: {found.fact}."
+    kind, fact = _kind_of(model, force_text)
+    return f"{str(kind).capitalize().rstrip('?')}: {fact}."
 
 
-def _kind_of(model: FDVVModel) -> tuple[ButtonType, str]:
+def _kind_of(model: FDVVModel, write: WriteForce) -> tuple[ButtonType, str]:
     found = _samples(model, Stroke.PRESS)
     if found is None:
         return ButtonType.UNCLEAR, "no press was measured"
     bump, back = bump_of(model, Stroke.PRESS), bump_of(model, Stroke.RELEASE)
     if bump is None:
-        return ButtonType.LINEAR, "the force of the press never falls by 4 cN"
-    fall = f"the press falls by {bump.drop_cN:.1f} cN at {bump.peak_mm:.2f} mm"
+        return ButtonType.LINEAR, f"the force of the press never falls by {write(4, 'g')}"
+    fall = f"the press falls by {write(bump.drop_cN, '.1f')} at {bump.peak_mm:.2f} mm"
     sudden = _sudden_ratio(bump, *found)
     if back is None and model.of(Stroke.RELEASE):
         if bump.peak_mm - found[0][0] <= CONTACT_STEP_mm:
-            return ButtonType.LINEAR, f"{fall}, breakaway at contact; the release never falls by 4 cN"
-        return ButtonType.UNCLEAR, f"{fall}, but the release never falls by 4 cN"
+            return (
+                ButtonType.LINEAR,
+                f"{fall}, breakaway at contact; the release never falls by {write(4, 'g')}",
+            )
+        return ButtonType.UNCLEAR, f"{fall}, but the release never falls by {write(4, 'g')}"
     if sudden >= SUDDEN_ratio:
         share = f"{fall}, {100 * sudden:.0f} % of it within 50 um"
         if bump.drop_cN < SUDDEN_drop_cN:
@@ -110,17 +126,19 @@ def _kind_of(model: FDVVModel) -> tuple[ButtonType, str]:
     if shift_mm >= (SHIFT_sudden_mm if sudden >= SHIFT_ratio else SHIFT_mm):
         snaps = f"the release {shift_mm:.2f} mm less deep: what clicks snaps back elsewhere"
         return ButtonType.CLICKY, f"{fall}, {snaps}"
-    return _dome_or_tactile(bump, fall, *found)
+    return _dome_or_tactile(bump, fall, write, *found)
 
 
-def _dome_or_tactile(bump: Bump, fall: str, x: FloatArray, force: FloatArray) -> tuple[ButtonType, str]:
+def _dome_or_tactile(
+    bump: Bump, fall: str, write: WriteForce, x: FloatArray, force: FloatArray
+) -> tuple[ButtonType, str]:
     start, travel = x[0], x[-1] - x[0]
     climbs = np.diff(np.interp(start + travel * np.array([0.7, 0.85, 1.0]), x, force))
     bend_cN = float(climbs[1] - climbs[0])
     fall_ratio = (bump.valley_mm - bump.peak_mm) / travel
     past_half = bump.valley_mm - start >= DOME_end_ratio * travel
     if fall_ratio >= DOME_fall_ratio and past_half and bend_cN >= DOME_bend_cN:
-        bends = f"then stiffens by {bend_cN:.1f} cN within 15 % of it"
+        bends = f"then stiffens by {write(bend_cN, '.1f')} within 15 % of it"
         return ButtonType.DOME, f"{fall} over {100 * fall_ratio:.0f} % of the travel and {bends}"
     return ButtonType.TACTILE, fall
 

@@ -17,6 +17,7 @@ import msgspec
 import numpy as np
 
 from fdvv.errors import InputError
+from fdvv.force_text import force_of
 from fdvv.io.documents import MODEL, own_kind
 from fdvv.io.files import write_atomic
 from fdvv.io.part_store import need_parquet, read_groups
@@ -204,7 +205,8 @@ def library_query(text: str, sort: str = "match", descending: bool = False) -> S
     """Read a search; every word and condition must hold.
 
     Conditions have no blanks; several may name one column. A kind is written with or without its question
-    mark. sort : one of SORTED. InputError that says what was not understood.
+    mark. A force may carry its unit, or the column's name may: peak_cN>=50gf, peak_gf>=50. sort : one of
+    SORTED. InputError that says what was not understood.
     """
     words: list[str] = []
     kinds: list[ButtonType] = []
@@ -219,12 +221,20 @@ def library_query(text: str, sort: str = "match", descending: bool = False) -> S
         elif found["name"] == "kind":
             kinds += _kinds(part, found["sign"], found["value"])
         else:
-            _check_name(found["name"])
-            more = _range(part, found["sign"], found["value"])
-            ranges[found["name"]] = _both(ranges.get(found["name"], FULL), more)
+            name, unit = _column(found["name"])
+            _check_name(name)
+            more = _range(part, found["sign"], found["value"], unit)
+            ranges[name] = _both(ranges.get(name, FULL), more)
+    sort, _ = _column(sort)
     if sort not in SORTED:
         raise InputError("--sort", sort, "no such column", f"use one of {', '.join(SORTED)}")
     return SearchQuery(" ".join(words), tuple(kinds), ranges=ranges, sort=sort, descending=descending)
+
+
+def _column(name: str) -> tuple[str, str]:
+    """Return the column of a name and the unit of its bare numbers: peak_gf is peak_cN in gf."""
+    found = re.fullmatch(r"(\w+_)(cN|gf|N)(_mm)?", name)
+    return (f"{found[1]}cN{found[3] or ''}", found[2]) if found else (name, "")
 
 
 def _check_name(name: str) -> None:
@@ -243,19 +253,21 @@ def _kinds(part: str, sign: str, value: str) -> Sequence[ButtonType]:
     return [known[name] for name in names]
 
 
-def _range(part: str, sign: str, value: str) -> Range:
+def _range(part: str, sign: str, value: str, unit: str) -> Range:
     low, between, high = value.partition("..")
     if sign == "=" and between:
-        return (_number(part, low) if low else None), (_number(part, high) if high else None)
-    number = _number(part, value)
+        return (_number(part, low, unit) if low else None), (_number(part, high, unit) if high else None)
+    number = _number(part, value, unit)
     if sign in (">", "<"):  # ranges hold their ends
         number = float(np.nextafter(number, np.inf if sign == ">" else -np.inf))
     return (None if "<" in sign else number), (None if ">" in sign else number)
 
 
-def _number(part: str, text: str) -> float:
+def _number(part: str, text: str, unit: str) -> float:
     with contextlib.suppress(ValueError):
-        if np.isfinite(value := float(text)):
+        bare = text[-1:].isdigit() or text.endswith(".")
+        value = force_of(f"{text}{unit}" if bare else text) if unit else float(text)
+        if np.isfinite(value):
             return value
     remedy = "write it as peak_cN>=50 or peak_cN=50..60"
     raise InputError("search", part, f"{text!r} is not a number", remedy)

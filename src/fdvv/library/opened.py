@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Protocol
 
 from fdvv.button.fit import FitSettings, fit_file
+from fdvv.force_text import force_text
 from fdvv.formats.force.read import stroke_of
 from fdvv.io.documents import MODEL, own_kind
 from fdvv.library.kind import kind_sentence
@@ -59,7 +60,7 @@ class Fitted(Protocol):
 
 def fitted_file(found: Fitted) -> OpenedFile:
     worst_cN = max(fit.rmse_cN for fit in found.fits)
-    fit = f"The fit follows the samples within {worst_cN:.2f} cN (RMSE)"
+    fit = f"The fit follows the samples within {force_text(worst_cN, '.2f')} (RMSE)"
     sentence = f"{kind_sentence(found.model)} {fit}."
     return OpenedFile(found.model, sentence, found.warnings, found.fits, found.measured)
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from fdvv.button.compare import Comparison, compare
 from fdvv.errors import ModelError
+from fdvv.force_text import force_number, force_unit, shown_force
 from fdvv.library.figures import row_of_model
 from fdvv.library.kind import kind_sentence
 from fdvv.library.like import LikeTable, distances
@@ -28,13 +29,13 @@ SAME_jnd, NEAR_jnd = 1.0, 2.0
 LANDMARKS: tuple[tuple[str, str, int], ...] = (
     ("Travel, mm", "travel_mm", 2),
     ("Actuation, mm", "actuation_mm", 2),
-    ("Force at actuation, cN", "actuation_cN", 1),
-    ("Preload, cN", "preload_cN", 1),
-    ("Peak, cN", "peak_cN", 1),
+    ("Force at actuation, {}", "actuation_cN", 1),
+    ("Preload, {}", "preload_cN", 1),
+    ("Peak, {}", "peak_cN", 1),
     ("Peak at, mm", "peak_mm", 2),
-    ("Valley, cN", "valley_cN", 1),
+    ("Valley, {}", "valley_cN", 1),
     ("Snap ratio", "snap_ratio", 3),
-    ("Bottom-out, cN", "bottom_out_cN", 1),
+    ("Bottom-out, {}", "bottom_out_cN", 1),
     ("Work of the press, mJ", "work_mJ", 3),
     ("Hysteresis loss, mJ", "hysteresis_loss_mJ", 3),
 )
@@ -127,18 +128,18 @@ def _compared_lines(models: Sequence[FDVVModel], velocity_mm_s: float | None) ->
 def _line(curve: ForceCurve, name: str, colour: int | str) -> ChartLine:
     drawn = curve.sample(STEP_mm)
     dashed = curve.stroke is Stroke.RELEASE
-    return ChartLine(drawn.displacement_mm, drawn.force_cN, name, colour, dashed)
+    return ChartLine(drawn.displacement_mm, shown_force(drawn.force_cN), name, colour, dashed)
 
 
 def _chart(lines: Sequence[ChartLine], models: Sequence[FDVVModel]) -> str:
     title = f"Force over displacement of {', '.join(model.name for model in models)}"
-    return chart_svg(lines, "displacement (mm)", "force (cN)", title, WIDE, HIGH)
+    return chart_svg(lines, "displacement (mm)", f"force ({force_unit()})", title, WIDE, HIGH)
 
 
 def _landmark_table(found: Comparison) -> Table:
     marks = [mark.to_dict() for mark in found.landmarks]
     rows = tuple(
-        (label, *(_number(mark[name], digits) for mark in marks))
+        (label.format(force_unit()), *(_number(mark[name], digits, "{}" in label) for mark in marks))
         for label, name, digits in LANDMARKS
         if any(mark[name] is not None for mark in marks)
     )
@@ -150,17 +151,23 @@ def _difference_table(found: Comparison) -> Table:
         (
             d.name,
             str(d.stroke),
-            *(_number(value, 1) for value in (d.rms_cN, d.mean_cN, d.max_cN)),
+            *(_number(value, 1, True) for value in (d.rms_cN, d.mean_cN, d.max_cN)),
             f"{d.max_mm:.2f}",
         )
         for d in found.differences
     )
-    columns = ("Button", "Stroke", "RMS, cN", "Mean, cN", "Largest, cN", "at, mm")
+    columns = (
+        "Button",
+        "Stroke",
+        *(f"{name}, {force_unit()}" for name in ("RMS", "Mean", "Largest")),
+        "at, mm",
+    )
     return Table(columns, rows, f"Force of each button less that of {found.names[0]}.")
 
 
-def _number(value: float | None, digits: int) -> str:
-    return "–" if value is None else f"{value:.{digits}f}".replace("-", "−")
+def _number(value: float | None, digits: int, force: bool = False) -> str:
+    write = force_number if force else format
+    return "–" if value is None else write(value, f".{digits}f").replace("-", "−")
 
 
 def _origin(model: FDVVModel) -> str:

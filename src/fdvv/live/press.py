@@ -16,6 +16,7 @@ from msgspec.structs import replace
 from fdvv.device.contract import FaultReport, FREE_CELL_cN
 from fdvv.errors import DeviceError
 from fdvv.firmware.core import CoreRequest
+from fdvv.force_text import force_text
 from fdvv.live.press_replay import DisplacementPath, path_of
 from fdvv.live.press_subject import PressSubject
 from fdvv.live.press_trace import PressTrace
@@ -236,7 +237,8 @@ class LivePress:
             return
         if abs(reads_cN := self.rig.cell_cN) > FREE_CELL_cN:
             raise DeviceError(
-                f"the load cell reads {reads_cN:.1f} cN; lift the finger, and if nothing touches the cap, "
+                f"the load cell reads {force_text(reads_cN, '.1f')}; lift the finger, and if nothing touches "
+                "the cap, "
                 "mend or zero the cell"
             )
         self.rig.close_loop()

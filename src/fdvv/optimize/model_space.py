@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.errors import InputError
+from fdvv.force_text import force_number, force_text
 from fdvv.model.bump import find_bump
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
@@ -340,7 +341,10 @@ def _held(
     if "reset_mm" in chosen:
         order = "the contact opens no deeper than it closes"
         yield Constraint("order", order, lambda d: value(d, "actuation_mm") - value(d, "reset_mm"))
-    text = f"force stays between {LEAST_cN:g} and {most_cN:.0f} cN past the first part of the travel"
+    text = (
+        f"force stays between {force_number(LEAST_cN)} and {force_text(most_cN, '.0f')} past the first part of "
+        "the travel"
+    )
     yield Constraint("force", text, lambda d: _force_slack(_curves_of(base, known, d), most_cN))
 
 

@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from fdvv.errors import InputError
+from fdvv.force_text import force_number, force_text
 from fdvv.program.compile import compile_program
 from fdvv.program.condition import When
 from fdvv.program.program import Program, State
@@ -142,7 +143,10 @@ def _state(program: Program, state: State, limits: Limits) -> Iterator[Finding]:
     if state.bias_ms:
         slew_cN_s = 1000 * abs(state.bias_end_cN - state.bias_cN) / state.bias_ms
         if slew_cN_s > limits.slew_cN_s:
-            reason = f"{slew_cN_s:.3g} cN/s, the rig's force changes by {limits.slew_cN_s:.3g}"
+            reason = (
+                f"{force_text(slew_cN_s, '.3g', per='/s')}, the rig's force changes by "
+                f"{force_number(limits.slew_cN_s, '.3g')}"
+            )
             yield _refused(state.name, "bias", reason, "make bias_ms longer")
     for signal in program.signals:
         if signal.name == state.repeat_signal and state.repeat_ms < 1000 * signal.duration_s:
@@ -163,17 +167,26 @@ def _surface(state: State, surface: Surface, limits: Limits) -> Iterator[Finding
     ends = (float(table.min()) + low + limits.weight_cN, float(table.max()) + high + limits.weight_cN)
     strongest_cN = max(map(abs, ends))
     if strongest_cN > limits.force_cN:
-        reason = f"{strongest_cN:.4g} cN, weight included, the rig gives {limits.force_cN:g}"
+        reason = (
+            f"{force_text(strongest_cN, '.4g')}, weight included, the rig gives "
+            f"{force_number(limits.force_cN)}"
+        )
         yield _refused(state.name, place, reason, "weaken it")
     slope_cN_mm, at_mm = _slope_cN_mm(surface, limits)
     slew_cN_s = slope_cN_mm * FASTEST_PRESS_mm_s
     where = f"{place} at {at_mm:.2f} mm"
     if slew_cN_s > limits.slew_cN_s:
-        change = f"{slope_cN_mm:.0f} cN/mm at {FASTEST_PRESS_mm_s:g} mm/s is {slew_cN_s:.3g} cN/s"
-        reason = f"{change}, the rig's force changes by {limits.slew_cN_s:.3g}"
+        change = (
+            f"{force_text(slope_cN_mm, '.0f', per='/mm')} at {FASTEST_PRESS_mm_s:g} mm/s is "
+            f"{force_text(slew_cN_s, '.3g', per='/s')}"
+        )
+        reason = f"{change}, the rig's force changes by {force_number(limits.slew_cN_s, '.3g')}"
         yield _refused(state.name, where, reason, "make the step there wider or lower")
     elif slope_cN_mm > limits.stiffness_cN_mm:
-        reason = f"{slope_cN_mm:.0f} cN/mm, a held cap may buzz above {limits.stiffness_cN_mm:.0f}"
+        reason = (
+            f"{force_text(slope_cN_mm, '.0f', per='/mm')}, a held cap may buzz above "
+            f"{force_number(limits.stiffness_cN_mm, '.0f')}"
+        )
         yield _warning(state.name, where, reason, "make the step there wider or lower")
 
 
@@ -202,7 +215,7 @@ def _held_at_bottom_cN(program: Program, state: State, limits: Limits) -> float:
 
 def _heat(state: State, force_cN: float, limits: Limits) -> Iterator[Finding]:
     rise_K = limits.rise_K(force_cN)
-    reason = f"{force_cN:.0f} cN held warms the coil by {rise_K:.0f} K"
+    reason = f"{force_text(force_cN, '.0f')} held warms the coil by {rise_K:.0f} K"
     if rise_K > limits.settings.heat_limit_K:
         reason += f", the rig stops at {limits.settings.heat_limit_K}"
         yield _refused(state.name, "at the bottom", reason, "weaken the force there")

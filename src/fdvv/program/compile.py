@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
+from fdvv.force_text import force_number, force_text
 from fdvv.model.vibration import Vibration
 from fdvv.program.image import lay_out
 from fdvv.program.program import Program, Signal, State
@@ -123,7 +124,10 @@ def _check_surface(program: Program, surface: Surface, limits: Limits) -> None:
         raise _refuse(program, place, "velocities closer than 1/16 mm/s or above 4095", "move them apart")
     strongest_cN = float(np.max(np.abs(surface.table_cN + limits.weight_cN)))
     if strongest_cN > limits.force_cN:
-        reason = f"{strongest_cN:.4g} cN, weight included, the rig gives {limits.force_cN:g}"
+        reason = (
+            f"{force_text(strongest_cN, '.4g')}, weight included, the rig gives "
+            f"{force_number(limits.force_cN)}"
+        )
         raise _refuse(program, place, reason, "weaken it")
     ends = (16_000 * surface.displacement_mm[0], 16_000 * surface.displacement_mm[-1])
     if not START_um16[0] <= ends[0] <= ends[1] <= START_um16[1]:
@@ -133,7 +137,7 @@ def _check_surface(program: Program, surface: Surface, limits: Limits) -> None:
 def _check_bias(program: Program, state: State, limits: Limits) -> None:
     bias_cN = max(abs(b + limits.weight_cN) for b in state.biases_cN())
     if bias_cN > limits.force_cN:
-        reason = f"a bias of {bias_cN:g} cN, the rig gives {limits.force_cN:g}"
+        reason = f"a bias of {force_text(bias_cN)}, the rig gives {force_number(limits.force_cN)}"
         raise _refuse(program, f"state {state.name!r}", reason, "weaken it")
 
 
@@ -154,7 +158,7 @@ def _check_waves(program: Program, converted: Sequence[ConvertedVibration]) -> N
 def _check_fit(program: Program, grids: Sequence[Grid], size_bytes: int, limits: Limits) -> None:
     for surface, grid in zip(program.surfaces, grids, strict=True):
         if grid.error_cN > limits.worst_grid_error_cN:
-            reason = f"on {grid.columns} even columns it is {grid.error_cN:.3g} cN off"
+            reason = f"on {grid.columns} even columns it is {force_text(grid.error_cN, '.3g')} off"
             raise _refuse(program, f"surface {surface.name!r}", reason, "smooth its steps or shorten it")
     if size_bytes > IMAGE_BYTES:
         reason = f"{size_bytes} bytes with surfaces as coarse as allowed, a device holds {IMAGE_BYTES}"

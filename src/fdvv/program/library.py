@@ -15,6 +15,7 @@ from importlib import resources
 from pathlib import Path
 
 from fdvv.errors import InputError
+from fdvv.force_text import force_text
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
@@ -332,7 +333,8 @@ def _returning(program: Program) -> Program:
     if raised_cN <= 0:
         return program
     said = (
-        f"Forces below {RETURNING_cN:g} cN are raised to it, by up to {raised_cN:.1f}, to bring the cap back."
+        f"Forces below {force_text(RETURNING_cN)} are raised to it, by up to {raised_cN:.1f}, to bring the "
+        "cap back."
     )
     return replace(program, surfaces=surfaces, description=f"{program.description} {said}")
 

@@ -14,6 +14,7 @@ from functools import cached_property
 from itertools import product
 from typing import NamedTuple
 
+from fdvv.force_text import force_text
 from fdvv.program.motion import Motion
 from fdvv.program.program import Program
 from fdvv.program.reachability import Direction
@@ -164,8 +165,8 @@ class ReturnAnalysis:
         first = self.motion.first
         least = self.cells.least_cN[state]
         cell = first + int(least[first:].argmin())
-        place = f"{self.cells.edges_mm[cell]:.2f} mm, at least {least[cell]:.1f} cN"
-        return f"{place} against {self.motion.limits.opposing_cN:g} cN of friction"
+        place = f"{self.cells.edges_mm[cell]:.2f} mm, at least {force_text(least[cell], '.1f')}"
+        return f"{place} against {force_text(self.motion.limits.opposing_cN)} of friction"
 
     @cached_property
     def starts(self) -> list[Node]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.force_text import force_text
 from fdvv.model.curve import Stroke
 from fdvv.report import style
 from fdvv.report.records import ErrorHistory, FeasibleCurve, RenderedCurve
@@ -157,7 +158,7 @@ def plot_convergence(
     if paper:
         look = {"color": style.PALETTE[1], "linewidth": 1.2, "linestyle": "-."}
         ax.axhline(PAPER_ERROR_cN, **look)
-        handles.append(style.handle(f"{PAPER_ERROR_cN:g} cN, the paper's rig", **look))
+        handles.append(style.handle(f"{force_text(PAPER_ERROR_cN)}, the paper's rig", **look))
     _press_axes(ax)
     style.legend_beside(ax, handles)
     style.set_titles(ax, style.name_text(title), simulated or any(h.simulated for h in histories))

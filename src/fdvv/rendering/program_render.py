@@ -16,6 +16,7 @@ from fdvv.compensation.rig_learning import tuning_of
 from fdvv.device.contract import Device, ForceLoopDevice
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import InputError
+from fdvv.force_text import force_number, force_text
 from fdvv.model.model import FDVVModel
 from fdvv.program.check import require_accepted
 from fdvv.program.compensate import commands, learned_surfaces, loop_targets
@@ -179,9 +180,11 @@ class ProgramReport:
         worst = max(after, key=lambda row: row.mean_cN)
         felt = "felt as written" if median <= FELT_cN else "not yet felt as written"
         return (
-            f"{self.program} is {felt}: median {median:.1f} cN off, mean {errors.mean():.1f} instead of "
-            f"{all_errors_cN(before).mean():.1f} at {speed:g} mm/s; most in {worst.state!r} on the "
-            f"{worst.stroke}, mean {worst.mean_cN:.1f}"
+            f"{self.program} is {felt}: median {force_text(median, '.1f')} off, mean "
+            f"{force_number(errors.mean(), '.1f')} instead of "
+            f"{force_number(all_errors_cN(before).mean(), '.1f')} at {speed:g} mm/s; most in {worst.state!r} "
+            "on the "
+            f"{worst.stroke}, mean {force_number(worst.mean_cN, '.1f')}"
         )
 
     @property

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from fdvv.force_text import force_text, force_unit, shown_force
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.landmarks import Landmarks, landmarks
 from fdvv.model.model import FDVVModel
@@ -22,7 +23,11 @@ READ_UNITS = {"mm_s": "mm/s", "cN_mm": "cN/mm", "mm": "mm", "cN": "cN", "mJ": "m
 """Last parts of our names, longest first, and what people read."""
 POINTS = 160
 LONGEST_LICENCE = 36
-FORCE, DISPLACEMENT = "force (cN)", "displacement (mm)"
+DISPLACEMENT = "displacement (mm)"
+
+
+def _force_axis() -> str:
+    return f"force ({force_unit()})"
 
 
 def block(title: str, note: str, parts: Sequence[str]) -> str:
@@ -43,7 +48,7 @@ def table(rows: Sequence[Sequence[str]], head: Sequence[str] = ()) -> str:
 def model_html(model: FDVVModel) -> str:
     """Show a model: its curves, the contact's points, and the figures people compare."""
     note = f"{model.travel_mm:g} mm" + (", simulated" if model.provenance.simulated else "")
-    chart = chart_svg(_curves(model), DISPLACEMENT, FORCE, f"force over displacement of {model.name}")
+    chart = chart_svg(_curves(model), DISPLACEMENT, _force_axis(), f"force over displacement of {model.name}")
     return block(model.name, note, [chart, table(_facts(model))])
 
 
@@ -57,13 +62,15 @@ def _curves(model: FDVVModel) -> list[ChartLine]:
             colour = 0 if stroke is Stroke.PRESS else 1
             x = np.linspace(curve.start_mm, curve.end_mm, POINTS)
             name = _named(curve, len(curves)) if rank in (0, len(curves) - 1) else ""
-            lines.append(ChartLine(x, curve.force_cN(x), name, colour, stroke is Stroke.RELEASE, opacity))
+            lines.append(
+                ChartLine(x, shown_force(curve.force_cN(x)), name, colour, stroke is Stroke.RELEASE, opacity)
+            )
     points = ((Stroke.PRESS, model.actuation_mm, "actuation"), (Stroke.RELEASE, model.reset_mm, "reset"))
     for stroke, at, name in points:
         on = model.nearest(stroke)
         if at is not None and on is not None:
             place, colour = np.array([at]), 0 if stroke is Stroke.PRESS else 1
-            lines.append(ChartLine(place, on.force_cN(place), name, colour, dots=True))
+            lines.append(ChartLine(place, shown_force(on.force_cN(place)), name, colour, dots=True))
     return lines
 
 
@@ -90,9 +97,14 @@ def _landmark_row(name: str, value: float | None) -> tuple[str, str]:
     for ending, unit in READ_UNITS.items():
         if name.endswith(f"_{ending}"):
             name = name.removesuffix(f"_{ending}")
-            shown = "–" if value is None else f"{value:.3g}" if unit == "1" else f"{value:.2f} {unit}"
-            return name.replace("_", " "), shown
+            return name.replace("_", " "), "–" if value is None else _with_unit(value, unit)
     return name.replace("_", " "), "–" if value is None else f"{value:g}"
+
+
+def _with_unit(value: float, unit: str) -> str:
+    if unit.startswith("cN"):
+        return force_text(value, ".2f", unit.removeprefix("cN"))
+    return f"{value:.3g}" if unit == "1" else f"{value:.2f} {unit}"
 
 
 def landmarks_html(found: Landmarks) -> str:
@@ -105,13 +117,13 @@ def landmarks_html(found: Landmarks) -> str:
 def press_html(press: Press) -> str:
     """Show a press: force over displacement, and displacement over time."""
     turn = int(np.argmax(press.displacement_mm)) + 1
-    x, force = press.displacement_mm, press.force_cN
+    x, force = press.displacement_mm, shown_force(press.force_cN)
     lines = [ChartLine(x[:turn], force[:turn], "press")]
     if turn < x.size:
         lines.append(ChartLine(x[turn:], force[turn:], "release", 1, True))
     title = f"press at {press.velocity_mm_s:g} mm/s"
     time = chart_svg([ChartLine(press.t_s, x)], "time (s)", DISPLACEMENT, f"{title}: displacement over time")
-    loop = chart_svg(lines, DISPLACEMENT, FORCE, f"{title}: force over displacement")
+    loop = chart_svg(lines, DISPLACEMENT, _force_axis(), f"{title}: force over displacement")
     note = f"{press.t_s.size} samples" + (", simulated" if press.simulated else "")
     return block(title, note, [loop, time])
 

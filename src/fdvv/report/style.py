@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 import numpy as np
 
 from fdvv.errors import BuildError
+from fdvv.force_text import force_unit, in_cN
 from fdvv.model.curve import Stroke
 
 if TYPE_CHECKING:
@@ -158,6 +159,37 @@ def set_titles(ax: Axes, title: str, simulated: bool) -> None:
     ax.set_title(title, loc="left")
     if simulated:
         ax.set_title("simulated", loc="right", fontstyle="italic", fontweight="normal", color="#b42318")
+
+
+def show_force_unit(fig: Figure) -> None:
+    """Label axes of force in the unit shown: they hold cN, and say so in their label."""
+    unit = force_unit()
+    if unit == "cN":
+        return
+    label = ""
+    for ax in fig.axes:
+        # of a row of axes only the first is labelled
+        label = ax.get_ylabel() or label
+        ax.set_ylabel(ax.get_ylabel().replace("(cN)", f"({unit})"))
+        axes = [ax.yaxis] if "(cN)" in label else []
+        if "(cN)" in getattr(ax, "get_zlabel", str)():
+            axes.append(ax.zaxis)  # type: ignore[attr-defined]
+            ax.set_zlabel(ax.get_zlabel().replace("(cN)", f"({unit})"))  # type: ignore[attr-defined]
+        for axis in axes:
+            _scale(axis, in_cN(unit))
+
+
+def _scale(axis: Any, one: float) -> None:
+    """Set round ticks in a unit of so many cN."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+
+    log = axis.get_scale() == "log"
+    base = LogLocator(subs=(1.0, 2.0, 5.0)) if log else MaxNLocator(6, steps=[1, 2, 2.5, 5, 10])
+    low, high = sorted(axis.get_view_interval())
+    ticks = np.array([one * tick for tick in base.tick_values(low / one, high / one)])
+    axis.set_ticks(ticks[(ticks >= low) & (ticks <= high)])
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / one:.4g}".replace("-", "−")))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def handle(label: str, **look: Any) -> Line2D:

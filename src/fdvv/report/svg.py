@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.report.style import house_style
+from fdvv.report.style import house_style, show_force_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,6 +38,7 @@ def figure_of(drawn: Any) -> Figure:
         raise ModelError("these axes were taken off their figure")
     # axes may sit in a part of a figure, which knows the whole
     whole: Figure = drawn.figure.figure
+    show_force_unit(whole)
     return whole
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from fdvv.device.contract import DeviceInfo
 from fdvv.errors import DeviceError, ModelError
 from fdvv.firmware.core import Core
+from fdvv.force_text import force_text
 from fdvv.model.curve import Stroke
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
@@ -81,7 +82,7 @@ class ScriptedDevice:
         limit = self._info.force_limit_cN
         largest = max(float(np.abs(t).max()) for t in (surface.press_cN, surface.release_cN))
         if largest > limit:
-            raise DeviceError(f"scripted: table reaches {largest:g} cN, limit {limit:g} cN")
+            raise DeviceError(f"scripted: table reaches {force_text(largest)}, limit {force_text(limit)}")
         if not 0 < travel_mm <= self._info.travel_limit_mm:
             raise DeviceError(f"scripted: travel {travel_mm:g} mm, limit {self._info.travel_limit_mm:g} mm")
         self._active = (surface, travel_mm)

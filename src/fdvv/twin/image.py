@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.force_text import force_text
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.messages import CN64_PER_cN, MM_S16_PER_mm_s, UM16_PER_mm, seal
 from fdvv.protocol.tables import (
@@ -75,11 +76,12 @@ def image_of(
     ]
     held = [np.round(CN64_PER_cN * table) for table in tables]
     if max(float(np.abs(table).max()) for table in held) > 32000:
-        raise ModelError("a device holds forces up to 500 cN")
+        raise ModelError(f"a device holds forces up to {force_text(500)}")
     error = _error(surface, x, held)
     if error > LARGEST_ERROR_cN:
         raise ModelError(
-            f"the table would change by {error:.3g} cN to fit a device; {columns} places at most fit"
+            f"the table would change by {force_text(error, '.3g')} to fit a device; {columns} places at most "
+            "fit"
             f" {surface.velocity_mm_s.size} velocities"
         )
     source = VelocitySource.ANNOUNCED if paced else VelocitySource.DECIDED

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from fdvv.cli import ui
+from fdvv.force_text import ForceTitle, force_number, force_text, force_unit
 
 if TYPE_CHECKING:
     from fdvv_switch.design_button import MechanismResult
@@ -99,27 +100,28 @@ def _print(result: MechanismResult) -> None:
 
 def _print_tolerances(result: MechanismResult) -> None:
     band, worst = result.band, result.band.shares[:3]
-    most = ", ".join(f"{s.tolerance.name} {s.rms_cN:.1f}" for s in worst)
+    most = ", ".join(f"{s.tolerance.name} {force_number(s.rms_cN, '.1f')}" for s in worst)
     bump = ""
     if band.peak_cN and band.snap_ratio:
         bump = (
-            f", peak {band.peak_cN[0]:.0f} to {band.peak_cN[1]:.0f} cN, "
+            f", peak {force_number(band.peak_cN[0], '.0f')} to {force_text(band.peak_cN[1], '.0f')}, "
             f"snap ratio {band.snap_ratio[0]:.2f} to {band.snap_ratio[1]:.2f}"
         )
     ui.print_wrapped(
-        f"within tolerance, 5 to 95 %: press ± {band.half_width_cN:.1f} cN{bump}; most from (cN rms): {most}"
+        f"within tolerance, 5 to 95 %: press ± {force_text(band.half_width_cN, '.1f')}{bump}; most from "
+        f"({force_unit()} rms): {most}"
     )
 
 
 def _print_misses(result: MechanismResult) -> None:
     residual = result.residual
-    rows = [
-        ["design", ui.number(residual.press.rms_cN), ui.number(residual.release.rms_cN), "the slow curves"]
-    ]
+    rows = [["design", residual.press.rms_cN, residual.release.rms_cN, "the slow curves"]]
     for p in result.pressed:
         against = "the model at that speed" if p.own_speed else "the slow curves"
         name = f"twin {p.speed_mm_s:g} mm/s (simulated)"
-        rows.append([name, ui.number(p.press.rms_cN), ui.number(p.release.rms_cN), against])
-    ui.print_table(["missed, cN rms", "press", "release", "against"], rows)
+        rows.append([name, p.press.rms_cN, p.release.rms_cN, against])
+    ui.print_table(
+        [f"missed, {force_unit()} rms", ForceTitle("press"), ForceTitle("release"), "against"], rows
+    )
     if result.twin_refused:
         ui.print_wrapped(f"the twin cannot take this design: {result.twin_refused}")

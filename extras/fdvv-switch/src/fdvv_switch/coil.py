@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.force_text import force_text
 from fdvv_switch.material import WIRES, Wire, WIRE_SIZES_mm, coil_tolerance_mm, wire_tolerance_mm
 
 cN_PER_N = 100.0
@@ -137,8 +138,8 @@ def choose_coil(
     """
     if not (rate_cN_mm > 0 and preload_cN >= 0):
         raise ModelError(
-            f"a spring needs a rate above 0 and no negative preload, the curve asks for "
-            f"{rate_cN_mm:.1f} cN/mm and {preload_cN:.1f} cN"
+            "a spring needs a rate above 0 and no negative preload, the curve asks for "
+            f"{force_text(rate_cN_mm, '.1f', per='/mm')} and {force_text(preload_cN, '.1f')}"
         )
     refused: list[str] = []
     fit = [
@@ -149,7 +150,8 @@ def choose_coil(
     if not fit:
         why = max(set(refused), key=refused.count) if refused else "no wire has enough coils or few enough"
         raise ModelError(
-            f"no spring of {rate_cN_mm:.1f} cN/mm and {preload_cN:.1f} cN fits {envelope.outer_mm:g} mm by "
+            f"no spring of {force_text(rate_cN_mm, '.1f', per='/mm')} and {force_text(preload_cN, '.1f')} "
+            f"fits {envelope.outer_mm:g} mm by "
             f"{envelope.built_mm:g} mm: {why}"
         )
     return min(fit, key=_spread)

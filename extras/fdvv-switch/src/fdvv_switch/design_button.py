@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from fdvv.errors import InputError, ModelError
+from fdvv.force_text import force_text
 from fdvv.model.model import FDVVModel
 from fdvv.twin.button import ButtonPhysics
 from fdvv_switch.facts import facts_of, notes_of
@@ -171,7 +172,8 @@ def _chosen(kinds: Sequence[DesignedKind], name: str) -> DesignedKind:
 def _why(chosen: DesignedKind, kinds: Sequence[DesignedKind]) -> str:
     assert chosen.residual is not None
     others = [
-        f"{k.kind} " + ("cannot be made" if k.residual is None else f"{k.residual.worst_cN:.1f} cN")
+        f"{k.kind} "
+        + ("cannot be made" if k.residual is None else f"{force_text(k.residual.worst_cN, '.1f')}")
         for k in kinds
         if k is not chosen
     ]
@@ -179,7 +181,7 @@ def _why(chosen: DesignedKind, kinds: Sequence[DesignedKind]) -> str:
     verdict = "gives" if chosen.residual.met else "comes nearest to"
     return (
         f"a {chosen.kind} {verdict} the curves: its worse stroke misses by "
-        f"{chosen.residual.worst_cN:.1f} cN rms{beside}"
+        f"{force_text(chosen.residual.worst_cN, '.1f')} rms{beside}"
     )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.force_text import force_text
 from fdvv.model.curve import Stroke
 from fdvv.report import style
 from fdvv.units import FloatArray
@@ -104,7 +105,7 @@ def _legend(fig: Any, strokes: Sequence[DesignedStroke], bound_cN: float) -> Non
     ]
     if any(s.twin_mm is not None for s in strokes):
         handles.append(style.handle("the twin, slow", **TWIN))
-    handles.append(style.handle(f"± {bound_cN:g} cN", **BOUND))
+    handles.append(style.handle(f"± {force_text(bound_cN)}", **BOUND))
     fig.legend(handles, [str(h.get_label()) for h in handles], loc="outside lower center", ncols=len(handles))
 
 

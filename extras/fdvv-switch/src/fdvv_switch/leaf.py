@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.force_text import force_text
 from fdvv.units import FloatArray
 from fdvv_switch.coil import Coil, cN_PER_N
 from fdvv_switch.guide import Guide
@@ -196,7 +197,8 @@ def choose_leaf(preload_cN: float, stiffness_cN_mm: float, largest_cN: float, ma
     if not leaves:
         low, high = making.leaf_mm
         raise ModelError(
-            f"no strip of {making.strip} between {low:g} and {high:g} mm long has {stiffness_cN_mm:.0f} cN/mm"
+            f"no strip of {making.strip} between {low:g} and {high:g} mm long has "
+            f"{force_text(stiffness_cN_mm, '.0f', per='/mm')}"
         )
     best = min(leaves, key=lambda leaf: leaf.stress_MPa(largest_cN))
     if best.stress_MPa(largest_cN) > limit:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fdvv import __version__
+from fdvv.force_text import force_number, force_text, force_unit
 from fdvv.model.curve import Stroke
 from fdvv.report.report import Section, Table, render_html
 from fdvv.report.svg import figure_svg
@@ -43,9 +44,16 @@ def _curves(result: MechanismResult) -> Section:
     grid = plot_mechanism(designed_strokes(result), WANTED_cN, result.model.name)
     rows = []
     for name, miss in (("press", result.residual.press), ("release", result.residual.release)):
-        errors = (f"{miss.rms_cN:.2f}", f"{miss.seated_rms_cN:.2f}", f"{miss.largest_cN:+.1f}")
+        errors = (
+            *(force_number(cN, ".2f") for cN in (miss.rms_cN, miss.seated_rms_cN)),
+            force_number(miss.largest_cN, "+.1f"),
+        )
         rows.append((name, *errors, f"{miss.largest_mm:.2f}"))
-    columns = ("stroke", "rms (cN)", "rms from 0.1 mm (cN)", "largest (cN)", "at (mm)")
+    columns = (
+        "stroke",
+        *(f"{name} ({force_unit()})" for name in ("rms", "rms from 0.1 mm", "largest")),
+        "at (mm)",
+    )
     caption = f"Design less target, from 0 to {STOP_mm:g} mm before the bottom stop."
     sentences = tuple(f"{text[0].upper()}{text[1:]}." for text in result.residual.reasons)
     figure = figure_svg(grid[0, 0].figure, "Target, design, tolerance band and residual of press and release")
@@ -66,19 +74,29 @@ def _parts(result: MechanismResult) -> Section:
 def _tolerances(result: MechanismResult) -> Section:
     band = result.band
     rows = tuple(
-        (s.tolerance.name, s.tolerance.path, f"{s.tolerance.half:.3g}", f"{s.rms_cN:.2f}", s.tolerance.source)
+        (
+            s.tolerance.name,
+            s.tolerance.path,
+            f"{s.tolerance.half:.3g}",
+            force_number(s.rms_cN, ".2f"),
+            s.tolerance.source,
+        )
         for s in band.shares
     )
-    text = [f"Nine parts in ten give the press within {band.half_width_cN:.1f} cN of the middle, on average."]
+    text = [
+        f"Nine parts in ten give the press within {force_text(band.half_width_cN, '.1f')} of the middle, on "
+        "average."
+    ]
     for what, interval, digits in (
         ("Peak", band.peak_cN, 1),
         ("Valley", band.valley_cN, 1),
         ("Snap ratio", band.snap_ratio, 2),
     ):
         if interval:
-            unit = "" if digits == 2 else " cN"
-            text.append(f"{what}: {interval[0]:.{digits}f} to {interval[1]:.{digits}f}{unit}.")
-    columns = ("tolerance", "of", "±", "alone, rms (cN)", "source")
+            write, unit = (format, "") if digits == 2 else (force_number, f" {force_unit()}")
+            low, high = (write(end, f".{digits}f") for end in interval)
+            text.append(f"{what}: {low} to {high}{unit}.")
+    columns = ("tolerance", "of", "±", f"alone, rms ({force_unit()})", "source")
     caption = "What each tolerance does alone, at its limit; the first matters most."
     return Section("Tolerances", tuple(text), (), (Table(columns, rows, caption),))
 
@@ -87,13 +105,13 @@ def _kinds(result: MechanismResult) -> Section:
     rows = tuple(
         (
             k.kind,
-            "–" if k.residual is None else f"{k.residual.press.rms_cN:.2f}",
-            "–" if k.residual is None else f"{k.residual.release.rms_cN:.2f}",
+            "–" if k.residual is None else force_number(k.residual.press.rms_cN, ".2f"),
+            "–" if k.residual is None else force_number(k.residual.release.rms_cN, ".2f"),
             k.refused or "; ".join(k.residual.reasons if k.residual else ()),
         )
         for k in result.kinds
     )
-    columns = ("kind", "press, rms (cN)", "release, rms (cN)", "why")
+    columns = ("kind", *(f"{stroke}, rms ({force_unit()})" for stroke in ("press", "release")), "why")
     return Section("Kinds that were tried", (), (), (Table(columns, rows),))
 
 
@@ -105,7 +123,7 @@ def _twin(result: MechanismResult) -> Section:
         "default person at speeds. Simulated.",
     )
     rows = tuple(_pressed_row(p) for p in result.pressed)
-    columns = ("mm/s", "against", "press, rms (cN)", "release, rms (cN)")
+    columns = ("mm/s", "against", *(f"{stroke}, rms ({force_unit()})" for stroke in ("press", "release")))
     return Section("On the twin", text, (), (Table(columns, rows),))
 
 

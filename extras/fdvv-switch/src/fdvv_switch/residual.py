@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from fdvv.force_text import force_number, force_text
 from fdvv.units import FloatArray
 from fdvv_switch.dome import DomeMechanism
 from fdvv_switch.leaf import LeafMechanism
@@ -135,7 +136,8 @@ def _shape(target: Target, mechanism: Mechanism, press: FloatArray) -> Iterator[
             yield "the curve has no bump, a dome is made for one"
     elif wanted:
         yield (
-            f"the curve falls from {wanted[0]:.1f} to {wanted[1]:.1f} cN; the force of a coil only rises, "
+            f"the curve falls from {force_number(wanted[0], '.1f')} to {force_text(wanted[1], '.1f')}; the "
+            "force of a coil only rises, "
             "so none can give this bump"
         )
     else:
@@ -143,7 +145,8 @@ def _shape(target: Target, mechanism: Mechanism, press: FloatArray) -> Iterator[
         line = np.polynomial.Polynomial.fit(x, middle, 1)(x)
         if rms(middle - line) > TELLING_cN:
             yield (
-                f"the curve's elastic part leaves a straight line by {rms(middle - line):.1f} cN rms, "
+                f"the curve's elastic part leaves a straight line by {force_text(rms(middle - line), '.1f')} "
+                "rms, "
                 "a coil is a straight line"
             )
 
@@ -153,7 +156,8 @@ def _loop(target: Target, half_cN: FloatArray) -> Iterator[str]:
     wanted, got = target.half_loop_cN[inside], half_cN[inside]
     if rms(got - wanted) > TELLING_cN:
         yield (
-            f"half of the curve's loop goes from {wanted.min():.1f} to {wanted.max():.1f} cN over the "
+            f"half of the curve's loop goes from {force_number(wanted.min(), '.1f')} to "
+            f"{force_text(wanted.max(), '.1f')} over the "
             f"travel, that of the mechanism from {got.min():.1f} to {got.max():.1f}: one coefficient of "
             "friction cannot change along the way"
         )
@@ -167,6 +171,7 @@ def _start(target: Target, press: FloatArray, release: FloatArray) -> Iterator[s
     )
     if error > 3.0:
         yield (
-            f"up to {error:.0f} cN are missed before {SEATED_mm:g} mm, where the curves hold the give of the "
+            f"up to {force_text(error, '.0f')} are missed before {SEATED_mm:g} mm, where the curves hold the "
+            "give of the "
             "bench that measured them"
         )

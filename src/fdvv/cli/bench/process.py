@@ -13,6 +13,7 @@ from fdvv.bench.model import RecordedModel, capture_report, process_recording
 from fdvv.bench.vibration import recorded_vibrations
 from fdvv.cli import ui
 from fdvv.cli.options import Paces
+from fdvv.force_text import ForceTitle
 from fdvv.model.file import MODEL_SUFFIX, save_model
 from fdvv.preprocess.process import Settings
 from fdvv.report.report import write_report
@@ -79,7 +80,15 @@ def _print(found: RecordedModel, document: dict[str, Any]) -> None:
     said = ui.simulated(found.model.provenance.simulated)
     ui.print_wrapped(f"{found.model.name}{said}: {found.model.provenance.method}")
     ui.print_table(
-        ["curve", "asked mm/s", "achieved mm/s", "presses", "spread cN", "most", "RMSE cN", "bump kept"],
+        [
+            "curve",
+            "asked mm/s",
+            "achieved mm/s",
+            "presses",
+            *map(ForceTitle, ("spread {}", "most")),
+            ForceTitle("RMSE {}", 3),
+            "bump kept",
+        ],
         [
             [
                 *(c["stroke"], c["velocity_mm_s"], (c["achieved_mm_s"], c["achieved_spread_mm_s"])),
@@ -88,7 +97,7 @@ def _print(found: RecordedModel, document: dict[str, Any]) -> None:
             ]
             for c in document["curves"]
         ],
-        digits={"asked mm/s": 1, "achieved mm/s": 1, "RMSE cN": 3},
+        digits={"asked mm/s": 1, "achieved mm/s": 1},
     )
     for name in ("travel", "actuation", "reset"):
         value, spread = getattr(found.model, f"{name}_mm"), getattr(found.model, f"{name}_spread")

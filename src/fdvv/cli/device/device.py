@@ -20,6 +20,7 @@ from fdvv.device.remote import Remote, watch
 from fdvv.device.serial import serial_ports
 from fdvv.device.telemetry import TickColumns
 from fdvv.errors import BuildError
+from fdvv.force_text import ForceTitle, force_name, force_number, force_text
 from fdvv.protocol.tables import Fault, Mode, Part, SelfTestResult
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def line_of(columns: TickColumns, missing: int) -> Text:
 
     return Text(
         f"tick {columns.tick[-1]}  {columns.displacement_mm[-1]:7.3f} mm  "
-        f"{columns.velocity_mm_s[-1]:7.1f} mm/s  {columns.commanded_cN[-1]:7.1f} cN  "
+        f"{columns.velocity_mm_s[-1]:7.1f} mm/s  {force_text(columns.commanded_cN[-1], '7.1f')}  "
         f"state {columns.state[-1]}  missing {missing}"
     )
 
@@ -125,7 +126,12 @@ def info(spec: str, as_json: bool) -> None:
     flat = {k: v for k, v in document.items() if v is not None and not isinstance(v, dict)}
     flat |= document.get("load_cell") or {}
     flat |= document.get("counters", {})
-    ui.print_table(["what", "value"], [[k, str(v)] for k, v in flat.items()], left=2)
+    ui.print_table(["what", "value"], [_fact(*one) for one in flat.items()], left=2)
+
+
+def _fact(name: str, value: Any) -> list[object]:
+    title = force_name(name)
+    return [title, force_number(value) if isinstance(title, ForceTitle) else str(value)]
 
 
 def _firmware(found: Remote) -> dict[str, Any]:

@@ -21,6 +21,7 @@ from fdvv.cli.options import (
 )
 from fdvv.compensation.identification.rig_file import load_rig
 from fdvv.errors import InputError
+from fdvv.force_text import ForceTitle
 from fdvv.protocol.messages import head_of, travel_mm_of
 from fdvv.rendering.exciter import identify_exciter, prepare_exciter
 from fdvv.rendering.tuning import program_image
@@ -125,7 +126,7 @@ def press(speed_mm_s: float, presses: int, as_json: bool, **options: Any) -> Non
         ui.print_json({"device": info.name, "simulated": info.simulated, "presses": rows})
         return
     click.echo(f"{info.name}{ui.simulated(info.simulated)}, asked at {speed_mm_s:g} mm/s")
-    columns = ["press", "duration s", "deepest mm", "largest cN", "ticks"]
+    columns = ["press", "duration s", "deepest mm", ForceTitle("largest {}", 3), "ticks"]
     numbered = [[i, *row.values()] for i, row in enumerate(rows, 1)]
     ui.print_table(columns, numbered, digits=dict.fromkeys(columns, 3))
 

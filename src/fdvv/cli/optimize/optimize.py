@@ -61,8 +61,9 @@ def optimize() -> None:
 @ui.option("--seed", type=ui.COUNT, default=0, help="Of the run.")
 @rig_option
 @strip_options
+@ui.verbose_option
 @ui.json_option
-def run(folder: Path, strip: str | None, device: str, as_json: bool, **arguments: Any) -> None:
+def run(folder: Path, strip: str | None, device: str, verbose: bool, as_json: bool, **arguments: Any) -> None:
     """Begin an optimisation and play it to its end, with a simulated person or on an LED strip.
 
     The same options give the same trials. Ctrl-C stops between two trials; fdvv optimize resume goes on.
@@ -70,17 +71,18 @@ def run(folder: Path, strip: str | None, device: str, as_json: bool, **arguments
     ui.check_folder(folder)
     wanted = _request(strip=strip, **arguments)
     with on_strip(strip, device) as play, begin_run(folder, wanted) as session:
-        _play(session, play, as_json)
+        _play(session, play, as_json, verbose)
 
 
 @optimize.command()
 @folder_argument
 @strip_options
+@ui.verbose_option
 @ui.json_option
-def resume(folder: Path, strip: str | None, device: str, as_json: bool) -> None:
+def resume(folder: Path, strip: str | None, device: str, verbose: bool, as_json: bool) -> None:
     """Go on with the run in FOLDER that was stopped or killed; the next design is as if it had not been."""
     with on_strip(strip, device) as play, Optimization.open(folder) as session:
-        _play(session, play, as_json)
+        _play(session, play, as_json, verbose)
 
 
 @optimize.command()
@@ -133,16 +135,16 @@ def _request(
     return RunRequest(engine=name, options=options, budget=trials, person=simulated, **arguments)
 
 
-def _play(session: Optimization, play: Play | None, as_json: bool) -> None:
+def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool) -> None:
     ui.print_warnings(session.warnings)
     budget = session.setup.budget + session.retest_left + len(session.retests)
     with ui.progress("trials", budget) as move:
         try:
             if play is None:
-                player_of(session.setup).play(session, lambda trial: _on_trial(trial, budget, move))
+                player_of(session.setup).play(session, lambda trial: _on_trial(trial, budget, move, verbose))
             else:
                 for trial in play(session):
-                    _on_trial(trial, budget, move)
+                    _on_trial(trial, budget, move, verbose)
         except KeyboardInterrupt:
             kept = ui.counted(len(session.trials), "trial")
             raise KeyboardInterrupt(
@@ -155,8 +157,11 @@ def _play(session: Optimization, play: Play | None, as_json: bool) -> None:
         _print(session, document)
 
 
-def _on_trial(trial: Trial, budget: int, move: Any) -> None:
+def _on_trial(trial: Trial, budget: int, move: Any, verbose: bool) -> None:
     move(trial.number + 1, budget)
+    if verbose and trial.scores:
+        scores = ", ".join(f"{name} {score.value:.1f}" for name, score in trial.scores.items())
+        ui.print_stderr(f"trial {trial.number}: {scores}")
     if trial.reason:
         ui.print_warnings([f"trial {trial.number} failed: {trial.reason}"])
 

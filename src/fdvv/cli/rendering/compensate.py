@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,11 @@ from fdvv.cli.options import exciter_option, law_of, method_options, opened_exci
 from fdvv.cli.rendering.session import Pressing, beside, session_options
 from fdvv.compensation.identification.rig_file import save_rig as keep
 from fdvv.compensation.method import Tuning
+from fdvv.force_text import ForceTitle, force_text
 from fdvv.rendering.actuation_file import load_actuation, save_actuation
 from fdvv.rendering.compensate import compensate as learn
 from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.evaluation.verdict import headline
 from fdvv.rendering.evaluation.vibration_presses import Playback
 from fdvv.rendering.probe import ProbeResult
 from fdvv.rendering.probe import probe as judge
@@ -124,11 +127,14 @@ def probe(
     if as_json:
         ui.print_json(document)
     else:
-        _print_probe(document)
+        _print_probe(document, headline(result.curves))
         ui.print_written(figure, report)
     worst = max(document["curves"], key=lambda c: c["mean_error_cN"])
     if bound_cN is not None and worst["mean_error_cN"] > bound_cN:
-        reason = f"mean error of {worst['mean_error_cN']:.2f} cN exceeds the bound of {bound_cN:g} cN"
+        reason = (
+            f"mean error of {force_text(worst['mean_error_cN'], '.2f')} exceeds the bound of "
+            f"{force_text(bound_cN)}"
+        )
         raise ui.failed(f"{ui.curve_name(worst)}: {reason}")
 
 
@@ -158,13 +164,12 @@ def _print_head(document: dict[str, Any]) -> None:
     ui.print_wrapped(f"method: {document['method']}")
 
 
-def _print_probe(document: dict[str, Any]) -> None:
+def _print_probe(document: dict[str, Any], result: str) -> None:
     _print_head(document)
+    ui.print_wrapped(result)
     columns = [
         "curve",
-        "mean cN",
-        "max cN",
-        "ripple cN",
+        *map(ForceTitle, ("mean {}", "max {}", "ripple {}")),
         "> 1 JND",
         "at achieved",
         "to 0.6 mm",
@@ -199,8 +204,15 @@ def _print(document: dict[str, Any], as_json: bool) -> None:
         ui.print_json(document)
         return
     _print_head(document)
+    pressed = [
+        c for c in document["curves"] if c["error_cN"] and math.isfinite(c["max_error_cN"] or math.nan)
+    ]
+    if pressed:
+        mean_cN = sum(c["mean_error_cN"] for c in pressed) / len(pressed)
+        largest_cN = max(c["max_error_cN"] for c in pressed)
+        click.echo(f"mean error {force_text(mean_cN, '.1f')}, largest {force_text(largest_cN, '.1f')}")
     ui.print_table(
-        ["curve", "first cN", "last cN", "mean cN", "max cN"],
+        ["curve", *map(ForceTitle, ("first {}", "last {}", "mean {}", "max {}"))],
         [
             [
                 ui.curve_name(c),

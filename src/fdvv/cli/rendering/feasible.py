@@ -12,6 +12,7 @@ from fdvv.cli import ui
 from fdvv.cli.options import closing
 from fdvv.cli.rendering.session import Pressing, beside, session_options
 from fdvv.compensation.identification.rig_file import load_rig
+from fdvv.force_text import ForceTitle, force_text, force_unit
 from fdvv.model.model import FDVVModel
 from fdvv.rendering.actuation_file import load_actuation
 from fdvv.rendering.feasibility import feasibility, feasible_curves
@@ -22,7 +23,6 @@ NO_RIG = (
     "fdvv feasible needs --rig-known FILE.rig.json, what was learned from presses on this rig: "
     "identify it with fdvv compensate BUTTON --save-rig FILE.rig.json"
 )
-COLUMNS = ["curve", "largest cN", "bump kept", "margin", "expected cN", "measured cN", "verdict"]
 
 
 @click.command()
@@ -89,15 +89,20 @@ def _print(document: dict[str, Any]) -> None:
     ui.print_wrapped(
         f"{document['model']} on {document['device']}{ui.simulated(document['simulated'])}, {known}"
     )
-    digits = {"largest cN": 0, "margin": 1, "expected cN": 1, "measured cN": 1}
-    ui.print_table(COLUMNS, [_row(c) for c in document["curves"]], digits=digits)
+    columns = [
+        *("curve", ForceTitle("largest {}", 0), "bump kept", "margin"),
+        *(ForceTitle("expected {}", 1), ForceTitle("measured {}", 1), "verdict"),
+    ]
+    ui.print_table(columns, [_row(c) for c in document["curves"]], digits={"margin": 1})
     for curve in document["curves"]:
         for reason in curve["reasons"]:
             ui.print_wrapped(f"{ui.curve_name(curve)}: {reason}")
     for dose in document["thermal"]:
         ui.print_wrapped(_warmth(dose))
     click.echo("margin: stiffness that the loop bears under a finger, over the curve's steepest rise")
-    ui.echo("expected cN: mean error after compensation, an estimate; all but measured is computed")
+    click.echo(
+        f"expected {force_unit()}: mean error after compensation, an estimate; all but measured is computed"
+    )
 
 
 def _row(curve: dict[str, Any]) -> list[Any]:
@@ -117,5 +122,5 @@ def _warmth(dose: dict[str, Any]) -> str:
     often, held = dose["presses_per_min"], dose["held_s"]
     pressed = "at no pace" if often is None else f"beyond {often:.0f} presses a minute"
     down = "not when held down" if held is None else f"after {held:.0f} s held down"
-    rms = f"{dose['rms_cN']:.0f} cN rms over a press"
+    rms = f"{force_text(dose['rms_cN'], '.0f')} rms over a press"
     return f"warmth at {dose['velocity_mm_s']:g} mm/s: {rms}; derates {pressed}, {down}"

@@ -19,6 +19,7 @@ from fdvv.cli.options import closing, packed
 from fdvv.compensation.presses import AcceptanceLimits
 from fdvv.device.contract import Device
 from fdvv.device.open import pressed_by_person
+from fdvv.force_text import ForceTitle, force_number, force_text, force_unit
 from fdvv.rendering.session import MANIFEST, Session, read_manifest
 from fdvv.rendering.session_run import Guide, PressDone, PressRequest, VelocityProgress
 from fdvv.twin.files import FIRST_RIG, shipped_rigs
@@ -27,37 +28,35 @@ if TYPE_CHECKING:
     from rich.live import Live
 
 REDRAW_s = 0.1
-LINES = 10
-"""Where there is no terminal, simulated presses are reported in so many lines."""
 Cue = Callable[[float, Callable[[str], None]], None]
 KEPT = {"compensate": "best", "probe": "median"}
 """What the mean and the largest error of a curve are of."""
 
 
 @contextmanager
-def session_view(person: bool, quiet: bool) -> Iterator[LineView | TableView]:
+def session_view(person: bool, quiet: bool, verbose: bool = False) -> Iterator[LineView | TableView]:
     """Show a session on standard error, in place if it is a terminal.
 
-    person : someone presses and is shown the pace; quiet : tell only what a person at a device must know.
+    person : someone presses and is shown the pace; quiet : tell only what a person at a device must know;
+    verbose : show every simulated press and the table of velocities, not one line of progress.
     """
     with nullcontext() if quiet else ui.live() as live:
-        yield LineView(person, quiet) if live is None else TableView(person, live)
+        yield LineView(person, quiet, verbose) if live is None else TableView(person, live, verbose=verbose)
 
 
 class LineView:
-    """A line per press of a person, a few lines of simulated ones."""
+    """A line per press of a person; of simulated ones those that were not used, and the last."""
 
-    def __init__(self, person: bool, quiet: bool) -> None:
-        self._person, self._quiet = person, quiet
+    def __init__(self, person: bool, quiet: bool, verbose: bool = False) -> None:
+        self._person, self._quiet, self._verbose = person, quiet, verbose
 
     def ask(self, ask: PressRequest) -> None:
         if self._person:
             ui.print_stderr(request_line(ask))
 
     def done(self, event: PressDone) -> None:
-        step = max(1, event.presses_total // LINES)
-        due = self._person or event.skipped or event.presses_done % step == 0
-        if due and (self._person or not self._quiet):
+        last = event.presses_done == event.presses_total
+        if (self._person or self._verbose or event.skipped or last) and (self._person or not self._quiet):
             ui.print_stderr(press_line(event))
 
     def notice(self, text: str) -> None:
@@ -65,10 +64,11 @@ class LineView:
 
 
 class TableView:
-    """A row per velocity, the last press and the cue below them, redrawn in place."""
+    """The last press in one line, or below a row per velocity and above the cue; redrawn in place."""
 
-    def __init__(self, person: bool, live: Live, cue: Cue = show_cue) -> None:
+    def __init__(self, person: bool, live: Live, cue: Cue = show_cue, verbose: bool = True) -> None:
         self._person, self._live, self._cue = person, live, cue
+        self._table = person or verbose
         self._rows: tuple[VelocityProgress, ...] = ()
         self._line, self._kept, self._drawn_s = "", "best", 0.0
 
@@ -92,7 +92,10 @@ class TableView:
         from rich.console import Group
         from rich.text import Text
 
-        errors = (f"{self._kept} mean", "max cN")
+        if not self._table:
+            self._live.update(Text(self._line, no_wrap=True, overflow="ellipsis"), refresh=True)
+            return
+        errors = (f"{self._kept} mean", f"max {force_unit()}")
         columns = ["velocity", "presses", "press: last", *errors, "release: last", *errors]
         table = ui.rich_table(columns, map(cells, self._rows))
         self._live.update(Group(table, *map(Text, (self._line, *lines))), refresh=True)
@@ -121,7 +124,7 @@ def cells(row: VelocityProgress) -> list[str]:
     for stroke in ("press", "release"):
         curve = next((c for c in row.curves if str(c.stroke) == stroke and c.error_cN), None)
         figures = (curve.error_cN[-1], curve.mean_error_cN, curve.max_error_cN) if curve else (None,) * 3
-        found += [ui.number(value, 1) for value in figures]
+        found += ["–" if value is None else force_number(value, ".1f") for value in figures]
     return found
 
 
@@ -145,6 +148,7 @@ class Pressing:
     velocities_mm_s: tuple[float, ...]
     folder: Path | None
     pace_ratio: float
+    verbose: bool = False
 
     def on_recommended_rig(self) -> Pressing:
         """Return the same on the recommended rig, if a device that can simulate it has no other."""
@@ -170,7 +174,7 @@ class Pressing:
         """Open the device, show the session, and let the device go at the end, whatever happens."""
         with (
             closing(session.open_device(self.device)) as found,
-            session_view(pressed_by_person(self.device), as_json) as view,
+            session_view(pressed_by_person(self.device), as_json, self.verbose) as view,
         ):
             yield found, view, Guide(view.ask, view.notice)
 
@@ -192,6 +196,7 @@ session_options = packed(
         "--pace-tolerance", "pace_ratio", type=ui.PART, default=0.35,
         help="Part by which a press may miss its speed and still be used.",
     ),
+    ui.verbose_option,
 )  # fmt: skip
 
 
@@ -225,14 +230,14 @@ def print_receipt(found: dict[str, Any]) -> None:
         return
     columns = ("presses", "first_cN", "last_cN", "best_cN", "mean_cN", "max_cN")
     ui.print_table(
-        ["curve", "presses", "first cN", "last cN", "best cN", "mean cN", "max cN"],
+        ["curve", "presses", *map(ForceTitle, ("first {}", "last {}", "best {}", "mean {}", "max {}"))],
         [[ui.curve_name(c), *(c[k] for k in columns)] for c in found["curves"]],
     )
 
 
 def _rig(device: dict[str, Any]) -> str:
     facts = [
-        f"rig: up to {device['force_limit_cN']:.0f} cN, {device['travel_limit_mm']:.1f} mm",
+        f"rig: up to {force_text(device['force_limit_cN'], '.0f')}, {device['travel_limit_mm']:.1f} mm",
         f"{1 / device['tick_s']:.0f} Hz",
     ]
     if "serial" in device:

@@ -13,6 +13,7 @@ from fdvv.compensation.feasibility.stability import BUZZES, ENOUGH, HUNTS, SPAN_
 from fdvv.compensation.feasibility.thermal import ThermalDose
 from fdvv.compensation.identification.balance import DRAG_cN, cN_PER_g_m_s2, true_runs
 from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.force_text import force_number, force_text
 from fdvv.units import FloatArray
 
 KEPT_RATIO, LOST_RATIO = 0.9, 0.5
@@ -66,7 +67,7 @@ def follow_verdict(
         text = f"its travel is {travel_mm:g} mm, the stop allows {travel_limit_mm:g}: shorten the button"
         found.append(InfeasibilityReason(True, text))
     if not found and reached.missed_cN > MISSED_cN:
-        text = f"holding and lag smear {reached.missed_cN:.1f} cN of it on average"
+        text = f"holding and lag smear {force_text(reached.missed_cN, '.1f')} of it on average"
         found.append(InfeasibilityReason(False, f"{text}: press slower, or use a faster loop"))
     found.sort(key=lambda reason: not reason.cannot)
     worst = Following.FOLLOWS if not found else Following.CANNOT if found[0].cannot else Following.PARTLY
@@ -79,17 +80,20 @@ def _force(reached: AchievableStroke, limits: RigLimits) -> Iterator[Infeasibili
     if reached.saturated.any():
         rows = np.flatnonzero(reached.saturated)
         at = int(rows[np.argmax(np.abs(reached.command_cN[rows]))])
-        missing, most = f"up to {lost[rows].max():.0f} cN are missing", limits.force_limit_cN
+        missing, most = f"up to {force_text(lost[rows].max(), '.0f')} are missing", limits.force_limit_cN
         yield InfeasibilityReason(
             grave,
-            f"needs a command of {reached.command_cN[at]:.0f} cN at {x[at]:.2f} mm, the limit is {most:.0f}: "
+            f"needs a command of {force_text(reached.command_cN[at], '.0f')} at {x[at]:.2f} mm, the limit is "
+            f"{force_number(most, '.0f')}: "
             f"{missing} {_between(x, reached.saturated)}; lower the force there, or press slower",
         )
     if reached.slewed.any():
         yield InfeasibilityReason(
             grave,
-            f"changes faster than {limits.slew_cN_tick:.0f} cN per tick {_between(x, reached.slewed)}: "
-            f"up to {lost[reached.slewed].max():.0f} cN are missing; soften the flank there, or raise the "
+            f"changes faster than {force_text(limits.slew_cN_tick, '.0f')} per tick "
+            f"{_between(x, reached.slewed)}: "
+            f"up to {force_text(lost[reached.slewed].max(), '.0f')} are missing; soften the flank there, or "
+            "raise the "
             "slew limit",
         )
 
@@ -99,7 +103,8 @@ def _bump(reached: AchievableStroke) -> Iterator[InfeasibilityReason]:
         return
     yield InfeasibilityReason(
         reached.kept_ratio < LOST_RATIO,
-        f"{100 * reached.kept_ratio:.0f} % of the bump's drop of {reached.drop_cN:.0f} cN are left: "
+        f"{100 * reached.kept_ratio:.0f} % of the bump's drop of {force_text(reached.drop_cN, '.0f')} are "
+        "left: "
         "widen its flank, press slower, or use a faster loop and coil",
     )
 
@@ -111,14 +116,17 @@ def _stability(stable: Stability) -> Iterator[InfeasibilityReason]:
         near = f"between {max(0.0, slope.rise_mm - SPAN_mm):.2f} and {slope.rise_mm + SPAN_mm:.2f} mm"
         yield InfeasibilityReason(
             stable.margin < BUZZES,
-            f"{how} under a finger: it rises by {slope.rise_cN_mm:.0f} cN/mm, stable up to "
-            f"{stable.finger_cN_mm:.0f}: shorten the loop, or soften the rise {near}",
+            f"{how} under a finger: it rises by {force_text(slope.rise_cN_mm, '.0f', per='/mm')}, stable up "
+            "to "
+            f"{force_number(stable.finger_cN_mm, '.0f')}: shorten the loop, or soften the rise {near}",
         )
     if stable.step_margin < HUNTS:
         yield InfeasibilityReason(
             False,
-            f"may buzz under a finger that pauses: release lies {stable.step_cN:.0f} cN below press at "
-            f"{stable.step_mm:.2f} mm, stable up to {stable.step_limit_cN:.0f}: narrow the gap, or "
+            f"may buzz under a finger that pauses: release lies {force_text(stable.step_cN, '.0f')} below "
+            "press at "
+            f"{stable.step_mm:.2f} mm, stable up to {force_number(stable.step_limit_cN, '.0f')}: narrow the "
+            "gap, or "
             "lengthen the reversal distance",
         )
 
@@ -129,12 +137,12 @@ def _warmth(dose: ThermalDose) -> Iterator[InfeasibilityReason]:
         yield InfeasibilityReason(
             often <= 0,
             f"the coil derates at more than {often:.0f} presses a minute "
-            f"({dose.rms_cN:.0f} cN rms): lower the forces, or cool the coil",
+            f"({force_text(dose.rms_cN, '.0f')} rms): lower the forces, or cool the coil",
         )
     if held is not None and held < HELD_s:
         yield InfeasibilityReason(
             False,
-            f"the coil derates after {held:.1f} s held at the bottom ({dose.dwell_cN:.0f} cN): "
+            f"the coil derates after {held:.1f} s held at the bottom ({force_text(dose.dwell_cN, '.0f')}): "
             "lower the force at the bottom",
         )
 

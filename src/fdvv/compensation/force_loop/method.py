@@ -43,6 +43,7 @@ from fdvv.compensation.rig_learning import (
     tuning_of,
 )
 from fdvv.errors import ModelError
+from fdvv.force_text import force_number, force_text
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import CellSpec, ForceLoopGains
@@ -144,7 +145,10 @@ class ForceLoop:
         strokes = _strokes(state.job, state.response, self.tick_s, at)
         pair, corrections = _learn(press, state, strokes, at)
         pressed = (*state.pressed[:at], (*state.pressed[at], pair), *state.pressed[at + 1 :])
-        message = f"mean error {pair[0].mean_cN:.1f} cN on the press, {pair[1].mean_cN:.1f} on the release"
+        message = (
+            f"mean error {force_text(pair[0].mean_cN, '.1f')} on the press, "
+            f"{force_number(pair[1].mean_cN, '.1f')} on the release"
+        )
         return replace(state, corrections=corrections, pressed=pressed, message=message)
 
     def explain(self, state: LoopState) -> str:

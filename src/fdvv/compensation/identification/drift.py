@@ -27,6 +27,7 @@ from fdvv.compensation.identification.estimation import RigEstimation
 from fdvv.compensation.identification.identify import along, parameter_vector, residual_cN
 from fdvv.compensation.identification.own_force import NODES
 from fdvv.compensation.identification.rig_model import Prior, RigModel
+from fdvv.force_text import force_number, force_text, force_unit
 from fdvv.model.press import Press
 from fdvv.units import FloatArray
 
@@ -129,7 +130,8 @@ def find_drift(
     left = residual_cN(problem, numbers + sum(size * change.along for change, size in changes), runs)
     if left > outlier_cN:
         messages.append(
-            f"{left:.1f} cN rms unexplained, {rig.residual_cN:.1f} before; identify the rig again"
+            f"{force_text(left, '.1f')} rms unexplained, {force_number(rig.residual_cN, '.1f')} before; "
+            "identify the rig again"
         )
     return RigDrift(", ".join(messages), outlier)
 
@@ -213,4 +215,7 @@ def _message(change: _Change, size: float) -> str:
     digits = 2 if change.unit == "ms" else 1
     to = change.was + size
     share = f" ({size / change.was:+.0%})" if change.was > 0.1 * abs(size) else ""
-    return f"{change.name} {moved} from {change.was:.{digits}f} to {to:.{digits}f} {change.unit}{share}"
+    unit = change.unit.replace("cN", force_unit())
+    write = force_number if "cN" in change.unit else format
+    was, now = (write(value, f".{digits}f") for value in (change.was, to))
+    return f"{change.name} {moved} from {was} to {now} {unit}{share}"

@@ -7,6 +7,7 @@ import numpy as np
 from fdvv.compensation.presses import HOME_mm
 from fdvv.compensation.tables import smooth
 from fdvv.errors import ModelError
+from fdvv.force_text import force_number, force_text
 from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray
 
@@ -40,7 +41,8 @@ def identification_surface(
     """
     if not (ripple_cN >= 0 and limit_cN > HOLD_cN):
         raise ModelError(
-            f"ripples need 0 cN or more within a limit above {HOLD_cN:g} cN, got {ripple_cN}, {limit_cN}"
+            f"ripples need a force of 0 or more within a limit above {force_text(HOLD_cN)}, got "
+            f"{force_number(ripple_cN)}, {force_number(limit_cN)}"
         )
     x = target.displacement_mm
     levels = weight_cN + LEVEL_ratio * ripple_cN * ((np.arange(target.velocity_mm_s.size) + turn) % 2)

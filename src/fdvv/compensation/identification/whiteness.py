@@ -19,6 +19,7 @@ from fdvv.compensation.identification.balance import (
 )
 from fdvv.compensation.identification.estimation import RigEstimation, Unknown, WindowRun, whitened_runs
 from fdvv.compensation.identification.own_force import hats
+from fdvv.force_text import force_text
 from fdvv.units import FloatArray
 
 CHANCE = 1e-3
@@ -60,7 +61,8 @@ class Whiteness:
         """What the model lacks and what to do, in one sentence; empty if nothing shows."""
         if self.repeating > REPEATS and self.repeating_cN > NOTICED_cN:
             return (
-                f"the residual repeats over displacement: {self.repeating_cN:.1f} cN rms that change sign "
+                f"the residual repeats over displacement: {force_text(self.repeating_cN, '.1f')} rms that "
+                "change sign "
                 f"between press and release, most at {self.repeating_mm:.1f} mm, which no number describes; "
                 "look for something that binds or rubs there, then identify again"
             )

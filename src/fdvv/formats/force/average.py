@@ -24,6 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fdvv.force_text import force_number, force_text
 from fdvv.formats.force.types import Cycle, ForceFile
 from fdvv.model.bump import first_loaded
 from fdvv.model.curve import MeasuredCurve, Stroke
@@ -113,7 +114,10 @@ def _force_differs(stroke: Stroke, a: Shape, b: Shape, travel_mm: float) -> str:
     off = float(np.median(np.abs(theirs - mine)))
     limit = max(FORCE_LEAST_cN, FORCE_PART * float(np.median(np.abs(mine))))
     if off > limit:
-        return f"force of the {stroke} differs by {off:.2f} cN (median), more than {limit:.2f}"
+        return (
+            f"force of the {stroke} differs by {force_text(off, '.2f')} (median), more than "
+            f"{force_number(limit, '.2f')}"
+        )
     return ""
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from fdvv.force_text import force_text
 from fdvv.formats.force.repair import contact_mm, runs, samples, where_x
 from fdvv.formats.force.types import Notes, Track
 
@@ -20,7 +21,7 @@ bar measured)."""
 SLIP_CLIMB_mm = 0.1
 RECURS_mm = 0.2
 """The same feature of two cycles lies within this, from contact."""
-KEPT = "{places}: the force leaps by up to {most:.1f} cN and back, alike in several cycles; it was kept"
+KEPT = "{places}: the force leaps by up to {force} and back, alike in several cycles; it was kept"
 STUCK_DROP_cN = 15.0
 STUCK_RISE_cN_mm = 150.0
 STUCK_WIDTH_mm = 0.5
@@ -49,7 +50,8 @@ def drop_spikes(track: Track, notes: Notes, repeats: Sequence[Track] = ()) -> Tr
     for one in _foreign(track, _spikes, notes, repeats):
         keep[one.first : one.last + 1] = False
         notes.say(
-            f"{where_x(track, one.first, one.last)}: the force leaps to {track.force_cN[one.worst]:.1f} cN "
+            f"{where_x(track, one.first, one.last)}: the force leaps to "
+            f"{force_text(track.force_cN[one.worst], '.1f')} "
             f"and back; {samples(one.last - one.first + 1)} left out"
         )
     return track.take(keep) if not keep.all() else track
@@ -118,7 +120,8 @@ def drop_stuck_probe(track: Track, notes: Notes, repeats: Sequence[Track] = ()) 
         fell_cN = track.force_cN[one.last] - track.force_cN[one.last + 1]
         notes.say(
             f"{where_x(track, one.first, one.last)}: the probe stuck, the force climbs to "
-            f"{track.force_cN[one.worst]:.1f} cN and falls by {fell_cN:.1f} cN in one sample; "
+            f"{force_text(track.force_cN[one.worst], '.1f')} and falls by {force_text(fell_cN, '.1f')} in "
+            "one sample; "
             f"{samples(one.last - one.first + 1)} left out"
         )
     return track.take(keep) if not keep.all() else track

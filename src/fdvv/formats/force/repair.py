@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from fdvv.force_text import force_text
 from fdvv.formats.force.types import Notes, RawCycle, Track
 from fdvv.model.bump import LOADED_cN, bounds_of_runs, find_contact_mm, first_loaded
 from fdvv.model.curve import MeasuredCurve, Stroke
@@ -37,7 +38,7 @@ def where_x(track: Track, first: int, last: int) -> str:
 def drop_impossible(track: Track, notes: Notes) -> Track:
     """Leave out samples beyond a metre or a kilonewton."""
     bad = (np.abs(track.x_mm) > FAR_mm) | (np.abs(track.force_cN) > STRONG_cN)
-    return _drop(track, bad, notes, "{x_mm:.3g} mm, {force_cN:.3g} cN cannot be")
+    return _drop(track, bad, notes, "{x_mm:.3g} mm, {force} cannot be")
 
 
 def drop_stray_positions(track: Track, notes: Notes) -> Track:
@@ -51,11 +52,11 @@ def drop_stray_positions(track: Track, notes: Notes) -> Track:
 
 
 def _drop(track: Track, bad: npt.NDArray[np.bool_], notes: Notes, fault: str) -> Track:
-    """Leave samples out; fault describes the first, whose x_mm and force_cN it may name."""
+    """Leave samples out; fault describes the first, whose x_mm and force it may name."""
     if not bad.any():
         return track
     first = int(np.argmax(bad))
-    said = fault.format(x_mm=track.x_mm[first], force_cN=track.force_cN[first])
+    said = fault.format(x_mm=track.x_mm[first], force=force_text(track.force_cN[first], ".3g"))
     notes.say(f"{track.where}, sample {first + 1}: {said}; {samples(int(bad.sum()))} left out")
     return track.take(~bad)
 
@@ -81,7 +82,8 @@ def drop_lost_tare(track: Track, notes: Notes) -> Track:
         return track
     at = 0 if start else pulling.size - 1
     notes.say(
-        f"{track.where}, {'begins' if start else 'ends'} at {track.force_cN[at]:.1f} cN in the air, the "
+        f"{track.where}, {'begins' if start else 'ends'} at {force_text(track.force_cN[at], '.1f')} in the "
+        "air, the "
         f"tare was lost; {samples(pulling.size - (end - start))} left out"
     )
     return track.take(slice(start, end))
@@ -174,8 +176,9 @@ def warn_of_touches(curve: MeasuredCurve, where: str, notes: Notes) -> None:
     if touching.any():
         place = float(curve.displacement_mm[touching][0])
         notes.say(
-            f"{where} at {place:.3f} mm: the force touches {curve.force_cN[touching].max():.1f} cN in the "
-            f"air and falls back; it is not taken for contact"
+            f"{where} at {place:.3f} mm: the force touches "
+            f"{force_text(curve.force_cN[touching].max(), '.1f')} in the "
+            "air and falls back; it is not taken for contact"
         )
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy.typing as npt
 
+from fdvv.force_text import force_text
 from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.units import FloatArray
 
@@ -137,7 +138,7 @@ class Notes:
             self.sentences.append(sentence)
 
     def tally(self, template: str, where: str, amount: float) -> None:
-        """Count one more place; ``template`` has {places} and {most}, the greatest amount."""
+        """Count one more place; ``template`` has {places}, and the greatest amount as {most} or {force}."""
         self.tallies.setdefault(template, []).append((where, amount))
 
     def lines(self) -> tuple[str, ...]:
@@ -146,6 +147,7 @@ class Notes:
             template.format(
                 places=", ".join(dict.fromkeys(where for where, _ in found)),
                 most=max(amount for _, amount in found),
+                force=force_text(max(amount for _, amount in found), ".1f"),
             )
             for template, found in self.tallies.items()
         ]

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from fdvv import __version__
+from fdvv.force_text import force_text
 from fdvv.io.documents import finite
 from fdvv.io.files import write_atomic
 from fdvv.optimize.experiment.experiment import ExperimentResult, ExperimentVerdict
@@ -309,4 +310,4 @@ def _winner_paragraphs(rendered: RenderedWinner) -> tuple[str, ...]:
 
 
 def _errors(by_stroke: dict[str, float]) -> str:
-    return ", ".join(f"{stroke} {error:.2f} cN" for stroke, error in by_stroke.items())
+    return ", ".join(f"{stroke} {force_text(error, '.2f')}" for stroke, error in by_stroke.items())

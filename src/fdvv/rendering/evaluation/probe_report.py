@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from fdvv import __version__
+from fdvv.force_text import force_number, force_unit
 from fdvv.model.noticeable import SOURCES, JndSource
 from fdvv.rendering.evaluation.noticed import Noticed, noticed
 from fdvv.rendering.evaluation.probe_curve import ENTRY_mm, ProbeCurve
@@ -42,7 +43,8 @@ def _force(result: ProbeResult) -> Section:
 def noticed_table(curves: Sequence[ProbeCurve]) -> Table:
     """Return errors of force and shares of the stroke above one JND."""
     columns = (
-        "curve", "mean (cN)", "max (cN)", "ripple (cN)", "above 1 JND (%)", "achieved (%)",
+        "curve", *(f"{name} ({force_unit()})" for name in ("mean", "max", "ripple")), "above 1 JND (%)",
+        "achieved (%)",
         f"to {ENTRY_mm:g} mm (%)", "with vibration (%)", "excess (JND)",
     )  # fmt: skip
     caption = (
@@ -59,9 +61,9 @@ def _noticed_row(curve: ProbeCurve) -> tuple[str, ...]:
     found = curve.outcome
     return (
         _name(curve),
-        f"{found.mean_error_cN:.2f}",
-        f"{found.max_error_cN:.1f}",
-        "–" if curve.ripple_cN is None else f"{curve.ripple_cN:.1f}",
+        force_number(found.mean_error_cN, ".2f"),
+        force_number(found.max_error_cN, ".1f"),
+        "–" if curve.ripple_cN is None else force_number(curve.ripple_cN, ".1f"),
         *(_percent(share) for share in shares),
         f"{curve.total.excess_JND:.2f}",
     )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fdvv.force_text import force_number, force_unit
 from fdvv.model.curve import Stroke
 from fdvv.rendering.evaluation.noticed import noticed
 from fdvv.rendering.evaluation.probe_curve import ProbeCurve
@@ -64,7 +65,8 @@ def headline(curves: Sequence[ProbeCurve], before: Sequence[ProbeCurve] = (), pr
         return ""
     parts = (_fell(_mean_cN(before), _mean_cN(curves)), _fell(_largest_cN(before), _largest_cN(curves)))
     where = f" on {presses}" if presses else ""
-    return f"Mean error {parts[0]} cN{where}, largest {parts[1]}; {_noticed_where(curves)}"
+    mean, largest = (f"{part} {force_unit()}" for part in parts)
+    return f"Mean error {mean}{where}, largest {largest}; {_noticed_where(curves)}"
 
 
 def headline_figures(
@@ -75,10 +77,10 @@ def headline_figures(
     The mean and the largest error of force, and how much of the strokes is above one JND of force.
     """
     return (
-        (f"{_fell(_mean_cN(before), _mean_cN(curves))} cN", "mean error of force"),
-        (f"{_fell(_largest_cN(before), _largest_cN(curves))} cN", "largest error"),
+        (f"{_fell(_mean_cN(before), _mean_cN(curves))} {force_unit()}", "mean error of force"),
+        (f"{_fell(_largest_cN(before), _largest_cN(curves))} {force_unit()}", "largest error"),
         (
-            f"{_fell(_noticed_percent(before), _noticed_percent(curves))} %",
+            f"{_percents(_noticed_percent(before), _noticed_percent(curves))} %",
             "of the strokes a finger would notice",
         ),
     )
@@ -131,7 +133,12 @@ def _largest_cN(curves: Sequence[ProbeCurve]) -> float | None:
 
 
 def _fell(before_cN: float | None, after_cN: float | None) -> str:
-    return " → ".join(f"{cN:.{0 if cN >= 10 else 1}f}" for cN in (before_cN, after_cN) if cN is not None)
+    both = (cN for cN in (before_cN, after_cN) if cN is not None)
+    return " → ".join(force_number(cN, f".{0 if cN >= 10 else 1}f") for cN in both)
+
+
+def _percents(*percents: float | None) -> str:
+    return " → ".join(f"{one:.{0 if one >= 10 else 1}f}" for one in percents if one is not None)
 
 
 def _noticed_where(curves: Sequence[ProbeCurve]) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 
 import msgspec
 
+from fdvv.force_text import force_number, force_unit
 from fdvv.report.report import Section, Table, render_html
 from fdvv.stats.orders import williams_orders
 from fdvv.study.admin.review import StudyReview
@@ -223,9 +224,9 @@ def _items(review: StudyReview) -> Table:
         rows += _named([item.name], what)
     if not review.differences_cN:
         return Table(("button", "what", "rendered"), tuple(rows), MEANT)
-    apart = {name: f"{value:.1f}" for name, value in review.differences_cN.items()}
+    apart = {name: force_number(value, ".1f") for name, value in review.differences_cN.items()}
     caption = f"{MEANT} Apart: rms difference of force of the two nearest, both strokes at 50 to 200 mm/s."
-    columns = ("button", "what", "rendered", "apart (cN)")
+    columns = ("button", "what", "rendered", f"apart ({force_unit()})")
     return Table(columns, tuple((*row, apart.get(row[0], "")) for row in rows), caption)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from msgspec import structs
 
 from fdvv.errors import DeviceError, FdvvError, InputError
+from fdvv.force_text import force_text
 from fdvv.live.press_subject import TABLES_RIG
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
@@ -126,7 +127,8 @@ def _alike(item: Item, models: dict[Stimulus, FDVVModel]) -> Iterator[str]:
 def _doubts(item: Item, difference_cN: float | None) -> Iterator[str]:
     if difference_cN is not None and difference_cN < ALIKE_cN:
         yield (
-            f"items ({item.name!r}): forces of two renderings differ by {difference_cN:.2f} cN only, rms; "
+            f"items ({item.name!r}): forces of two renderings differ by {force_text(difference_cN, '.2f')} "
+            "only, rms; "
             "if vibration does not tell them apart, nothing does"
         )
     if len({bool(stimulus.actuation) for stimulus in item.rendered}) > 1:

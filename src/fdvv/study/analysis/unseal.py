@@ -12,6 +12,7 @@ import msgspec
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
+from fdvv.force_text import force_number, force_text
 from fdvv.io.files import make_private, private_folder, write_atomic
 from fdvv.rendering.session import now
 from fdvv.study.analysis.code_book import csv_text, write_answers
@@ -46,7 +47,8 @@ def trial_reason(rule: Exclusion, rendered: Sequence[Rendered]) -> str:
     worst = max(float(np.median(errors)) if errors else 0.0 for errors in known)
     if worst > rule.error_cN:
         return (
-            f"half the presses of a rendering missed its force by {worst:.1f} cN, more than {rule.error_cN:g}"
+            f"half the presses of a rendering missed its force by {force_text(worst, '.1f')}, more than "
+            f"{force_number(rule.error_cN)}"
         )
     return ""
 

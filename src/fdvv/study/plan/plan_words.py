@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterator
 from importlib import resources
 
+from fdvv.force_text import force_text
 from fdvv.study.plan.plan import Item, Question, Rating, Stimulus, StudyPlan
 from fdvv.study.plan.schedule import LABELS
 from fdvv.study.plan.staircase import target_share
@@ -120,7 +121,9 @@ def reference_text(plan: StudyPlan, item: Item) -> str:
 
 def exclusion_texts(plan: StudyPlan) -> tuple[str, ...]:
     rules = plan.exclusion
-    texts = [f"a trial in which half the presses of a rendering missed by over {rules.error_cN:g} cN, rms"]
+    texts = [
+        f"a trial in which half the presses of a rendering missed by over {force_text(rules.error_cN)}, rms"
+    ]
     if rules.presses:
         times = "once" if rules.presses == 1 else f"{rules.presses} times"
         texts.append(f"a trial in which a rendering was pressed less than {times}")

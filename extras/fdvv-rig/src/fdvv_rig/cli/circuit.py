@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
+from fdvv.force_text import force_number, force_text, force_unit
 
 rig_option = ui.option(
     "--rig",
@@ -113,10 +114,7 @@ def _print(report: dict[str, Any]) -> None:
     click.echo("")
     ui.print_table(
         ["step of the converter", "at the pin mV", "value", "unit"],
-        [
-            [s["name"], *(f"{s[key]:.3f}" for key in ("volts_mV", "value")), s["unit"]]
-            for s in report["converter_steps"]
-        ],
+        [[s["name"], f"{s['volts_mV']:.3f}", *_step(s)] for s in report["converter_steps"]],
     )
     click.echo("")
     ui.print_table(
@@ -130,10 +128,16 @@ def _print(report: dict[str, Any]) -> None:
     ui.print_wrapped(_coil(report["coil"]))
 
 
+def _step(step: dict[str, Any]) -> tuple[str, str]:
+    if step["unit"] == "cN":
+        return force_number(step["value"], ".3f"), force_unit()
+    return f"{step['value']:.3f}", step["unit"]
+
+
 def _coil(coil: dict[str, Any]) -> str:
-    at = f"coil at {coil['force_cN']:.0f} cN: {coil['current_A']:.2f} A, {coil['heat_W']:.1f} W"
+    at = f"coil at {force_text(coil['force_cN'], '.0f')}: {coil['current_A']:.2f} A, {coil['heat_W']:.1f} W"
     if "chop_A" in coil:
         warm = f"{coil['rise_K']:.0f} K warmer if held for ever"
         return f"{at}, {warm}; the bridge chops at {coil['chop_A']:.2f} A"
-    step = f"a step of the converter {coil['step_cN']:.2f} cN"
+    step = f"a step of the converter {force_text(coil['step_cN'], '.2f')}"
     return f"{at}; bandwidth of the current {coil['loop_Hz']:.0f} Hz; {step}"

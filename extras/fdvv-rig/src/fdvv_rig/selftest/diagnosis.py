@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
+from fdvv.force_text import force_text
 from fdvv_rig.selftest.evidence import Evidence, GAUGES_mm
 
 
@@ -171,10 +172,12 @@ def _slider(evidence: Evidence, bounds: Bounds) -> Judgement:
     if hung and not _moves(evidence):
         return _failed("it stays where it was put, and no force moves it", remedy)
     if evidence.empty.moved and friction > bounds.friction_cN:
-        return _failed(f"friction {friction:.0f} cN", remedy)
+        return _failed(f"friction {force_text(friction, '.0f')}", remedy)
     if hung and not evidence.empty.moved:
         return _failed("it stays where it was put", remedy)
-    return _passed(f"friction {friction:.1f} cN" if evidence.empty.moved else "falls by its own weight")
+    return _passed(
+        f"friction {force_text(friction, '.1f')}" if evidence.empty.moved else "falls by its own weight"
+    )
 
 
 def _moves(evidence: Evidence) -> bool:
@@ -211,7 +214,7 @@ def _coil(evidence: Evidence, bounds: Bounds) -> Judgement:
             "cannot lift the weight", "measure coil and driver; is the coil centred in its magnet?"
         )
     gain = evidence.gain or 0.0
-    seen = f"force {gain:.2f} of the command, lifts {lift.weight_cN:.1f} cN"
+    seen = f"force {gain:.2f} of the command, lifts {force_text(lift.weight_cN, '.1f')}"
     if not bounds.gain_low <= gain <= bounds.gain_high:
         remedy = "measure the coil's resistance and R8; centre the coil; then set duty_gain_q16"
         return _failed(f"wrong force: {seen}", remedy)
@@ -236,7 +239,10 @@ def _force(evidence: Evidence, bounds: Bounds) -> Judgement:
     if not (math.isfinite(zero) and math.isfinite(loaded)):
         return NO_READING
     gain = (loaded - zero) / evidence.weight_cN
-    seen = f"{loaded:.1f} cN under {evidence.weight_cN:.1f} cN, {zero:+.1f} cN without"
+    seen = (
+        f"{force_text(loaded, '.1f')} under {force_text(evidence.weight_cN, '.1f')}, "
+        f"{force_text(zero, '+.1f')} without"
+    )
     if gain < -0.2:
         return _failed(f"reads backwards: {seen}", "turn it round; is the plug reversed?")
     if gain < 0.2:
