@@ -86,7 +86,9 @@ def test_what_a_press_found_is_said_with_the_next_step(page: Page, wire: Wire) -
     assert found is not None
     places = [wire.events(kind)[0]["displacement_mm"] for kind in ("actuation", "reset")]
     assert [float(found[1]), float(found[3])] == pytest.approx(places, abs=0.06)
-    force_cN = load_builtin("mx-clear").nearest("press", 0.5).force_cN(places[0])
+    curve = load_builtin("mx-clear").nearest("press", 0.5)
+    assert curve is not None
+    force_cN = curve.force_cN(places[0])
     assert float(found[2]) == pytest.approx(force_cN, abs=8)
     verdict.get_by_role("link", name="Render it on a rig").click()
     page.wait_for_url("**/#/live/compensate?button=builtin*mx-clear*")

@@ -342,8 +342,8 @@ def _held(
         order = "the contact opens no deeper than it closes"
         yield Constraint("order", order, lambda d: value(d, "actuation_mm") - value(d, "reset_mm"))
     text = (
-        f"force stays between {force_number(LEAST_cN)} and {force_text(most_cN, '.0f')} past the first part of "
-        "the travel"
+        f"force stays between {force_number(LEAST_cN)} and {force_text(most_cN, '.0f')} past the first "
+        "part of the travel"
     )
     yield Constraint("force", text, lambda d: _force_slack(_curves_of(base, known, d), most_cN))
 
