@@ -7,7 +7,6 @@ import dataclasses
 import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +17,12 @@ from fdvv.eventlog import Journal
 from fdvv.io.files import write_atomic
 from fdvv.studio.contract import Watchers, error_line, message_of
 from fdvv.studio.devices import DeviceLocks
-from fdvv.studio.jobs import events
 from fdvv.studio.jobs.events import JobEnded, JobEvent
-from fdvv.studio.jobs.file import JOB, JobFolder, JobRecord, JobRow, JobState, publish, utc_now
+from fdvv.studio.jobs.file import JOB, JobFolder, JobRecord, JobRow, publish, utc_now
 from fdvv.studio.jobs.inputs import BENCH, Inputs, inputs_of
 from fdvv.studio.jobs.orders import CaptureOrder, Order, kind_of
 from fdvv.studio.jobs.process import JobStart
+from fdvv.studio.jobs.progress import JobProgress
 from fdvv.studio.jobs.time_left import left_s
 from fdvv.studio.studio import Studio
 
@@ -32,51 +31,6 @@ Heard = Callable[[int, Sequence[JobEvent]], None]
 
 UNFINISHED = ("waiting", "running", "needs you")
 BROKEN_OFF = "the studio ended meanwhile; what was made is kept"
-
-
-@dataclass(frozen=True)
-class JobProgress:
-    """How far a job is, as its events tell.
-
-    question : number of the one that waits for an answer; 0 if none does. stage : as its events name it.
-    """
-
-    state: JobState = "waiting"
-    now: str = ""
-    done: int = 0
-    total: int = 0
-    question: int = 0
-    stage: str = ""
-
-    def after(self, event: JobEvent) -> JobProgress:
-        """Return the progress after an event."""
-        stage = event.stage if isinstance(event, events.StageEvent) else self.stage
-        return dataclasses.replace(self._after(event), stage=stage)
-
-    def _after(self, event: JobEvent) -> JobProgress:
-        match event:
-            case events.StageEvent():
-                return JobProgress("running", event.text)
-            case events.PressEvent():
-                now = f"{event.velocity_mm_s:g} mm/s: {event.skipped or event.summary}".rstrip(": ")
-                return JobProgress("running", now, event.done, event.total)
-            case events.PressAsked():
-                now = f"press at {event.velocity_mm_s:g} mm/s"
-                return JobProgress("needs you", now, event.number - 1, event.total)
-            case events.TakeAsked():
-                return JobProgress("needs you", "follow the cue", event.number - 1, event.total)
-            case events.TakeEvent():
-                now = f"take {event.number}: {event.reason or 'good'}"
-                return JobProgress("running", now, event.done, event.total)
-            case events.QuestionAsked():
-                now = f"question {event.number} of {event.total} at most"
-                return JobProgress("needs you", now, event.number - 1, event.total, event.number)
-            case events.QuestionAnswered():
-                return JobProgress("running", f"answer {event.number} is kept", event.number, event.total)
-            case events.JobOutcome():
-                return JobProgress("running", event.headline or event.sentence, self.done, self.total)
-        started = self.state != "waiting"
-        return self if started else dataclasses.replace(self, state="running", question=0)
 
 
 class LiveJob:
