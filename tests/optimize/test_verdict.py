@@ -159,3 +159,6 @@ def test_a_value_at_a_bound_is_flagged_unless_the_start_is_there_too() -> None:
     assert at_bound(SPACE, low) == {"force_ratio": "least", "actuation_mm": "least"}
     assert at_bound(SPACE, low, low) == {}
     assert at_bound(SPACE, START) == {}
+    whole = realistic_space(BASE)
+    silent = {**neutral_design(whole, BASE), "vibration_gain_ratio": 0.0, "vibration_mm": 3.9}
+    assert at_bound(whole, silent, neutral_design(whole, BASE)) == {"vibration_gain_ratio": "least"}

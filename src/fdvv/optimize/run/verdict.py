@@ -15,6 +15,8 @@ from fdvv.optimize.space import Design, DesignSpace
 BOUND_RATIO = 0.01
 """A value that is this near to a bound, in proportion to the range, is at it."""
 LEVEL = 0.95
+PARTS = {"bump_cN": ("bump_mm", "snap_mm"), "vibration_gain_ratio": ("vibration_Hz", "vibration_mm")}
+"""What is without effect where the first is as good as 0."""
 Kind = Literal["better", "same", "worse"]
 
 
@@ -145,10 +147,14 @@ def at_bound(
 ) -> dict[str, Literal["least", "most"]]:
     """Return which values of a design are at a bound, where a better one may lie outside.
 
-    Not those that the start has as well.
+    Not those that the start has as well, nor those of a bump or a vibration that is not there.
     """
+    none = [one.name for one in space.parameters if design[one.name] < BOUND_RATIO * (one.high - one.low)]
+    gone = {name for what, names in PARTS.items() if what in none for name in names}
     found: dict[str, Literal["least", "most"]] = {}
     for one in space.parameters:
+        if one.name in gone:
+            continue
         value, near = design[one.name], BOUND_RATIO * (one.high - one.low)
         if start is not None and abs(start[one.name] - value) < near:
             continue

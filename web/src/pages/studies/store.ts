@@ -6,6 +6,10 @@ import type { StudiesDetail, StudiesStanding } from "../../net/messages";
 import { onCleanup, type Signal, signal, tell } from "../../ui";
 
 export class StudyStore extends Followed<StudiesDetail> {
+  /** Whether the text of the plan has changes that are not kept. */
+  readonly changed: Signal<boolean> = signal(false);
+  /** Whether the dialog that freezes is open. */
+  readonly freezing: Signal<boolean> = signal(false);
   /** How far it is, in a sentence. */
   readonly standing: Signal<StudiesStanding | null> = signal<StudiesStanding | null>(null);
 
