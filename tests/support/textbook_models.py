@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from scipy import stats
-from scipy.optimize import brentq, minimize
+from scipy.optimize import brentq
 from scipy.special import loggamma
 
 Array = npt.NDArray[np.float64]
@@ -120,15 +120,6 @@ class OrdinalOnGrid:
         bend = (4 * self._bend(flat, step / 2) - self._bend(flat, step)) / 3
         variance = np.linalg.inv(-bend)[self.cuts, self.cuts]
         return float(np.sqrt(variance)) if variance > 0 else np.nan
-
-    def best_at(self, flat: Array, held: int) -> float:
-        """Return the largest log-likelihood with one number held."""
-
-        def falling(others: Array) -> float:
-            return -self(np.insert(others, held, flat[held]))
-
-        found = minimize(falling, np.delete(flat, held), method="Nelder-Mead", options={"maxiter": 4000})
-        return -float(found.fun)
 
     def _bend(self, flat: Array, step: float) -> Array:
         places = np.eye(flat.size) * step
