@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fdvv.compensation.identification.rig_file import load_learned_rig, save_rig
-from fdvv.errors import InputError
+from fdvv.errors import DeviceError, InputError
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
@@ -122,3 +122,11 @@ def test_a_curve_of_unknown_velocity_is_judged_at_50_mm_s_and_speeds_are_listed_
 ) -> None:
     curves = achievable(load_builtin("mx-red"), light, [None, 50.0])
     assert [(c.stroke, c.velocity_mm_s) for c in curves] == [(Stroke.PRESS, 50.0), (Stroke.RELEASE, 50.0)]
+
+
+def test_an_identification_ends_with_its_next_press_when_the_catalog_is_closed(tmp_path: Path) -> None:
+    catalog = RigCatalog(tmp_path)
+    catalog.close()
+    with pytest.raises(DeviceError, match="the studio was closed meanwhile"):
+        catalog.rig("shipped:light")
+    assert not list(tmp_path.iterdir())

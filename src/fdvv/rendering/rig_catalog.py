@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from threading import Lock
+from threading import Event, Lock
 from typing import Literal, cast
 
 from fdvv.compensation.feasibility.limits import AchievableStroke, Motion, minimum_jerk
@@ -15,7 +15,7 @@ from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.contract import DeviceInfo
 from fdvv.device.twin import TwinDevice
-from fdvv.errors import InputError
+from fdvv.errors import DeviceError, InputError
 from fdvv.io.files import write_atomic
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
@@ -23,6 +23,7 @@ from fdvv.model.model import FDVVModel
 from fdvv.protocol.tables import Settings
 from fdvv.rendering.compensate import compensate
 from fdvv.rendering.feasibility import CurveFeasibility, feasibility
+from fdvv.rendering.session_run import PressDone
 from fdvv.twin.files import OLD_RIG_NAMES, current_rig_name
 from fdvv.twin.files import load_rig as load_plant
 
@@ -82,6 +83,7 @@ class RigCatalog:
         self._folder = project / "rigs"
         self._found: dict[str, AvailableRig] = {}
         self._lock = Lock()
+        self._closed = Event()
 
     def entries(self) -> tuple[RigEntry, ...]:
         """List the shipped rigs, then a person's own files by name."""
@@ -112,6 +114,14 @@ class RigCatalog:
                 self._found[rig_id] = self._load(entry)
             return self._found[rig_id]
 
+    def close(self) -> None:
+        """End an identification that is under way with its next press."""
+        self._closed.set()
+
+    def _go_on(self, _done: PressDone) -> None:
+        if self._closed.is_set():
+            raise DeviceError("the rig is not identified: the studio was closed meanwhile")
+
     def lend(self, rig_id: str, project: Path) -> None:
         """Copy the file of a rig to another project. Raises InputError on an unknown id, OSError."""
         file = _file_of(self.rig(rig_id).entry.rig_id)
@@ -126,7 +136,8 @@ class RigCatalog:
             return AvailableRig(entry, load_rig(path), device.settings(), device.info())
         # a file holds what the loop leaves alone, which the first press at each speed has shown
         law = RigAware(rounds=1) if device.load_cell else RigAware()
-        learned = compensate(device, load_builtin(IDENTIFIED_ON), IDENTIFIED_AT_mm_s, law).learned_rig
+        model = load_builtin(IDENTIFIED_ON)
+        learned = compensate(device, model, IDENTIFIED_AT_mm_s, law, self._go_on).learned_rig
         assert learned is not None  # RigAware always returns one
         save_rig(learned, self._folder / file)
         return AvailableRig(entry, learned.rig, device.settings(), device.info())
