@@ -18,7 +18,10 @@ from fdvv.studio.rounding import finite_row, rounded
 
 
 class CellCheck(Message):
-    """What the load cell read under a cap that nothing touches, and what that means, in one line."""
+    """What the load cell read under a cap that nothing touches.
+
+    sound : it read no force. reads_cN : mean reading. sentence : what that means, in one line.
+    """
 
     sound: bool
     reads_cN: float
