@@ -12,8 +12,10 @@ import pytest
 from benchmarks.studio_play import button_ms
 from playwright.sync_api import expect
 
-from fdvv.optimize.problem import Answer, TrialState
+from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.problem import Answer, Score, TrialState
 from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.run.task_rounds import ClockSource, TaskRound, TaskRounds
 from tests.browser.accessibility import audit
 from tests.studio.running import RunningStudio
@@ -309,16 +311,17 @@ def test_a_simulated_person_goes_on_while_the_page_is_away(page: Page, studio: R
 def test_the_best_design_is_played_again_against_the_start_and_nobody_knows_which_is_which(
     page: Page, studio: RunningStudio
 ) -> None:
-    begin(page, Budget="2", Retest="1")
-    page.get_by_role("button", name="Play trial 1").click()  # all three bullets are missed
-    page.wait_for_selector(".opt-line >> text=/^Trial 1: asynchrony 400/", timeout=60_000)
-    play(page, 2)
-    for number in (1, 2):
-        page.get_by_role("button", name=f"Play again, blind: {number} of 2").click()
-        for press in range(1, ROUNDS + 1):
-            page.wait_for_selector(f".opt-line >> text=/^Press {press} of/")
-            wait_for_bullet(page)
-            page.keyboard.press(" ", delay=80)
+    (start,) = paper_space().of_unit([0.5] * 8)
+    about = {OptimizeSetup.PRESSES: ROUNDS, OptimizeSetup.RETEST: 2, OptimizeSetup.NAME: "mx-clear"}
+    setup = OptimizeSetup(engine="sobol", level="easy", budget=2, start=start, about=about)
+    with Optimization.create(studio.project / "optimize" / "1", setup) as session:
+        for score_ms in (90.0, 60.0):
+            (trial,) = session.ask()
+            session.show(trial.number)
+            session.done(trial.number, {"asynchrony_ms": Score(score_ms, 5.0)})
+    page.goto(f"{page.url.partition('#')[0]}#/optimize/1")
+    for number in (1, 2, 3, 4):
+        page.get_by_role("button", name=f"Play again, blind: {number} of 4").click(timeout=LONG_ms)
         page.wait_for_selector(
             ".opt-line >> text=/which of the two it was is not shown/", state="attached", timeout=60_000
         )
@@ -346,6 +349,7 @@ def test_a_run_begins_from_what_others_did_if_there_is_any(page: Page, studio: R
 
 def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: RunningStudio) -> None:
     form(page, "I compare")
+    page.get_by_label("Designs").select_option("paper")
     for label, value in (("Budget", "2"), ("Retest", "1")):
         page.get_by_label(label, exact=True).fill(value)
         page.keyboard.press("Enter")
