@@ -32,7 +32,8 @@ export function said(store: RunStore, detail: OptimizeDetail, pace: Pace): Verdi
   if (simulated?.fault)
     return { sentence: `The simulated person stopped: ${simulated.fault}.`, kind: "warning" };
   if (!detail.searched || store.retesting()) return { sentence: `${now[0]?.toUpperCase()}${now.slice(1)}.` };
-  return { sentence: "The budget is used up; nothing was played again, so how good the best is stays open." };
+  const few = retest.done ? "one pair is too few for an interval" : "nothing was played again";
+  return { sentence: `The budget is used up; ${few}, so how good the best is stays open.` };
 }
 
 function found(store: RunStore, detail: OptimizeDetail, sentence: string): Verdict {
