@@ -25,7 +25,7 @@ COMMANDS = {
     "demo": ("demo", "Run the whole chain on the simulated rig and write a report."),
     "device": (
         "device.device",
-        "Work with a device: list, info, selftest, monitor, upload, press, exciter, strip.",
+        "Work with a device: look at it, press it, set it, check it, or make one of your own.",
     ),
     "export": ("exchange", "Write a button, its vibration or a recording for another program."),
     "feasible": (

@@ -89,7 +89,7 @@ def test_the_headline_says_what_fell_to_what_and_at_which_speeds_a_finger_notice
     fine = [replace(curve, velocity_mm_s=50.0) for curve in curves]
     worst_cN = max(float(np.abs(c.rendered_cN - c.target_cN).max()) for c in bad)
     assert headline(fine, bad).startswith("Mean error ")
-    assert f" → 0.0 cN, largest {worst_cN:.0f} → 0.0; a finger would not notice it" in headline(fine, bad)
+    assert f" → 0.0 cN, largest {worst_cN:.0f} → 0.0 cN; a finger would not notice it" in headline(fine, bad)
     assert headline([*fine, *bad]).endswith("; a finger would notice it at 100 mm/s only")
     assert headline(bad).endswith("a finger would notice it")
     three = [*fine, *bad, *(replace(c, velocity_mm_s=200.0) for c in bad)]

@@ -161,7 +161,8 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     @property
     def start_name(self) -> str:
         """Name of the button that the result is compared with."""
-        name = self.about.get(self.NAME) or (self.space.base or {}).get("name")
+        # runs of an earlier fdvv hold the button's id alone
+        name = self.about.get(self.NAME) or (self.space.base or {}).get("name") or self.about.get("start")
         return str(name) if name and self.start is not None else "the first design"
 
 
