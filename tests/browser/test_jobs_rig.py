@@ -15,7 +15,7 @@ LONG_ms = 90_000
 MOST_CLICKS = 3
 RIG = re.compile("^(Rig|Live work)$")
 BEFORE_AND_AFTER = re.compile(
-    r"Mean error [\d.]+ → [\d.]+ cN on simulated presses, largest [\d.]+ → [\d.]+; "
+    r"Mean error [\d.]+ → [\d.]+ cN on simulated presses, largest [\d.]+ → [\d.]+ cN; "
     "a finger would (not )?notice it"
 )
 pytestmark = pytest.mark.timeout(180)

@@ -212,7 +212,7 @@ def test_a_trace_is_replayed(page: Page, wire: Wire, tmp_path: Path) -> None:
     rows = "\n".join(f"{i / 100},{4 if 20 < i < 40 else 0}" for i in range(60))
     path = tmp_path / "mine.csv"
     path.write_text(f"t_s,displacement_mm\n{rows}\n")
-    page.set_input_files("input[type=file]", path)
+    page.set_input_files("main input[type=file]", path)
     presses(page, 3)
     assert page.is_visible("button:text-is('mine.csv')")
 

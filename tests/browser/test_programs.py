@@ -236,17 +236,17 @@ def test_a_recipe_makes_a_program_at_once(gallery: Page, tmp_path: Path) -> None
 def test_a_file_is_uploaded_and_a_broken_one_refused_in_one_line(gallery: Page, tmp_path: Path) -> None:
     bad = tmp_path / "bad.json"
     bad.write_text(json.dumps({"format": "fdvv-program", "version": 1, "name": "bad"}))
-    gallery.set_input_files("input[type=file]", bad)
+    gallery.set_input_files("main input[type=file]", bad)
     toast = gallery.locator(".toast.wrong")
     toast.wait_for()
     assert "travel_mm" in toast.inner_text()
     huge = tmp_path / "huge.json"
     huge.write_text(" " * 2_000_001)
-    gallery.set_input_files("input[type=file]", huge)
+    gallery.set_input_files("main input[type=file]", huge)
     gallery.locator(".toast.wrong", has_text="larger than 2 MB").wait_for()
 
     good = Path(__file__).resolve().parents[2] / "src/fdvv/program/library/rapid-trigger.fdvv-program.json"
-    gallery.set_input_files("input[type=file]", good)
+    gallery.set_input_files("main input[type=file]", good)
     gallery.wait_for_selector(".verdict.good")
     with gallery.expect_download() as export:
         gallery.get_by_role("button", name="Export file").click()

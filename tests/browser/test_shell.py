@@ -23,7 +23,7 @@ def test_every_page_is_reached_by_a_key_and_by_a_link(page: Page) -> None:
     for number, name in enumerate(["home", *PAGES]):
         page.keyboard.press(f"Alt+{number}")
         page.wait_for_selector(f"main[data-page={name}]")
-    page.click("nav a[href='#/edit']")
+    page.get_by_role("navigation").get_by_role("link", name="Edit", exact=True).click()
     page.wait_for_selector("main[data-page=edit]")
 
 
