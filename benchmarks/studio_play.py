@@ -79,6 +79,7 @@ def played(chromium: str, project: Path, presses: int) -> tuple[dict[str, list[d
             page = playwright.chromium.launch(executable_path=chromium).new_page()
             page.on("websocket", join)
             page.goto(f"{studio.stdout.readline().split()[-1]}#/optimize")
+            page.get_by_text("Advanced", exact=True).click()
             page.get_by_label("Engine").select_option("sobol")
             page.get_by_label("Score after").fill(str(presses))
             page.keyboard.press("Enter")

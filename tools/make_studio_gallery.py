@@ -94,13 +94,10 @@ def connect(page: Page) -> None:
 
 def optimise(page: Page) -> None:
     """Have a simulated person play a run, and stay on its page."""
-    page.get_by_label("How").select_option("simulated")
-    page.get_by_label("Engine").select_option("tpe")
-    page.get_by_label("Budget", exact=True).fill("12")
-    page.keyboard.press("Enter")
+    page.get_by_role("radio", name="A simulated person plays").click()
     page.get_by_role("button", name="Begin", exact=True).click()
-    page.get_by_role("button", name="Let them play").click()
-    page.wait_for_selector("text=12 of 12 trials, done", timeout=LONG_ms)
+    page.get_by_role("region", name="Verdict").get_by_text("(95 %").wait_for(timeout=2 * LONG_ms)
+    page.get_by_role("tab", name="Play").click()
 
 
 def found(page: Page) -> None:
@@ -112,6 +109,7 @@ def found(page: Page) -> None:
 
 def bullet(page: Page) -> None:
     """Begin to play, and wait for the bullet."""
+    page.get_by_text("Advanced", exact=True).click()
     page.get_by_label("Engine").select_option("sobol")
     page.get_by_role("button", name="Begin", exact=True).click()
     page.get_by_role("button", name="Play trial 1").click()

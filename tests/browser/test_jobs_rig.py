@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 LONG_ms = 90_000
 MOST_CLICKS = 3
-RIG = re.compile("^(Rig|Live work)$")
+RIG = re.compile("^Rig$")
 BEFORE_AND_AFTER = re.compile(
     r"Mean error [\d.]+ → [\d.]+ cN on simulated presses, largest [\d.]+ → [\d.]+ cN; "
     "a finger would (not )?notice it"

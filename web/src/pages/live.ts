@@ -1,4 +1,4 @@
-/** Live work: capture, compensate, tune, devices; with all jobs always in view. */
+/** The rig: capture, compensate, tune, devices; with all jobs always in view. */
 
 import { mount, unmount } from "svelte";
 import type { Page } from "../app/types";
@@ -7,7 +7,7 @@ import LivePage from "./live/LivePage.svelte";
 import "./live/live.css";
 
 export const page: Page = {
-  title: "Live work",
+  title: "Rig",
   followsRoute: true,
   mount(target) {
     const made = mount(LivePage, { target });

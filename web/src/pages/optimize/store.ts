@@ -96,6 +96,7 @@ export function foundName({ start_name, row }: OptimizeDetail): string {
 const UNITS: Readonly<Record<string, string>> = {
   mm: "mm",
   cN: "cN",
+  cN_mm: "cN/mm",
   ms: "ms",
   ratio: "",
   Hz: "Hz",
