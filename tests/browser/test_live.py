@@ -75,7 +75,9 @@ def test_a_rig_learns_a_button_and_the_error_is_seen_to_fall(page: Page) -> None
     table = page.get_by_role("table", name="Presses, newest first").locator("tbody tr")
     # two presses without compensation, two held-out ones, and as many with the button's vibration
     expect(table).to_have_count(18)
-    figures = r"Mean error [\d.]+ → [\d.]+ cN on simulated presses, largest [\d.]+ → [\d.]+ cN; a finger would"
+    figures = (
+        r"Mean error [\d.]+ → [\d.]+ cN on simulated presses, largest [\d.]+ → [\d.]+ cN; a finger would"
+    )
     expect(verdict(page)).to_contain_text(re.compile(figures))
     expect(page.get_by_text("A finger would not notice the force on")).to_be_visible()
     noticed = page.get_by_role("table", name="What a finger would notice").locator("tbody tr")

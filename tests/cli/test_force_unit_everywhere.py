@@ -31,8 +31,8 @@ def page(path: Path) -> str:
     """Check what a page shows, without the files inside it; return its source."""
     text = re.sub(r"data:[^\"]*", "", path.read_text(encoding="utf-8"))
     found = [line for line in re.sub(r"<[^>]+>", "\n", text).splitlines() if CN.search(line)]
-    # sources are quoted as they are, and the foot of a page of buttons says what a cN is
-    quoted = ("1 cN is about 1 gf", "Measured: ", "not-a-knot ends; within 0.01 cN")
+    # sources are quoted, a stream holds what its file does, and the foot of a page says what a cN is
+    quoted = ("1 cN is about 1 gf", "force (cN)", "Measured: ", "not-a-knot ends; within 0.01 cN")
     assert [line for line in found if not any(part in line for part in quoted)] == []
     return text
 

@@ -156,7 +156,7 @@ class HearsAHostAlways(FaultyBoard):
     ticks_so_far, own = 0, 250
 
     def answered(self, frame: Frame) -> Frame | None:
-        return None if frame.sequence == self.own else frame
+        return None if (frame.message, frame.sequence) == (REPLY + Message.PING, self.own) else frame
 
     def tick(self, inputs: Inputs) -> Outputs:
         self.ticks_so_far += 1

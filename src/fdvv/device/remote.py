@@ -140,14 +140,13 @@ class Remote:
         raise NotImplementedError
 
     def _explain(self, error: RefusedError) -> None:
-        """Raise DeviceError with the latched fault, if that is why a request was refused."""
+        """Raise RefusedError with the latched fault, if that is why a request was refused."""
         if error.refusal in (Refusal.WRONG_MODE, Refusal.FAULT_LATCHED):
             report = self.fault()
             if report.fault is not Fault.NONE:
-                raise DeviceError(
-                    f"{self.client.port.name}: a fault is latched, {report}; mend its cause, then run "
-                    "fdvv device clear"
-                ) from error
+                why = f"a fault is latched, {report}; mend its cause, then run fdvv device clear"
+                known = error.message, error.refusal, error.detail
+                raise RefusedError(self.client.port.name, *known, why) from error
 
     def stop(self) -> None:
         try:
