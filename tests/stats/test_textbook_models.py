@@ -127,13 +127,7 @@ def test_the_same_of_whole_analyses_with_gaps_and_uneven_rounds(tmp_path: Path) 
         if found.anova is None:
             continue
         kept, _ = textbook.screened(rows)
-        cells: dict[tuple[str, str, str], list[float]] = defaultdict(list)
-        for row in kept:
-            for stimulus, value in row["ratings"].items():
-                if value is not None:
-                    cells[row["person"], row["item"], stimulus].append(value)
-        people = sorted({p for p, *_ in cells})
-        whole = [p for p in people if all((p, b, s) in cells for b in found.buttons for s in TWO)]
+        cells, whole = textbook.cells_and_whole(kept, found.buttons, TWO)
         scores = np.array([[[np.mean(cells[p, b, s]) for s in TWO] for b in found.buttons] for p in whole])
         assert found.anova.people == len(whole)
         for one, name in zip(found.anova.effects, ("a", "b", "ab"), strict=True):

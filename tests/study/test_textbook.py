@@ -314,13 +314,7 @@ def test_scores_of_complete_people(tmp_path: Path) -> None:
         assert found is not None
         if found.anova is None:
             continue
-        cells: dict[tuple[str, str, str], list[float]] = defaultdict(list)
-        for row in kept:
-            for stimulus, value in row["ratings"].items():
-                if value is not None:
-                    cells[row["person"], row["item"], stimulus].append(value)
-        people = sorted({p for p, *_ in cells})
-        whole = [p for p in people if all((p, b, s) in cells for b in found.buttons for s in TWO)]
+        cells, whole = textbook.cells_and_whole(kept, found.buttons, TWO)
         assert found.anova.people == len(whole)
         table = pd.DataFrame(
             [(p, b, s, np.mean(v)) for (p, b, s), v in cells.items() if p in whole], columns=list("pbsy")

@@ -6,6 +6,7 @@ Signs are turned one by one (2^k of them), Walsh averages listed, tests are stat
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 from functools import cache
 from itertools import product
 from typing import Any
@@ -26,6 +27,19 @@ def screened(rows: Rows) -> tuple[Rows, set[str]]:
         answered[row["person"]].append(bool(row["choice"]) or row["correct"] is not None or rated)
     out = {person for person, given in answered.items() if 1 - np.mean(given) > 0.25}
     return [row for row in rows if row["person"] not in out], out
+
+
+def cells_and_whole(
+    rows: Rows, items: Sequence[str], stimuli: Sequence[str]
+) -> tuple[dict[tuple[str, str, str], list[float]], list[str]]:
+    """Return the ratings by person, item and stimulus, and who rated every stimulus on every item."""
+    cells: dict[tuple[str, str, str], list[float]] = defaultdict(list)
+    for row in rows:
+        for stimulus, value in row["ratings"].items():
+            if value is not None:
+                cells[row["person"], row["item"], stimulus].append(value)
+    people = sorted({person for person, *_ in cells})
+    return cells, [p for p in people if all((p, item, s) in cells for item in items for s in stimuli)]
 
 
 def person_means(values: list[tuple[str, float]]) -> list[float]:
