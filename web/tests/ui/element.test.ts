@@ -1,11 +1,14 @@
 // @vitest-environment jsdom
+import { flushSync, mount } from "svelte";
 import { describe, expect, it } from "vitest";
-import { addShortcuts, h, numberField, pressedKeys, scope, shortcuts, shown, signal } from "../../src/ui";
+import { addShortcuts, forceUnit, h, pressedKeys, scope, shortcuts, shown, signal } from "../../src/ui";
+import NumberField from "../../src/ui/NumberField.svelte";
 
 function enter(field: HTMLElement, text: string): HTMLInputElement {
   const input = field.querySelector("input") as HTMLInputElement;
   input.value = text;
-  input.dispatchEvent(new Event("change"));
+  for (const kind of ["input", "change"]) input.dispatchEvent(new Event(kind, { bubbles: true }));
+  flushSync();
   return input;
 }
 
@@ -30,17 +33,24 @@ describe("elements", () => {
 });
 
 describe("a number field", () => {
-  const made = (over: Partial<Parameters<typeof numberField>[0]> = {}) => {
+  const made = (over: { unit?: string; step?: number; most?: number } = {}) => {
     const value = signal(1.5);
-    const field = numberField({
-      label: "Travel",
-      unit: "mm",
-      value,
-      set: value.set,
-      least: 0,
-      most: 6,
-      ...over,
+    const field = document.body.appendChild(document.createElement("div"));
+    mount(NumberField, {
+      target: field,
+      props: {
+        label: "Travel",
+        unit: "mm",
+        set: value.set,
+        least: 0,
+        most: 6,
+        ...over,
+        get value() {
+          return value();
+        },
+      },
     });
+    flushSync();
     return { value, field };
   };
 
@@ -68,13 +78,26 @@ describe("a number field", () => {
   it("moves by its step with the arrow keys, and keeps its bounds", () => {
     const { value, field } = made({ step: 0.5 });
     const input = field.querySelector("input") as HTMLInputElement;
-    const press = (key: string, more: KeyboardEventInit = {}) =>
-      input.dispatchEvent(new KeyboardEvent("keydown", { key, ...more }));
+    const press = (key: string, more: KeyboardEventInit = {}) => {
+      input.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, ...more }));
+      flushSync();
+    };
     press("ArrowUp");
     press("ArrowUp", { shiftKey: true });
     expect(value()).toBe(2);
     press("ArrowDown", { altKey: true });
     expect(value()).toBeCloseTo(1.95, 12);
+  });
+
+  it("shows and takes a force in the unit that is chosen, and sets it in its own", () => {
+    const { value, field } = made({ unit: "cN", most: 100 });
+    forceUnit.set("N");
+    flushSync();
+    const input = enter(field, "0.25");
+    expect([value(), input.value]).toEqual([25, "0.25"]);
+    enter(field, "2");
+    expect(field.querySelector("[role=alert]")?.textContent).toBe("at most 1 N");
+    forceUnit.set("cN");
   });
 
   it("shows numbers with a true minus and without idle zeros", () => {
