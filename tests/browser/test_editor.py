@@ -412,3 +412,23 @@ def test_a_slider_drags_the_whole_button_as_one_step(editor: Page, tmp_path: Pat
     expect(editor.get_by_role("button", name="Undo: stretch the travel to 3.96 mm")).to_be_enabled()
     saved(editor)
     assert own_model(tmp_path / "project").travel_mm == pytest.approx(0.99 * before.travel_mm)
+
+
+def test_a_drag_moves_every_speed_of_a_stroke_as_one_step(editor: Page, tmp_path: Path) -> None:
+    before = load_builtin("mx-clear")
+    editor.get_by_label("Drag every speed at once").check()
+    to_screen, first = scales(editor), slowest(before)
+    x_mm, y_cN = first.control_points_mm[POINT], first.control_points_cN[POINT]
+    start, end = to_screen(x_mm, y_cN), to_screen(x_mm, y_cN + 12)
+    drag(editor, start, (0.0, end[1] - start[1]))
+    expect(editor.get_by_role("button", name=re.compile("^Undo: move"))).to_be_enabled()
+    saved(editor)
+    after = own_model(tmp_path / "project")
+    for old, new in zip(before.of("press"), after.of("press"), strict=True):
+        assert np.max(new.control_points_cN - old.control_points_cN) == pytest.approx(12, abs=0.5)
+    for old, new in zip(before.of("release"), after.of("release"), strict=True):
+        assert new.control_points_cN == pytest.approx(old.control_points_cN)
+    editor.keyboard.press("Control+z")
+    editor.keyboard.press("e")
+    expect(editor.get_by_label("Drag every speed at once")).not_to_be_checked()
+    assert force_cN(editor) == pytest.approx(y_cN, abs=1e-4)

@@ -1,10 +1,9 @@
 /** The raw samples of a file as dots, under the curves that were fitted to them. */
 
-import { type Brush, type Layer, Plot, palette, series } from "../../draw";
+import { type Brush, type Layer, Plot, palette, RELEASE_DASH, velocityColour } from "../../draw";
 import type { Held } from "./opening";
 
 const HEIGHT_px = 230;
-const RELEASE_DASH = [6, 4] as const;
 const DOT_px = 2.6;
 /** Of all strokes together: more than the eye separates. */
 const MOST_DOTS = 6000;
@@ -14,7 +13,6 @@ export function samplesPlot(button: Held): Plot {
     ...stroke,
     x_mm: stroke.force_cN.map((_, i) => stroke.start_mm + i * stroke.step_mm),
   }));
-  const speeds = [...new Set(button.strokes.map((stroke) => stroke.velocity_mm_s))];
   const count = button.samples.reduce((sum, { force_cN }) => sum + force_cN.length, 0);
   const every = Math.max(1, Math.ceil(count / MOST_DOTS));
   const still: Layer = (brush, view) => {
@@ -23,7 +21,7 @@ export function samplesPlot(button: Held): Plot {
       for (let i = 0; i < force_cN.length; i += every) dot(brush, place(displacement_mm[i]!, force_cN[i]!));
     for (const { x_mm, force_cN, stroke, velocity_mm_s } of curves)
       brush.line(x_mm.map(view.x.px), force_cN.map(view.y.px), {
-        colour: series(speeds.indexOf(velocity_mm_s)).colour,
+        colour: velocityColour(velocity_mm_s),
         dash: stroke === "release" ? RELEASE_DASH : [],
         width_px: 1.5,
       });

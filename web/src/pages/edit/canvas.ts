@@ -99,7 +99,8 @@ type Brush = Parameters<typeof paint.paintBefore>[0];
 function paintStill(editor: EditorController, rig: RigView, brush: Brush, view: View): void {
   const { stroke, velocity_mm_s } = editor.active();
   const before = editor.showBefore() ? curveAt(editor.before(), { stroke, velocity_mm_s }) : null;
-  paint.paintOthers(brush, view, editor.others());
+  const every = editor.everySpeed();
+  paint.paintOthers(brush, view, editor.others(), (curve) => every && curve.stroke === stroke);
   if (before) paint.paintBefore(brush, view, before);
   for (const one of rig.measured()?.curves ?? []) {
     if (one.stroke !== stroke || one.velocity_mm_s !== velocity_mm_s) continue;

@@ -31,6 +31,8 @@ export class EditorController {
   readonly selection: Signal<readonly number[]> = signal<readonly number[]>([]);
   readonly span: Signal<Span | null> = signal<Span | null>(null);
   readonly constraints: Signal<Constraints> = signal<Constraints>({});
+  /** A drag moves every speed of the stroke, not only the active curve. */
+  readonly everySpeed: Signal<boolean> = signal(false);
   /** What the present is compared with. */
   readonly before: Signal<FDVVModel>;
   readonly showBefore = signal(true);
@@ -67,6 +69,13 @@ export class EditorController {
       tell(error);
       return false;
     }
+  }
+
+  /** The curves that follow a drag of the active one, as they are before it. */
+  followers(): readonly ForceCurve[] {
+    if (!this.everySpeed()) return [];
+    const at = this.active();
+    return this.settled().curves.filter((curve) => curve.stroke === at.stroke && !isAt(curve, at));
   }
 
   /** Begin a drag. */

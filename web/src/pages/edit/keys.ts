@@ -7,8 +7,9 @@ import type { KeyRecord } from "../../tools/records";
 import { stepped } from "../../tools/selection";
 import { addShortcuts, batch } from "../../ui";
 import type { EditorCanvas } from "./canvas";
-import { type EditorController, refOf } from "./editor_controller";
+import type { EditorController } from "./editor_controller";
 import { keyRecord } from "./events";
+import { pointsToMove } from "./every_speed";
 import { pin } from "./pins";
 import { addAt, removeSelected } from "./point_edits";
 import type { PointerController } from "./pointer_controller";
@@ -43,7 +44,8 @@ function nudgeAct(editor: EditorController, act: NudgeAct): void {
   else if (act.kind === "commit") editor.release();
   else if (act.kind === "cancel") editor.cancel();
   else {
-    const points = [{ ...refOf(editor.curve()), indices: editor.selection.peek() }];
+    const dragged = { curve: editor.curve(), followers: editor.followers() };
+    const points = pointsToMove(dragged, editor.selection.peek());
     editor.drag(movePoints(points, act.by.dforce_cN, editor.constraints.peek()));
   }
 }
@@ -121,6 +123,11 @@ function tellShortcuts(editor: EditorController, canvas: EditorCanvas): void {
     { keys: "+ −", does: "On the canvas: zoom" },
     { keys: "F", does: "Fit all in view", act: () => canvas.plot.fit() },
     { keys: "S", does: "Press or release at this speed", act: () => otherStroke(editor) },
+    {
+      keys: "E",
+      does: "Drag the active curve only, or every speed of its stroke",
+      act: () => editor.everySpeed.update((on) => !on),
+    },
     { keys: "P", does: "Pin the current state as the reference", act: () => pin(editor) },
     { keys: "B", does: "Show or hide the reference", act: () => editor.showBefore.update((on) => !on) },
     { keys: "C", does: "Go to the canvas", act: () => canvas.plot.element.focus() },

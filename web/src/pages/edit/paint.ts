@@ -13,10 +13,18 @@ export function paintCurve(brush: Brush, view: View, curve: ForceCurve, line: Li
   brush.line(inPixels(view.x, x_mm), inPixels(view.y, force_cN), line);
 }
 
-/** The curves that are not edited, dimmed. */
-export function paintOthers(brush: Brush, view: View, curves: readonly ForceCurve[]): void {
+/** The curves that are not edited: dimmed, but for those that follow. */
+export function paintOthers(
+  brush: Brush,
+  view: View,
+  curves: readonly ForceCurve[],
+  follows: (curve: ForceCurve) => boolean,
+): void {
   for (const curve of curves)
-    paintCurve(brush, view, curve, { ...lineOf(curve), width_px: 1.4, opacity: DIMMED });
+    paintCurve(brush, view, curve, {
+      ...lineOf(curve),
+      ...(follows(curve) ? { width_px: 2.2 } : { width_px: 1.4, opacity: DIMMED }),
+    });
 }
 
 /** A name for each velocity where its curves end: press and release end together. */

@@ -8,9 +8,10 @@ import type { Scene } from "../../tools/reach";
 import type { Act, CanvasPoint, Grip, Offset, PointerRecord } from "../../tools/records";
 import { batch, onCleanup } from "../../ui";
 import type { EditorCanvas } from "./canvas";
-import { type EditorController, refOf } from "./editor_controller";
+import type { EditorController } from "./editor_controller";
 import { pointerRecord } from "./events";
-import { clampedPosition, handlesOnCanvas, positionHandles, pullEdit } from "./handles";
+import { pointsToMove, pullAll } from "./every_speed";
+import { clampedPosition, handlesOnCanvas, positionHandles } from "./handles";
 import { addAt } from "./point_edits";
 import { away_px, inPixels, sampled } from "./samples";
 import { timed } from "./timing";
@@ -20,6 +21,7 @@ interface Mark {
   readonly view: View;
   readonly start: DataPoint;
   readonly curve: ReturnType<EditorController["curve"]>;
+  readonly followers: ReturnType<EditorController["followers"]>;
   readonly positions: ReturnType<typeof positionHandles>;
   readonly bumps: readonly { readonly name: string; readonly x_mm: number }[];
 }
@@ -143,35 +145,40 @@ export class PointerController {
   private take(grip: Grip): void {
     const view = this.canvas.plot.view();
     const { x_px, y_px } = this.down;
-    const [model, curve] = [this.editor.model(), this.editor.curve()];
+    const { editor } = this;
+    const [model, curve] = [editor.model(), editor.curve()];
     const handles = handlesOnCanvas(view, model, curve);
     this.mark = {
       view,
       start: { x: view.x.value(x_px), y: view.y.value(y_px) },
       curve,
+      followers: editor.followers(),
       positions: positionHandles(model, curve),
       bumps: handles.map(({ name, x_px: at }) => ({ name, x_mm: view.x.value(at) })),
     };
-    this.editor.mark("drag");
+    editor.mark("drag");
     this.canvas.held.set(grip.kind === "handle" ? grip.name : grip.kind);
   }
 
   private shift(grip: Grip, { dx_px, dy_px }: Offset): void {
     const { mark, editor } = this;
     if (!mark) return;
-    const { view, curve } = mark;
+    const { view } = mark;
+    const { travel_mm } = editor.settled.peek();
     const by_cN = view.y.value(dy_px) - view.y.value(0);
     const constraints = editor.constraints.peek();
     if (grip.kind === "point") {
       const step = constraints.step_cN ?? 0;
-      const points = [{ ...refOf(curve), indices: editor.selection.peek() }];
+      const points = pointsToMove(mark, editor.selection.peek());
       return editor.drag(movePoints(points, snap(by_cN, step), constraints));
     }
-    if (grip.kind === "line") return editor.drag(pullEdit(curve, mark.start.x, by_cN, constraints));
+    if (grip.kind === "line")
+      return editor.drag(pullAll(mark, mark.start.x, by_cN, { constraints, travel_mm }));
     if (grip.kind !== "handle") return;
-    const bump = grip.name === "peak" || grip.name === "valley";
-    const x_mm = mark.bumps.find(({ name }) => name === grip.name)?.x_mm ?? mark.start.x;
-    if (bump) return editor.drag(pullEdit(curve, x_mm, by_cN, constraints));
+    const bump = grip.name;
+    const x_mm = mark.bumps.find(({ name }) => name === bump)?.x_mm ?? mark.start.x;
+    if (bump === "peak" || bump === "valley")
+      return editor.drag(pullAll(mark, x_mm, by_cN, { constraints, travel_mm, bump }));
     const position = mark.positions.find(({ name }) => name === grip.name);
     const by_mm = view.x.value(dx_px) - view.x.value(0);
     if (position)
@@ -198,6 +205,7 @@ export class PointerController {
       view: plot.view(),
       start: { x: 0, y: 0 },
       curve: this.editor.curve(),
+      followers: [],
       positions: [],
       bumps: [],
     };

@@ -1,6 +1,15 @@
 /** How the error falls at one speed, both strokes, with what a person would just notice. */
 
-import { type Brush, type PlotOptions, palette, type Range, rangeOf, series, type View } from "../../draw";
+import {
+  type Brush,
+  type PlotOptions,
+  palette,
+  type Range,
+  RELEASE_DASH,
+  rangeOf,
+  type View,
+  velocityColour,
+} from "../../draw";
 import { watched } from "./jobs";
 import { curveKey, type Stage, type StrokeName } from "./picture";
 
@@ -47,7 +56,8 @@ function errorRange(stage: Stage): Range {
 function draw(brush: Brush, view: View, stage: Stage, velocity_mm_s: number): void {
   drawNoticeable(brush, view, velocity_mm_s);
   STROKES.forEach((stroke, i) => {
-    const { colour, dash } = series(i);
+    const colour = velocityColour(velocity_mm_s);
+    const dash = stroke === "release" ? RELEASE_DASH : [];
     const errors = errorsOf(stage, stroke, velocity_mm_s);
     const [at, high] = [errors.map((_, n) => view.x.px(n + 1)), errors.map((error) => view.y.px(error))];
     brush.line(at, high, { colour, dash, width_px: 2 });

@@ -1,9 +1,7 @@
 /** The last press on the connected device: force over displacement beside what its button asks for. */
 
-import { type Brush, type PlotOptions, palette, rangeOf, series, type View } from "../../draw";
+import { type Brush, type PlotOptions, palette, RELEASE_DASH, rangeOf, series, type View } from "../../draw";
 import { seen, standing } from "./looking";
-
-const RELEASE_DASH = [7, 3];
 
 export const lastPress: PlotOptions = {
   label: "Force over displacement of the last press",

@@ -1,11 +1,19 @@
 /** Before and after: target and rendered forces of both strokes at one speed, and where a finger would notice. */
 
-import { type Brush, type PlotOptions, palette, type Range, rangeOf, series, type View } from "../../draw";
+import {
+  type Brush,
+  type PlotOptions,
+  palette,
+  type Range,
+  RELEASE_DASH,
+  rangeOf,
+  series,
+  type View,
+} from "../../draw";
 import type { CurveIntended, CurveNoticed, FeltCurve } from "../../net";
 import type { JobPicture, Stage } from "./picture";
 import { spans } from "./spans";
 
-const RELEASE_DASH = [7, 3];
 type Stroke = "press" | "release";
 const STROKES: readonly Stroke[] = ["press", "release"];
 

@@ -1,6 +1,6 @@
 /** The design that was found beside the one it began with: models, curves, numbers. */
 
-import { type Brush, Plot, palette, series, type View } from "../../draw";
+import { type Brush, Plot, palette, RELEASE_DASH, series, type View } from "../../draw";
 import {
   type ButtonLike,
   force_cN,
@@ -54,7 +54,7 @@ export function overlay(models: Models): Plot {
     for (const { n, stroke, x_mm, y_cN } of lines)
       brush.line(x_mm.map(view.x.px), y_cN.map(view.y.px), {
         colour: series(n).colour,
-        dash: stroke === "press" ? [] : [6, 4],
+        dash: stroke === "press" ? [] : RELEASE_DASH,
         width_px: stroke === "press" ? 2 : 1.25,
       });
     SIDES.forEach((side, n) => {

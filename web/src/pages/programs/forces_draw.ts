@@ -1,6 +1,6 @@
 /** Drawing the forces of a state: curves per velocity, where it leads on, where it vibrates, what was found. */
 
-import { type Brush, palette, series, type View } from "../../draw";
+import { type Brush, palette, RELEASE_DASH, series, type View, velocityColour } from "../../draw";
 import type { ProgramFinding } from "../../net/messages";
 import { positionOf_mm, shortly } from "../../programs/condition";
 import {
@@ -26,7 +26,6 @@ export interface ForcePicture {
   readonly findings: readonly ProgramFinding[];
 }
 
-const RELEASE_DASH = [6, 4];
 const CELLS = { x: 90, y: 28 } as const;
 
 /** Draw every row of both strokes, the edited one strong, and the displacements that mean something. */
@@ -62,7 +61,7 @@ function drawStroke(brush: Brush, view: View, picture: ForcePicture, stroke: Str
   if (!surface) return;
   surface.force_cN.forEach((row, i) => {
     const edited = stroke === picture.stroke && i === picture.row;
-    const { colour } = series(stroke === "press" ? 2 * i : 2 * i + 1);
+    const colour = velocityColour(surface.velocity_mm_s[i]!);
     const places = [view.x.range.low, ...surface.displacement_mm, view.x.range.high];
     const forces = [row[0]!, ...row, row[row.length - 1]!];
     brush.line(
@@ -158,7 +157,7 @@ export function drawPoints(brush: Brush, view: View, picture: ForcePicture, chos
   const surface = picture[picture.stroke];
   const row = surface?.force_cN[picture.row];
   if (!surface || !row) return;
-  const { colour } = series(picture.stroke === "press" ? 2 * picture.row : 2 * picture.row + 1);
+  const colour = velocityColour(surface.velocity_mm_s[picture.row]!);
   const held = Math.min(chosen, row.length - 1);
   for (const column of new Set([...handlesOf(surface), held])) {
     const at = { x_px: view.x.px(surface.displacement_mm[column]!), y_px: view.y.px(row[column]!) };
