@@ -49,6 +49,14 @@ RECORD = r"""() => {
 MEASURE = r"""() => {
   const AIR = 1.5;
   const ROOT = document.documentElement;
+  // what lies over the rest on purpose; text is compared within one of them
+  const LAYERS = "main, aside, .driver-popover, " +
+    ["dialog", "alertdialog", "menu", "tooltip"].map((role) => `[role=${role}]`).join();
+  const layerOf = (e) => {
+    for (let up = e; up; up = up.parentElement)
+      if (up.matches(LAYERS) || of(up).position === "sticky") return up;
+    return null;
+  };
   const LEFT_OUT = "script, style, noscript, option, .visually-hidden, .skip, [data-sonner-toaster]";
   const hides = (overflow) => overflow === "hidden" || overflow === "clip";
   const found = [];
@@ -68,7 +76,8 @@ MEASURE = r"""() => {
     for (const rect of range.getClientRects()) {
       if (rect.width < 1 || rect.height < 1) continue;
       const { left, right, top, bottom } = rect;
-      const box = { left, right, top, bottom, element, node, page: element.closest("main") };
+      const layer = layerOf(element);
+      const box = { left, right, top, bottom, element, node, page: element.closest("main"), layer };
       let cut = false;
       // the page itself scrolls down, never sideways
       for (let up = element; up && up !== box.page && up !== ROOT; up = up.parentElement) {
@@ -114,7 +123,7 @@ MEASURE = r"""() => {
       const high = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
       // line boxes are higher than their letters: a third of one may be shared
       const least = Math.min(a.bottom - a.top, b.bottom - b.top) / 3;
-      if (a.node !== b.node && a.page === b.page && wide > 2 && high > Math.max(3, least))
+      if (a.node !== b.node && a.layer === b.layer && wide > 2 && high > Math.max(3, least))
         found.push(`over each other: ${words(a.node.data)} and ${words(b.node.data)} in ${where(b.element)}`);
     }
   }

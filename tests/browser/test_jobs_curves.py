@@ -13,9 +13,9 @@ import pytest
 from playwright.sync_api import expect
 
 from fdvv.model.file import load_model
+from tests.browser.dropping import drop
 from tests.browser.editing import scales
 from tests.browser.pressing import presses, ready
-from tests.browser.test_open import drop
 from tests.support.buttons import write_cycle
 
 if TYPE_CHECKING:

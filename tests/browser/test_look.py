@@ -1,15 +1,23 @@
-"""Every page, three widths, both themes: no text cut, covered or outside, nothing logged, axe clean."""
+"""Every page, three widths, both themes: no text cut, covered or outside, nothing logged, axe clean.
+
+At rest, with its menus and dialogs open, and while work runs.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from playwright.sync_api import expect
 
 from tests.browser.accessibility import audit
 from tests.browser.boxes import faults, record
+from tests.browser.dropping import drop
 from tests.studio.running import RunningStudio
+from tests.support.buttons import write_cycle
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -21,6 +29,7 @@ PAGES = (
     "library?over=builtin%3Amx-clear&over=builtin%3Amx-red",
     "edit",
     "edit/builtin:mx-clear",
+    "press",
     "press/builtin:mx-clear",
     "live/compensate",
     "live/capture",
@@ -69,7 +78,7 @@ def look(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     page = context.new_page()
     record(page)
     logged: list[str] = []
-    page.on("pageerror", lambda error: logged.append(str(error)))
+    page.on("pageerror", lambda error: logged.append(str(error.stack)))
     page.on("console", lambda line: logged.append(line.text) if line.type == "error" else None)
     page.goto(studio.address)
     page.wait_for_selector("html[data-ready]")
@@ -83,24 +92,185 @@ def settled(page: Page) -> None:
     page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
-@pytest.mark.parametrize("address", PAGES)
-def test_no_text_is_cut_covered_or_outside(look: tuple[Page, list[str]], address: str) -> None:
-    page, logged = look
+def go(page: Page, address: str) -> None:
+    """Open an address and wait for what it shows."""
     page.goto(f"{page.url.partition('#')[0]}#/{address}")
     page.wait_for_selector(f"main[data-page={address.partition('/')[0].partition('?')[0]}]")
     if address in BUSY:
         page.wait_for_selector(BUSY[address])
     else:
         page.wait_for_load_state("networkidle")
+
+
+def looked_at(page: Page, width: int) -> list[str]:
+    """Return the faults of a page as it is shown, in both themes."""
+    found: list[str] = []
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+        settled(page)
+        found += [f"{width} {scheme}: {line}" for line in faults(page)]
+        # the widest in one theme, the narrowest in the other
+        if (width, scheme) in ((SIZES[0][0], "light"), (SIZES[-1][0], "dark")):
+            found += [f"{width} {scheme}, axe: {line}" for line in audit(page)]
+    return found
+
+
+@pytest.mark.parametrize("address", PAGES)
+def test_no_text_is_cut_covered_or_outside(look: tuple[Page, list[str]], address: str) -> None:
+    page, logged = look
+    go(page, address)
     found: list[str] = []
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
-        for scheme in ("light", "dark"):
-            page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
-            settled(page)
-            found += [f"{width} {scheme}: {line}" for line in faults(page)]
-    # wide pages are audited in test_accessibility
-    found += [f"axe: {line}" for line in audit(page)] + logged
+        found += looked_at(page, width)
+    found += logged
+    logged.clear()
+    assert found == []
+
+
+def name_asked_for(page: Page) -> None:
+    page.get_by_role("button", name="Button: mx-clear").click()
+    page.get_by_role("menuitem", name="Copy…").click()
+    expect(page.get_by_role("dialog")).to_be_visible()
+
+
+def menu_of(name: str) -> Callable[[Page], None]:
+    def opened(page: Page) -> None:
+        page.get_by_role("button", name=name, exact=True).first.click()
+        expect(page.get_by_role("menu")).to_be_visible()
+
+    return opened
+
+
+def keys(page: Page) -> None:
+    page.get_by_role("button", name="Keys").click()
+    expect(page.get_by_role("complementary", name="Keys")).to_be_visible()
+
+
+def term(page: Page) -> None:
+    page.locator("button.term").first.press("Shift")
+    page.locator("button.term").first.hover()
+    expect(page.get_by_role("tooltip")).to_be_visible()
+
+
+def tour(page: Page) -> None:
+    page.get_by_role("button", name="Take the tour").click()
+    expect(page.get_by_role("dialog")).to_contain_text("How a button feels")
+
+
+def tab(name: str) -> Callable[[Page], None]:
+    def opened(page: Page) -> None:
+        page.get_by_role("tab", name=name, exact=True).click()
+        page.wait_for_load_state("networkidle")
+
+    return opened
+
+
+OPEN: dict[str, tuple[str, Callable[[Page], None]]] = {
+    "the menu of a row": ("library", menu_of("Actions for mx-clear")),
+    "the menu of the button": ("edit/builtin:mx-clear", menu_of("Button: mx-clear")),
+    "the menu of exports": ("edit/builtin:mx-clear", menu_of("Export")),
+    "a name asked for": ("edit/builtin:mx-clear", name_asked_for),
+    "the list of keys": ("edit/builtin:mx-clear", keys),
+    "the meaning of a term": ("library?over=builtin%3Amx-clear", term),
+    "the tour": ("home", tour),
+    **{
+        f"the tab {name}": ("edit/builtin:mx-clear", tab(name))
+        for name in ("Figures", "Assign", "Vibration", "Surface", "Steps")
+    },
+}
+"""What can be opened: where, and how."""
+
+
+@pytest.mark.parametrize("what", OPEN)
+def test_what_is_open_is_whole(look: tuple[Page, list[str]], what: str) -> None:
+    page, logged = look
+    address, opened = OPEN[what]
+    found: list[str] = []
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        page.reload()
+        page.wait_for_selector("html[data-ready]")
+        go(page, address)
+        opened(page)
+        found += looked_at(page, width)
+    found += logged
+    logged.clear()
+    page.keyboard.press("Escape")
+    assert found == []
+
+
+def test_opened_files_are_whole(look: tuple[Page, list[str]], tmp_path: Path) -> None:
+    page, _ = look
+    files = [write_cycle(tmp_path / f"A switch with a rather long name, number {n}.csv") for n in (1, 2)]
+    (tmp_path / "no-button.csv").write_text("a,b\n1,2\n")
+    found: list[str] = []
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        page.reload()
+        page.wait_for_selector("html[data-ready]")
+        expect(drop(page, *files, tmp_path / "no-button.csv").get_by_role("article")).to_have_count(3)
+        found += looked_at(page, width)
+    page.keyboard.press("Escape")
+    assert found == []
+
+
+@pytest.mark.timeout(240)
+def test_work_on_a_rig_is_whole_while_it_runs_and_when_it_is_done(look: tuple[Page, list[str]]) -> None:
+    page, logged = look
+    go(page, "live/compensate")
+    page.get_by_role("button", name="Start", exact=True).click()
+    verdict = page.get_by_role("region", name="Verdict")
+    expect(verdict).to_contain_text(re.compile("press [2-9]"), timeout=90_000)
+    found: list[str] = []
+    for done in (False, True):
+        if done:
+            expect(verdict).to_contain_text("Mean error", timeout=150_000)
+            page.wait_for_load_state("networkidle")
+        for width, height in SIZES:
+            page.set_viewport_size({"width": width, "height": height})
+            found += looked_at(page, width)
+    found += logged
+    logged.clear()
+    assert found == []
+
+
+@pytest.mark.timeout(300)
+def test_an_optimisation_is_whole_while_it_runs_and_when_it_is_done(look: tuple[Page, list[str]]) -> None:
+    page, logged = look
+    go(page, "optimize")
+    page.get_by_role("radio", name="A simulated person plays").click()
+    page.get_by_role("button", name="Begin", exact=True).click()
+    verdict = page.get_by_role("region", name="Verdict")
+    expect(verdict).to_contain_text("A simulated person plays")
+    found: list[str] = []
+    for done in (False, True):
+        if done:
+            expect(verdict).to_contain_text("(95 %", timeout=240_000)
+            page.wait_for_load_state("networkidle")
+        for width, height in SIZES:
+            page.set_viewport_size({"width": width, "height": height})
+            found += looked_at(page, width)
+    found += logged
+    logged.clear()
+    assert found == []
+
+
+def test_a_study_is_whole_with_its_form_and_before_it_is_frozen(look: tuple[Page, list[str]]) -> None:
+    page, logged = look
+    go(page, "studies")
+    page.get_by_label("Name").fill("which-of-two-clicks-more")
+    page.get_by_role("button", name="Create").click()
+    expect(page.get_by_text("No problems found.")).to_be_visible()
+    found: list[str] = []
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        found += looked_at(page, width)
+        page.get_by_role("button", name="Freeze the study").click()
+        expect(page.get_by_role("alertdialog")).to_be_visible()
+        found += looked_at(page, width)
+        page.keyboard.press("Escape")
+    found += logged
     logged.clear()
     assert found == []
 
@@ -126,3 +296,10 @@ def test_a_word_that_a_plot_cuts_is_found(look: tuple[Page, list[str]]) -> None:
     page.evaluate("document.getElementById('planted').remove()")
     assert len(found) == 1
     assert found[0].startswith('cut in a plot: "beyond its edge"')
+
+
+def test_axe_sees_a_planted_fault(look: tuple[Page, list[str]]) -> None:
+    page, _ = look
+    go(page, "home")
+    page.evaluate("document.querySelector('main').append(document.createElement('button'))")
+    assert any("button-name" in line for line in audit(page))

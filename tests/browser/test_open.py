@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import wave
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,30 +16,11 @@ from fdvv.model.file import load_builtin, load_model
 from fdvv.program.file import program_to_json
 from fdvv.program.library import load_shipped
 from tests.browser.accessibility import audit
+from tests.browser.dropping import DRAGS, LONG_ms, drag, drop
 from tests.support.buttons import write_cycle
 
 if TYPE_CHECKING:
-    from playwright.sync_api import BrowserContext, Locator, Page
-
-LONG_ms = 60_000
-DRAGS = ("dragEnter", "dragOver", "drop")
-
-
-def drag(page: Page, kinds: Sequence[str], *paths: Path) -> None:
-    """Drag files of the disk over the middle of the page, as the system does."""
-    line = page.context.new_cdp_session(page)
-    data = {"items": [], "files": [str(path) for path in paths], "dragOperationsMask": 1}
-    for kind in kinds:
-        line.send("Input.dispatchDragEvent", {"type": kind, "x": 300, "y": 400, "data": data})
-    line.detach()
-
-
-def drop(page: Page, *paths: Path) -> Locator:
-    """Drop files; return the dialog when all of them are read."""
-    drag(page, DRAGS, *paths)
-    dialog = page.get_by_role("dialog", name="Open")
-    expect(dialog.get_by_role("status")).not_to_contain_text("Reading", timeout=LONG_ms)
-    return dialog
+    from playwright.sync_api import BrowserContext, Page
 
 
 def flat(path: Path) -> Path:

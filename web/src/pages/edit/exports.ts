@@ -4,18 +4,19 @@ import { csv, download, type Plot } from "../../draw";
 import { force_cN, places_mm } from "../../math";
 import type { FDVVModel } from "../../model";
 import { tell } from "../../ui";
+import type { Action } from "../../ui/menu";
 import type { EditorController } from "./editor_controller";
 
-/** What the menu offers, by name. */
-export function exportsOf({ model }: EditorController, plot: Plot): Record<string, () => void> {
+/** What the menu offers. */
+export function exportsOf({ model }: EditorController, plot: Plot): Action[] {
   const save = (end: string, data: string | Blob, type?: string) =>
     download(`${model.peek().name}.${end}`, data, type);
-  return {
-    "Model file": () => save("fdvv.json", modelText(model.peek()), "application/json"),
-    "Curves, CSV": () => save("csv", curvesCsv(model.peek()), "text/csv"),
-    "View, PNG": () => void plot.toPng().then((blob) => save("png", blob), tell),
-    "View, SVG": () => save("svg", plot.toSvg(), "image/svg+xml"),
-  };
+  return [
+    ["Model file", () => save("fdvv.json", modelText(model.peek()), "application/json")],
+    ["Curves, CSV", () => save("csv", curvesCsv(model.peek()), "text/csv")],
+    ["View, PNG", () => void plot.toPng().then((blob) => save("png", blob), tell)],
+    ["View, SVG", () => save("svg", plot.toSvg(), "image/svg+xml")],
+  ];
 }
 
 /** A model as the text of its file. */

@@ -17,6 +17,8 @@ const FAR = 1.36;
 const BELOW_px = 20;
 /** A letter of a label is hardly wider. */
 const LETTER_px = 7.4;
+/** Half the height of a label. */
+const HALF_px = 9;
 
 /** Paint floor, ticks and labels; `at` gives where a corner of the box is seen. */
 export function paintAxes(
@@ -72,7 +74,9 @@ export function paintAxes(
     brush.text(
       label,
       {
-        x_px: up ? x - BELOW_px : inside(x, align === "right", label, width_px),
+        x_px: up
+          ? Math.min(width_px - HALF_px, Math.max(HALF_px, x - BELOW_px))
+          : inside(x, align === "right", label, width_px),
         y_px: up ? y : y + BELOW_px,
       },
       { colour: text, size_px: 12, align, upwards: up },
