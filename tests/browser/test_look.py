@@ -93,8 +93,10 @@ def settled(page: Page) -> None:
 
 
 def go(page: Page, address: str) -> None:
-    """Open an address and wait for what it shows."""
-    page.goto(f"{page.url.partition('#')[0]}#/{address}")
+    """Open an address anew, and wait for what it shows."""
+    base = page.url.partition("#")[0]
+    page.goto("about:blank")
+    page.goto(f"{base}#/{address}")
     page.wait_for_selector(f"main[data-page={address.partition('/')[0].partition('?')[0]}]")
     if address in BUSY:
         page.wait_for_selector(BUSY[address])
@@ -189,14 +191,11 @@ def test_what_is_open_is_whole(look: tuple[Page, list[str]], what: str) -> None:
     found: list[str] = []
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
-        page.reload()
-        page.wait_for_selector("html[data-ready]")
         go(page, address)
         opened(page)
         found += looked_at(page, width)
     found += logged
     logged.clear()
-    page.keyboard.press("Escape")
     assert found == []
 
 
@@ -207,11 +206,9 @@ def test_opened_files_are_whole(look: tuple[Page, list[str]], tmp_path: Path) ->
     found: list[str] = []
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
-        page.reload()
-        page.wait_for_selector("html[data-ready]")
+        go(page, "home")
         expect(drop(page, *files, tmp_path / "no-button.csv").get_by_role("article")).to_have_count(3)
         found += looked_at(page, width)
-    page.keyboard.press("Escape")
     assert found == []
 
 
@@ -278,7 +275,7 @@ def test_a_study_is_whole_with_its_form_and_before_it_is_frozen(look: tuple[Page
 @pytest.mark.parametrize("kind", PLANTED)
 def test_a_planted_fault_is_found(look: tuple[Page, list[str]], kind: str) -> None:
     page, _ = look
-    page.goto(f"{page.url.partition('#')[0]}#/home")
+    go(page, "home")
     page.wait_for_selector(".card polyline")
     page.evaluate(PLANT, PLANTED[kind])
     found = faults(page)
@@ -289,7 +286,7 @@ def test_a_planted_fault_is_found(look: tuple[Page, list[str]], kind: str) -> No
 
 def test_a_word_that_a_plot_cuts_is_found(look: tuple[Page, list[str]]) -> None:
     page, _ = look
-    page.goto(f"{page.url.partition('#')[0]}#/home")
+    go(page, "home")
     page.wait_for_selector(".card polyline")
     page.evaluate(DRAWN)
     found = faults(page)

@@ -7,13 +7,18 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 from pathlib import Path
+from typing import Any
 
 import httpx2
 import pytest
+from starlette.requests import Request
 
 from fdvv.errors import InputError
-from fdvv.studio.server import address_of, bound_socket, reachable_hosts
+from fdvv.studio.contract import Call
+from fdvv.studio.server import address_of, answer_call, bound_socket, reachable_hosts
+from fdvv.studio.studio import Studio
 from tests.studio.running import RunningStudio
 
 
@@ -33,6 +38,31 @@ def test_it_opens_and_ends_quietly(tmp_path: Path, how: int, status: int, words:
     said = studio.stop(how)
     assert studio.process.returncode == status
     assert said.splitlines() == words
+
+
+def test_ctrl_c_during_a_long_call_ends_it_without_a_traceback(own_studio: Studio) -> None:
+    begun, over = threading.Event(), threading.Event()
+
+    def slow(_studio: Studio, _ask: dict[str, Any]) -> None:
+        begun.set()
+        over.wait(30)
+
+    async def cut() -> int:
+        async def receive() -> dict[str, Any]:
+            return {"type": "http.request", "body": b"{}"}
+
+        headers = [(b"content-type", b"application/json")]
+        request = Request({"type": "http", "method": "POST", "headers": headers}, receive)
+        answering = asyncio.create_task(answer_call(own_studio, Call("slow", dict, dict, slow), request))
+        while not begun.is_set():
+            await asyncio.sleep(0.01)
+        answering.cancel()  # what uvicorn does once it has waited
+        try:
+            return (await answering).status_code
+        finally:
+            over.set()
+
+    assert asyncio.run(cut()) == 503
 
 
 def test_it_makes_no_project_before_something_is_kept(tmp_path: Path) -> None:

@@ -89,7 +89,7 @@ class Page:
         self.statuses: Counter[int] = Counter()
         self.refusals: dict[str, str] = {}
         headers = {"authorization": f"Bearer {studio.token}", "origin": studio.base}
-        self._line = httpx2.Client(base_url=studio.base, headers=headers, timeout=60)
+        self._line = httpx2.Client(base_url=studio.base, headers=headers, timeout=300)
 
     def ask(self, name: str) -> None:
         nonsense = self.draw.choice((0.0, 0.0, 0.15))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import gzip
 import hashlib
 import ipaddress
@@ -99,7 +100,7 @@ def error_response(reason: str, status: int) -> Response:
 
 
 async def answer_call(studio: Studio, call: Call, request: Request) -> Response:
-    """Run a call. 400 a question that is none, 413 too large, 422 the person's mistake, 500 ours."""
+    """Run a call. 400 no question, 413 too large, 422 the person's mistake, 500 ours, 503 closed."""
     if not request.headers.get("content-type", "").startswith("application/json"):
         return error_response("the question must be application/json", 415)
     try:
@@ -113,6 +114,9 @@ async def answer_call(studio: Studio, call: Call, request: Request) -> Response:
         return error_response(f"{call.name}: {error}", 400)
     try:
         found = await run_in_threadpool(call.function, studio, ask)
+    except asyncio.CancelledError:
+        # Ctrl-C, and the server has waited long enough; the work itself ends with the process
+        return error_response("the studio is closed", 503)
     except FdvvError as error:
         return error_response(error_line(error), 422)
     except OSError as error:
