@@ -130,6 +130,18 @@ def test_no_text_is_cut_covered_or_outside(look: tuple[Page, list[str]], address
     assert found == []
 
 
+def test_pages_that_are_opened_again_know_what_was_fetched_before(look: tuple[Page, list[str]]) -> None:
+    """Nothing may depend on being there before its page has asked for it."""
+    page, logged = look
+    go(page, "home")
+    for address in (*PAGES, *PAGES):
+        page.evaluate(f"location.hash = '#/{address}'")
+        page.wait_for_selector(f"main[data-page={address.partition('/')[0].partition('?')[0]}]")
+        page.wait_for_load_state("networkidle")
+        settled(page)
+    assert logged == []
+
+
 def name_asked_for(page: Page) -> None:
     page.get_by_role("button", name="Button: mx-clear").click()
     page.get_by_role("menuitem", name="Copy…").click()
