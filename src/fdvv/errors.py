@@ -11,7 +11,11 @@ FdvvError
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import difflib
+from collections.abc import Iterable, Mapping
+
+NEAR_ratio = 0.5
+"""How alike a misspelt name and a known one are at least (``difflib``)."""
 
 
 class FdvvError(Exception):
@@ -61,3 +65,13 @@ class WorkerError(FdvvError):
 
 class BuildError(FdvvError):
     """This installation lacks a part; says which and how to get it."""
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
+    """Return a remedy for an unknown name: the known one that is nearest, or else what is given.
+
+    otherwise : "use one of ..." with all of them if left out.
+    """
+    names = tuple(known)
+    near = difflib.get_close_matches(name, names, 1, NEAR_ratio)
+    return f"did you mean {near[0]}?" if near else otherwise or f"use one of {', '.join(names)}"

@@ -5,11 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from fdvv.errors import InputError
+from fdvv.errors import InputError, did_you_mean
 from fdvv.io.documents import MODEL, own_kind
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.edit import Conflict, merge
@@ -34,10 +33,9 @@ def open_button(spec: str, settings: FitSettings | None = None) -> FDVVModel:
     if not spec or not path.is_file():
         is_folder = spec and path.is_dir()
         reason = "is a folder, one button is needed" if is_folder else "no such file or built-in button"
-        close = get_close_matches(spec.lower(), builtin_names(), n=1)
         remedy = f"name a file or one of {', '.join(builtin_names())}"
-        remedy = f"did you mean {close[0]}? Else {remedy}" if close else remedy
-        raise InputError(spec or "''", "argument", reason, remedy)
+        near = did_you_mean(spec.lower(), builtin_names(), " ").strip()
+        raise InputError(spec or "''", "argument", reason, f"{near} Else {remedy}" if near else remedy)
     # reading foreign files takes a dozen modules that a built-in does not need
     from fdvv.button.fit import fit_file
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import csv
-import difflib
 import io
 import re
 from collections.abc import Iterator, Sequence
@@ -16,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import msgspec
 import numpy as np
 
-from fdvv.errors import InputError
+from fdvv.errors import InputError, did_you_mean
 from fdvv.force_text import force_of
 from fdvv.io.documents import MODEL, own_kind
 from fdvv.io.files import write_atomic
@@ -240,8 +239,7 @@ def _column(name: str) -> tuple[str, str]:
 def _check_name(name: str) -> None:
     if name in NUMBERS:
         return
-    near = difflib.get_close_matches(name, NUMBERS, 1, 0.5)
-    remedy = f"did you mean {near[0]}?" if near else f"use kind or one of {', '.join(NUMBERS)}"
+    remedy = did_you_mean(name, NUMBERS, f"use kind or one of {', '.join(NUMBERS)}")
     raise InputError("search", name, "no such column", remedy)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +15,7 @@ from msgspec import Meta, Struct
 
 from fdvv.button.fit import one_line
 from fdvv.button.open import open_button
-from fdvv.errors import InputError, ModelError
+from fdvv.errors import InputError, ModelError, did_you_mean
 from fdvv.io.documents import read_toml
 from fdvv.io.files import read_limited
 from fdvv.model.file import builtin_names
@@ -175,9 +174,8 @@ def _values(value: FactorValues) -> tuple[Value, ...]:
 
 
 def _unknown(source: object, place: str, name: str, known: list[str]) -> InputError:
-    near = difflib.get_close_matches(name, known, 1, 0.6)
-    remedy = f"did you mean {near[0]}?" if near else f"use one of {', '.join(known)}"
-    return InputError(source, f"{place}.{name}" if place != "measure" else place, f"unknown: {name}", remedy)
+    at = f"{place}.{name}" if place != "measure" else place
+    return InputError(source, at, f"unknown: {name}", did_you_mean(name, known))
 
 
 FIRST = (

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import json
 import math
 from collections.abc import Callable, Mapping
@@ -15,7 +14,7 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from fdvv.errors import InputError, ModelError
+from fdvv.errors import InputError, ModelError, did_you_mean
 from fdvv.io.documents import read_toml
 from fdvv.io.files import read_limited
 from fdvv.twin.button import BUILT, BuiltCam, ButtonPhysics
@@ -168,9 +167,7 @@ def _advice(known: About) -> str:
 
 
 def _unknown(path: Path, place: str, names: list[str], what: str) -> InputError:
-    near = difflib.get_close_matches(place.rpartition(".")[2], names, 1, 0.5)
-    remedy = f'did you mean "{near[0]}"?' if near else f"known are {', '.join(names)}"
-    return InputError(path, place, f"unknown {what}", remedy)
+    return InputError(path, place, f"unknown {what}", did_you_mean(place.rpartition(".")[2], names))
 
 
 def button_names() -> tuple[str, ...]:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import tomllib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from fdvv.errors import InputError
+from fdvv.errors import InputError, did_you_mean
 from fdvv.io.files import read_limited
 from fdvv_rig.dimensions import CLASS, NAMES, Dimensions, meaning_of, source_of
 from fdvv_rig.fits import check_fits
@@ -63,8 +62,7 @@ def _of_file(path: Path) -> dict[str, float]:
 
 def _number(source: object, name: str, value: Any) -> float:
     if name not in NAMES:
-        near = difflib.get_close_matches(name, NAMES, 1)
-        remedy = f"did you mean {near[0]}?" if near else "see fdvv hardware parts --dimensions"
+        remedy = did_you_mean(name, NAMES, "see fdvv hardware parts --dimensions")
         raise InputError(source, repr(name), "is no dimension of the rig", remedy)
     if isinstance(value, bool) or not isinstance(value, str | float | int):
         raise InputError(source, name, f"{value!r} is not a number", "write a number of millimetres")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from contextlib import suppress
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -11,7 +10,7 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import device_option, remote
-from fdvv.errors import DeviceError, InputError
+from fdvv.errors import DeviceError, InputError, did_you_mean
 from fdvv.io.documents import read_toml
 from fdvv.io.files import write_atomic
 from fdvv.protocol.tables import Fault, Settings
@@ -90,8 +89,7 @@ def _checked(values: dict[str, object], source: str) -> dict[str, int]:
     found = {}
     for name, value in values.items():
         if name not in FIELDS:
-            near = difflib.get_close_matches(name, FIELDS, 1, 0.5)
-            remedy = f"did you mean {near[0]}?" if near else "fdvv device settings get shows them all"
+            remedy = did_you_mean(name, FIELDS, "fdvv device settings get shows them all")
             raise InputError(source, name, "is no setting", remedy)
         low, high = Settings.LIMITS[name]
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:

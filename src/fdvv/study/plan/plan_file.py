@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import re
 from collections.abc import Iterator
@@ -13,7 +12,7 @@ from typing import Any, get_args
 
 import msgspec
 
-from fdvv.errors import InputError
+from fdvv.errors import InputError, did_you_mean
 from fdvv.io.documents import read_toml
 from fdvv.io.files import read_limited, write_atomic
 from fdvv.study.plan.plan import StudyPlan
@@ -108,8 +107,7 @@ def _near(name: str, keys: list[str]) -> str:
     words = [key for key in keys if not key.startswith("[")]
     kind = dict(_tables(StudyPlan)).get(words[-1], StudyPlan) if words else StudyPlan
     known = [field.name for field in msgspec.structs.fields(kind)]
-    near = difflib.get_close_matches(name, known, 1, 0.6)
-    return f'did you mean "{near[0]}"?' if near else f"known are {', '.join(known)}"
+    return did_you_mean(name, known)
 
 
 def _tables(kind: type[msgspec.Struct]) -> Iterator[tuple[str, type[msgspec.Struct]]]:
