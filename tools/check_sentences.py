@@ -1,7 +1,7 @@
-"""List sentences of the pages for newcomers that are too long: ``python -m tools.check_sentences``.
+"""List sentences of the documents that are too long: ``python -m tools.check_sentences``.
 
-Prints file, line, number of words and the sentence, and exits with 1. Code is left out, a link counts by its
-text, a piece of code within a line is one word, and every cell of a table is text of its own.
+Prints file, line, number of words and the sentence, and exits with 1. Code is left out, fenced or indented. A
+link counts by its text, a piece of code within a line is one word, and every cell of a table is text of its own.
 """
 
 from __future__ import annotations
@@ -12,7 +12,28 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = ("README.md", "docs/tutorials/*.md", "docs/how-to/*.md")
+PAGES = (
+    "README.md",
+    "docs/*.md",
+    "docs/tutorials/*.md",
+    "docs/how-to/*.md",
+    "docs/explanation/*.md",
+    "docs/decisions/*.md",
+)
+NOT_YET = {
+    f"docs/explanation/{page}.md"
+    for page in (
+        "force-loop",
+        "identification",
+        "link",
+        "live-press",
+        "optimisation",
+        "safety",
+        "studio",
+        "twin",
+    )
+}
+"""Pages of explanation that still have long sentences: shorten them, then remove them here."""
 MOST_WORDS = 25
 
 _ITEM = re.compile(r"\s*(?:[-*+]|\d+\.)\s+")
@@ -26,10 +47,12 @@ _SHORT = re.compile(r"\b(?:e\.g|i\.e|et al|vs|cf|Fig)\.\s")
 def blocks(text: str) -> Iterator[tuple[int, str]]:
     """Yield (line, text) of every paragraph, item, heading and cell of a table."""
     lines: list[str] = []
-    start, fence = 1, ""
+    start, fence, before = 1, "", ""
     for number, line in enumerate([*text.splitlines(), ""], start=1):
         mark = re.match(r"\s*(```+|~~~+)", line)
-        plain = not fence and not mark
+        code = line.startswith("    ") and not lines and not _ITEM.match(line) and not before.strip()
+        before = "" if code else line
+        plain = not fence and not mark and not code
         if lines and (
             not plain or not line.strip() or _ITEM.match(line) or line.lstrip().startswith(("|", "#"))
         ):
@@ -67,7 +90,7 @@ def found(text: str) -> Iterator[tuple[int, int, str]]:
 def main() -> int:
     wrong = 0
     for pattern in PAGES:
-        for path in sorted(ROOT.glob(pattern)):
+        for path in sorted(set(ROOT.glob(pattern)) - {ROOT / page for page in NOT_YET}):
             for line, count, sentence in found(path.read_text(encoding="utf-8")):
                 print(f"{path.relative_to(ROOT)}:{line}: {count} words: {sentence}")
                 wrong += 1
