@@ -1,7 +1,8 @@
 """List sentences of the documents that are too long: ``python -m tools.check_sentences``.
 
-Prints file, line, number of words and the sentence, and exits with 1. Code is left out, fenced or indented. A
-link counts by its text, a piece of code within a line is one word, and every cell of a table is text of its own.
+Prints file, line, number of words and the sentence, and exits with 1. Code is left out, fenced or indented.
+A link counts by its text, a piece of code within a line is one word, and every cell of a table is text of
+its own.
 """
 
 from __future__ import annotations
