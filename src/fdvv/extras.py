@@ -22,8 +22,8 @@ Kind = Literal[
     "exchange_formats",
 ]
 """What an extra can add: a click command of ``fdvv`` or of ``fdvv device``, an engine of ``fdvv optimize``, a
-board in lockstep, the physics of a rig of one's own, what presents the rounds of ``fdvv optimize`` to a
-person, a format of ``fdvv export``."""
+board in lockstep or a device, the physics of a rig of one's own, what presents the rounds of ``fdvv
+optimize`` to a person, a format of ``fdvv export``."""
 
 KNOWN = MappingProxyType(
     {
@@ -33,6 +33,9 @@ KNOWN = MappingProxyType(
         ("engines", "botorch"): "fdvv-botorch",
         ("pair_engines", "preference-botorch"): "fdvv-botorch",
         ("devices", "emulated"): "fdvv-m0",
+        ("devices", "moteus"): "fdvv-drives",
+        ("devices", "odrive"): "fdvv-drives",
+        ("devices", "simplefoc"): "fdvv-drives",
         ("presenters", "strip"): "fdvv-strip",
         ("exchange_formats", "mjcf"): "fdvv-haptics",
         ("exchange_formats", "smartknob"): "fdvv-haptics",

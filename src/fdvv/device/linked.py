@@ -19,6 +19,7 @@ from fdvv.model.press import Press
 from fdvv.protocol.tables import BoardLimits, CellSpec, Fault, Settings, TickFlag
 
 
+@runtime_checkable
 class Board(Protocol):
     """The firmware, run a tick at a time."""
 

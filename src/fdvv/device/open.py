@@ -28,18 +28,26 @@ KINDS = {
     "emulated:FILE": "the same, from that ELF file of the ItsyBitsy M0 or M4",
     "serial:PORT": "a rig on a serial port, pressed by a person",
     "replay:FILE": "a recorded session",
+    "moteus:FILE.toml": "a moteus and the stage of that file, pressed by a person; loop on this computer",
+    "odrive:FILE.toml": "the same with an ODrive on CAN",
+    "simplefoc:FILE.toml": "the same with a SimpleFOC board on a serial port",
     "rig:FILE.py:NAME": "a rig of your own, simulated by that class; fdvv device new writes one",
 }
 """Devices that a word opens, and what each is."""
 
 
+PRESSED = ("serial", "moteus", "odrive", "simplefoc")
+"""Kinds of which nothing is simulated: whoever sits there presses."""
+
+
 def pressed_by_person(spec: str) -> bool:
     """Return whether a person presses the device, or bench, that spec names; no other is pressed by one."""
-    return spec.startswith("serial:")
+    kind, colon, _ = spec.partition(":")
+    return bool(colon) and kind in PRESSED
 
 
 def open_device(spec: str, rig: Rig | None = None, finger: Finger | None = None, seed: int = 0) -> Device:
-    """Open the device that spec names (KINDS, or a board of an extra).
+    """Open the device that spec names (KINDS, or a board or device of an extra).
 
     rig, finger, seed : of simulated devices. Raises InputError on an unknown name, DeviceError if the device
     cannot be opened, BuildError if its extra is not installed.
@@ -60,7 +68,8 @@ def open_device(spec: str, rig: Rig | None = None, finger: Finger | None = None,
     if kind in extras.names("rigs"):
         return _own_rig(kind, seed)
     if kind in extras.names("devices"):
-        return LinkedDevice(open_board(spec), SimulatedPerson(rig, finger, seed))
+        made = _of_extra(spec)
+        return LinkedDevice(made, SimulatedPerson(rig, finger, seed)) if isinstance(made, Board) else made
     raise InputError("--device", spec, "names no device", f"use one of {', '.join(KINDS)}")
 
 
@@ -81,6 +90,15 @@ def person_of(spec: str, seed: int = 0) -> Person:
 
 def open_board(spec: str) -> Board:
     """Open a board of an extra as ``kind:where``. Raises BuildError if the extra is not installed."""
+    made = _of_extra(spec)
+    if not isinstance(made, Board):
+        raise InputError(
+            "--device", spec, "has no board with the firmware", "use host, emulated or serial:PORT"
+        )
+    return made
+
+
+def _of_extra(spec: str) -> Board | Device:
     kind, _, where = spec.partition(":")
-    board: Board = extras.load("devices", kind)(where)
-    return board
+    made: Board | Device = extras.load("devices", kind)(where)
+    return made

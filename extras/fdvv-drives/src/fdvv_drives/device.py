@@ -1,0 +1,203 @@
+"""A device whose loop runs here: the drive says where it is, the core looks up the force to make."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Self
+
+from fdvv.device.contract import DeviceInfo, check_speed, check_table
+from fdvv.device.remote import surface_image
+from fdvv.errors import DeviceError
+from fdvv.model.press import Press
+from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import Settings
+from fdvv_drives.controller import Controller
+from fdvv_drives.drive import Drive, LostAnswerError, Reading
+from fdvv_drives.record import LoopLog, PressFinder
+from fdvv_drives.stage import Stage
+
+SILENCE_RATIO, SILENCE_MORE_s = 1.5, 0.05
+"""How long, of the watchdog's time and beside it, it must stay silent before it is asked whether it fell."""
+ARMED_s = 0.3
+"""Time for the cap to come up before whoever presses hears that the device is ready."""
+
+
+class DriveDevice:
+    """A stage and its drive, as a device (fdvv.device.contract.Device); a person presses.
+
+    Without a force sensor the force of a press is that of the torque which the drive reports, friction and
+    the mover's mass left out: settings().force_gain_q14 is 0, as on a board without one.
+
+    Parameters
+    ----------
+    stage : its mechanics and limits. drive : in torque mode once enabled.
+    force_cN : reads a sensor at the cap, positive against the finger; None without one.
+    armed : called in the loop with travel and speed as soon as the cap is up: for a simulated hand.
+
+    Attributes
+    ----------
+    log : of the last press, with true times.
+    """
+
+    def __init__(
+        self,
+        stage: Stage,
+        drive: Drive,
+        force_cN: Callable[[], float] | None = None,
+        armed: Callable[[float, float], None] | None = None,
+    ) -> None:
+        self.stage, self.drive, self.armed = stage, drive, armed
+        self._force_cN = force_cN
+        self.log = LoopLog()
+        self._controller = Controller(stage, force_cN is not None)
+        self._travel_mm: float | None = None
+        self._idle_since_s = time.perf_counter()
+        self._closed = False
+        try:
+            self._zero = self._check_drive()
+        except BaseException:
+            self.close()
+            raise
+
+    def _check_drive(self) -> float:
+        """Enable the drive at zero torque, let its watchdog end that, and return its position at the top."""
+        drive, watchdog_s = self.drive, self.drive.watchdog_s
+        try:
+            drive.enable()
+            position = self._first_reading().position
+            if watchdog_s is not None:
+                time.sleep(SILENCE_RATIO * watchdog_s + SILENCE_MORE_s)
+                if not drive.has_fallen():
+                    raise DeviceError(
+                        f"{drive.name}: its watchdog does not end the torque after "
+                        f"{1000 * watchdog_s:g} ms of silence; switch it on, see docs/how-to/use-a-drive.md"
+                    )
+        finally:
+            with suppress(DeviceError):
+                drive.stop()
+        return position if self.stage.zero is None else self.stage.zero
+
+    def _first_reading(self) -> Reading:
+        for _ in range(self.stage.limits.lost_answers):
+            with suppress(LostAnswerError):
+                return self.drive.exchange(0.0)
+        return self.drive.exchange(0.0)
+
+    def info(self) -> DeviceInfo:
+        stage = self.stage
+        return DeviceInfo(
+            f"{stage.mechanics.name} on {self.drive.name}",
+            stage.mechanics.simulated,
+            self.settings().force_limit_cN64 / 64,
+            stage.mechanics.travel_mm,
+            stage.period_s,
+        )
+
+    def settings(self) -> Settings:
+        return self._controller.settings
+
+    def configure(self, settings: Settings) -> None:
+        self._controller.configure(settings)
+        self._travel_mm = None
+
+    def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
+        check_table(self.info(), surface, travel_mm)
+        self._controller.activate(surface_image(surface, travel_mm, paced))
+        self._travel_mm = travel_mm
+
+    def press(self, velocity_mm_s: float) -> Press:
+        """Render until someone has pressed; DeviceError, at zero torque, on a fault or if nobody does."""
+        if self._closed:
+            raise DeviceError(f"{self.drive.name}: is closed; open the device again")
+        if self._travel_mm is None:
+            raise DeviceError(f"{self.drive.name}: press before upload; upload a surface first")
+        check_speed(self.drive.name, velocity_mm_s)
+        self._controller.announce(velocity_mm_s)
+        self.log = log = LoopLog()
+        finder = PressFinder(self._travel_mm)
+        try:
+            self._begin()
+            self._loop(log, finder, self._travel_mm, velocity_mm_s)
+        except LostAnswerError as error:
+            raise DeviceError(f"{error}; the drive's torque is off, or falls with its watchdog") from error
+        finally:
+            self._end()
+        simulated = self.stage.mechanics.simulated
+        return log.press(finder.first, len(log) - 1, self.stage.period_s, velocity_mm_s, simulated)
+
+    def _begin(self) -> None:
+        """Enable the drive, let the core know how long nothing was commanded, and arm it."""
+        self.drive.enable()
+        x_mm = self.stage.displacement_mm(self._first_reading().position, self._zero)
+        idle_ticks = round((time.perf_counter() - self._idle_since_s) / (self.stage.tick_us * 1e-6))
+        self._controller.step(x_mm, self._sensed_cN(0.0), idle_ticks, 0)
+        self._controller.arm()
+
+    def _end(self) -> None:
+        self._controller.disarm()
+        self._idle_since_s = time.perf_counter()
+        with suppress(DeviceError):  # it is gone: then only its own watchdog can act
+            self.drive.stop()
+
+    def _loop(self, log: LoopLog, finder: PressFinder, travel_mm: float, velocity_mm_s: float) -> None:
+        stage, period_s = self.stage, self.stage.period_s
+        tick_s = stage.tick_us * 1e-6
+        begin_s, ticks, lost, force_cN = time.perf_counter(), 0, 0, 0.0
+        armed = self.armed
+        while True:
+            sent_s = time.perf_counter()
+            try:
+                reading = self.drive.exchange(stage.torque(0.01 * force_cN))
+            except LostAnswerError:
+                log.lost, lost = log.lost + 1, lost + 1
+                if lost > stage.limits.lost_answers:
+                    raise
+                continue
+            received_s, lost = time.perf_counter(), 0
+            now_ticks = max(ticks + 1, round((0.5 * (sent_s + received_s) - begin_s) / tick_s))
+            sensed_cN = self._sensed_cN(100 * stage.force_N(reading.torque))
+            x_mm = stage.displacement_mm(reading.position, self._zero)
+            step = self._controller.step(x_mm, sensed_cN, now_ticks - ticks, round(1e6 * received_s))
+            if step.faulted:
+                raise DeviceError(f"{self.drive.name}: fell to zero force, {self._controller.report()}")
+            ticks, force_cN = now_ticks, step.commanded_cN
+            log.note(sent_s, received_s, step.displacement_mm, sensed_cN, force_cN, step.limited)
+            if finder.feed(step.displacement_mm):
+                return
+            if armed is not None and received_s - begin_s > ARMED_s:
+                armed(travel_mm, velocity_mm_s)
+                armed = None
+            self._wait(begin_s, period_s)
+
+    def _wait(self, begin_s: float, period_s: float) -> None:
+        """Sleep until the next cycle; DeviceError once nobody has pressed for long."""
+        now_s = time.perf_counter() - begin_s
+        if now_s > self.stage.loop.patience_s:
+            waited = f"nobody pressed within {self.stage.loop.patience_s:g} s"
+            raise DeviceError(f"{self.drive.name}: {waited}; press the button fully")
+        time.sleep(period_s - now_s % period_s)
+
+    def _sensed_cN(self, reported_cN: float) -> float:
+        return reported_cN if self._force_cN is None else self._force_cN()
+
+    def clear_fault(self) -> None:
+        """Clear the latched fault; DeviceError while its cause lasts."""
+        self._controller.clear()
+
+    def close(self) -> None:
+        """Switch the torque off and let the drive go; a second time does nothing."""
+        if self._closed:
+            return
+        self._closed = True
+        with suppress(DeviceError):
+            self.drive.stop()
+        with suppress(DeviceError):
+            self.drive.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
