@@ -191,11 +191,13 @@ def _job(
 
 def check_force_sensor(device: Device, truth_counts: bool = False) -> None:
     """Raise DeviceError for a board without a force sensor; truth_counts accepts a simulated one."""
-    if not isinstance(device, Remote) or device.settings().force_gain_q14:
+    estimated = getattr(device, "force_is_estimated", False)
+    if not estimated and (not isinstance(device, Remote) or device.settings().force_gain_q14):
         return
     info = device.info()
-    if not (truth_counts and info.simulated):
-        remedy = 'name a --rig with [keycap_sensor] kind = "force"' if info.simulated else "fit one"
+    if estimated or not (truth_counts and info.simulated):
+        of_twin = info.simulated and not estimated
+        remedy = 'name a --rig with [keycap_sensor] kind = "force"' if of_twin else "fit one"
         raise DeviceError(
             f"{info.name}: no force sensor in its settings (force_gain_q14 is 0), its presses hold no "
             f"force on the finger; {remedy}"

@@ -5,13 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Self
+from typing import Protocol, Self
 
-from fdvv.device.contract import DeviceInfo, check_speed, check_table
+from fdvv.device.contract import DeviceInfo, FaultReport, check_speed, check_table, check_travel
 from fdvv.device.remote import surface_image
-from fdvv.errors import DeviceError
+from fdvv.errors import DeviceError, ModelError
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
+from fdvv.protocol.messages import CN64_PER_cN, travel_mm_of
 from fdvv.protocol.tables import Settings
 from fdvv_drives.controller import Controller
 from fdvv_drives.drive import Drive, LostAnswerError, Reading
@@ -24,11 +25,28 @@ ARMED_s = 0.3
 """Time for the cap to come up before whoever presses hears that the device is ready."""
 
 
-class DriveDevice:
-    """A stage and its drive, as a device (fdvv.device.contract.Device); a person presses.
+class Clock(Protocol):
+    """Time as a loop needs it: this computer's, or a simulated one."""
 
-    Without a force sensor the force of a press is that of the torque which the drive reports, friction and
-    the mover's mass left out: settings().force_gain_q14 is 0, as on a board without one.
+    def now_s(self) -> float:
+        """Return a clock that never goes back."""
+
+    def sleep(self, duration_s: float) -> None:
+        """Wait."""
+
+
+class RealClock:
+    def now_s(self) -> float:
+        return time.perf_counter()
+
+    def sleep(self, duration_s: float) -> None:
+        time.sleep(duration_s)
+
+
+class DriveDevice:
+    """A stage and its drive, as a device (fdvv.device.contract.ProgramDevice); a person presses.
+
+    Vibrations of a program are not played, and its stop is not set: there is neither exciter nor limiter.
 
     Parameters
     ----------
@@ -39,6 +57,8 @@ class DriveDevice:
     Attributes
     ----------
     log : of the last press, with true times.
+    force_is_estimated : a press holds the force of the torque that the drive reports, without friction and
+        mass of the mover; nothing can be learned from it.
     """
 
     def __init__(
@@ -47,13 +67,16 @@ class DriveDevice:
         drive: Drive,
         force_cN: Callable[[], float] | None = None,
         armed: Callable[[float, float], None] | None = None,
+        clock: Clock | None = None,
     ) -> None:
+        self._clock = RealClock() if clock is None else clock
         self.stage, self.drive, self.armed = stage, drive, armed
         self._force_cN = force_cN
+        self.force_is_estimated = force_cN is None
         self.log = LoopLog()
         self._controller = Controller(stage, force_cN is not None)
         self._travel_mm: float | None = None
-        self._idle_since_s = time.perf_counter()
+        self._idle_since_s = self._clock.now_s()
         self._closed = False
         try:
             self._zero = self._check_drive()
@@ -68,7 +91,7 @@ class DriveDevice:
             drive.enable()
             position = self._first_reading().position
             if watchdog_s is not None:
-                time.sleep(SILENCE_RATIO * watchdog_s + SILENCE_MORE_s)
+                self._clock.sleep(SILENCE_RATIO * watchdog_s + SILENCE_MORE_s)
                 if not drive.has_fallen():
                     raise DeviceError(
                         f"{drive.name}: its watchdog does not end the torque after "
@@ -90,7 +113,7 @@ class DriveDevice:
         return DeviceInfo(
             f"{stage.mechanics.name} on {self.drive.name}",
             stage.mechanics.simulated,
-            self.settings().force_limit_cN64 / 64,
+            self.settings().force_limit_cN64 / CN64_PER_cN,
             stage.mechanics.travel_mm,
             stage.period_s,
         )
@@ -104,7 +127,13 @@ class DriveDevice:
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         check_table(self.info(), surface, travel_mm)
-        self._controller.activate(surface_image(surface, travel_mm, paced))
+        self.upload_program(surface_image(surface, travel_mm, paced))
+
+    def upload_program(self, image: bytes) -> None:
+        """Make a program the active one, whole or not at all; DeviceError as a board refuses it."""
+        travel_mm = _travel_mm(image)
+        check_travel(self.info(), travel_mm)
+        self._controller.activate(image)
         self._travel_mm = travel_mm
 
     def press(self, velocity_mm_s: float) -> Press:
@@ -131,23 +160,23 @@ class DriveDevice:
         """Enable the drive, let the core know how long nothing was commanded, and arm it."""
         self.drive.enable()
         x_mm = self.stage.displacement_mm(self._first_reading().position, self._zero)
-        idle_ticks = round((time.perf_counter() - self._idle_since_s) / (self.stage.tick_us * 1e-6))
+        idle_ticks = round((self._clock.now_s() - self._idle_since_s) / (self.stage.tick_us * 1e-6))
         self._controller.step(x_mm, self._sensed_cN(0.0), idle_ticks, 0)
         self._controller.arm()
 
     def _end(self) -> None:
         self._controller.disarm()
-        self._idle_since_s = time.perf_counter()
+        self._idle_since_s = self._clock.now_s()
         with suppress(DeviceError):  # it is gone: then only its own watchdog can act
             self.drive.stop()
 
     def _loop(self, log: LoopLog, finder: PressFinder, travel_mm: float, velocity_mm_s: float) -> None:
         stage, period_s = self.stage, self.stage.period_s
         tick_s = stage.tick_us * 1e-6
-        begin_s, ticks, lost, force_cN = time.perf_counter(), 0, 0, 0.0
+        begin_s, ticks, lost, force_cN = self._clock.now_s(), 0, 0, 0.0
         armed = self.armed
         while True:
-            sent_s = time.perf_counter()
+            sent_s = self._clock.now_s()
             try:
                 reading = self.drive.exchange(stage.torque(0.01 * force_cN))
             except LostAnswerError:
@@ -155,7 +184,7 @@ class DriveDevice:
                 if lost > stage.limits.lost_answers:
                     raise
                 continue
-            received_s, lost = time.perf_counter(), 0
+            received_s, lost = self._clock.now_s(), 0
             now_ticks = max(ticks + 1, round((0.5 * (sent_s + received_s) - begin_s) / tick_s))
             sensed_cN = self._sensed_cN(100 * stage.force_N(reading.torque))
             x_mm = stage.displacement_mm(reading.position, self._zero)
@@ -173,14 +202,24 @@ class DriveDevice:
 
     def _wait(self, begin_s: float, period_s: float) -> None:
         """Sleep until the next cycle; DeviceError once nobody has pressed for long."""
-        now_s = time.perf_counter() - begin_s
+        now_s = self._clock.now_s() - begin_s
         if now_s > self.stage.loop.patience_s:
             waited = f"nobody pressed within {self.stage.loop.patience_s:g} s"
             raise DeviceError(f"{self.drive.name}: {waited}; press the button fully")
-        time.sleep(period_s - now_s % period_s)
+        self._clock.sleep(period_s - now_s % period_s)
 
     def _sensed_cN(self, reported_cN: float) -> float:
         return reported_cN if self._force_cN is None else self._force_cN()
+
+    def stop(self) -> None:
+        """Fall to zero force at once; allowed at any time."""
+        self._controller.disarm()
+        if not self._closed:
+            self.drive.stop()
+
+    def fault(self) -> FaultReport:
+        """Return the latched fault of the core; what the drive itself reports is not latched here."""
+        return self._controller.report()
 
     def clear_fault(self) -> None:
         """Clear the latched fault; DeviceError while its cause lasts."""
@@ -201,3 +240,10 @@ class DriveDevice:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _travel_mm(image: bytes) -> float:
+    try:
+        return travel_mm_of(image)
+    except ModelError as error:
+        raise DeviceError(str(error)) from error

@@ -43,7 +43,7 @@ class Drive(Protocol):
         """Command a torque and return the answer. LostAnswerError if none comes in time."""
 
     def has_fallen(self) -> bool:
-        """Return whether the drive has switched its torque off by itself; asking feeds no watchdog."""
+        """Return whether the drive has switched its torque off by itself."""
 
     def stop(self) -> None:
         """Command zero torque and switch it off, without waiting for an answer."""

@@ -25,11 +25,15 @@ TORQUE_CONTROL, PASSTHROUGH = 1, 1
 HEARTBEAT_s = 1.0
 """Longest wait for a heartbeat; it comes every 100 ms unless configured otherwise."""
 
+SYNC_s = 0.3
+"""Longest wait for the answer after which everything older has been read."""
+
 
 class CanCommand(IntEnum):
     """Lower five bits of an identifier; the node is in the upper six."""
 
     HEARTBEAT = 0x01
+    GET_ERROR = 0x03
     SET_AXIS_STATE = 0x07
     GET_ENCODER_ESTIMATES = 0x09
     SET_CONTROLLER_MODE = 0x0B
@@ -88,6 +92,7 @@ class ODriveDrive:
         self.watchdog_s = part.watchdog_ms / 1000 or None
         self._part, self._answer_s = part, answer_s
         self._error, self._state, self._heartbeats = AxisError(0), 0, 0
+        self._is_behind = False
         self._can, self._bus = _bus_of(part)
         if not self._hear_heartbeat():
             self.close()
@@ -97,6 +102,8 @@ class ODriveDrive:
             )
 
     def enable(self) -> None:
+        if not self._catch_up(SYNC_s) or not self._hear_heartbeat():
+            raise self._no_answer(SYNC_s)
         if self._error & AxisError.WATCHDOG_TIMER_EXPIRED:  # what silence before this session has left
             self._send(CanCommand.CLEAR_ERRORS, b"\0")
             self._hear_heartbeat()
@@ -120,31 +127,48 @@ class ODriveDrive:
         return f"{self.name}: is in axis state {self._state}, not in closed-loop control; is it calibrated?"
 
     def exchange(self, torque: float) -> Reading:
+        if self._is_behind and not self._catch_up(self._answer_s):
+            raise self._no_answer(self._answer_s)
         self._command(torque)
         self._send(CanCommand.GET_ENCODER_ESTIMATES)
         self._send(CanCommand.GET_TORQUES)
-        found: dict[CanCommand, float] = {}
+        position = None
         for command, data in self._messages(time.perf_counter() + self._answer_s):
             if self._error or self._state != CLOSED_LOOP:
                 raise DeviceError(self._in_error())
             if command == CanCommand.GET_ENCODER_ESTIMATES:
-                found[command] = struct.unpack_from("<f", data)[0]
-            elif command == CanCommand.GET_TORQUES:
-                found[command] = struct.unpack_from("<f", data, 4)[0]
-            if len(found) == 2:
-                return self._reading(found)
-        raise LostAnswerError(
-            f"{self.name}: no answer on {self._part.channel} in {1000 * self._answer_s:g} ms"
-        )
+                position = struct.unpack_from("<f", data)[0]
+            elif command == CanCommand.GET_TORQUES and position is not None:
+                # asked for last: before it came all that was sent unasked, such as older positions
+                return self._reading(position, struct.unpack_from("<f", data, 4)[0])
+        self._is_behind = True
+        raise self._no_answer(self._answer_s)
 
-    def _reading(self, found: dict[CanCommand, float]) -> Reading:
-        reading = Reading(found[CanCommand.GET_ENCODER_ESTIMATES], found[CanCommand.GET_TORQUES])
-        if not all(map(math.isfinite, reading)):
+    def _no_answer(self, wait_s: float) -> LostAnswerError:
+        return LostAnswerError(f"{self.name}: no answer on {self._part.channel} in {1000 * wait_s:g} ms")
+
+    def _reading(self, position: float, torque: float) -> Reading:
+        if not math.isfinite(position + torque):
             raise LostAnswerError(f"{self.name}: answers with a position or torque that is no number")
-        return reading
+        return Reading(position, torque)
+
+    def _catch_up(self, wait_s: float) -> bool:
+        """Read all that came late, or while nobody listened; return whether the drive answers.
+
+        Else every answer would be that to an older question. Messages arrive in order, and errors are asked
+        for nowhere else: what comes after their answer is new.
+        """
+        self._send(CanCommand.GET_ERROR)
+        for command, _ in self._messages(time.perf_counter() + wait_s):
+            if command == CanCommand.GET_ERROR:
+                self._is_behind = False
+                return True
+        return False
 
     def has_fallen(self) -> bool:
-        self._hear_heartbeat()
+        # asking feeds the watchdog, but what it has ended does not come back by itself
+        if not self._catch_up(SYNC_s) or not self._hear_heartbeat():
+            raise self._no_answer(SYNC_s)
         return self._state != CLOSED_LOOP
 
     def stop(self) -> None:
@@ -172,10 +196,7 @@ class ODriveDrive:
             self._bus.send(message)
 
     def _hear_heartbeat(self, wait_s: float = HEARTBEAT_s) -> bool:
-        """Wait for the next heartbeat; what came before is read first."""
-        with line_errors(self.name):
-            while self._bus.recv(timeout=0) is not None:
-                pass
+        """Wait for the next heartbeat."""
         before = self._heartbeats
         return any(self._heartbeats > before for _ in self._messages(time.perf_counter() + wait_s))
 

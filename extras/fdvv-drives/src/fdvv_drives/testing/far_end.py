@@ -10,11 +10,12 @@ import os
 import select
 import sys
 import time
+from contextlib import suppress
 from typing import Literal, Protocol
 
 from fdvv_drives.testing.plant import LivePlant
 
-FaultKind = Literal["", "silent", "garbage", "error", "mode", "unplug", "jump", "beyond"]
+FaultKind = Literal["", "silent", "garbage", "error", "mode", "unplug", "delay", "jump", "beyond"]
 IDLE_s = 0.002
 GARBAGE = bytes(range(1, 256)) + b"\n"
 
@@ -57,6 +58,7 @@ class FarEnd:
         self.drive, self.plant = drive, LivePlant(travel_mm)
         self._mm_unit, self._N_unit = mm_unit, N_unit
         self._fault: FaultKind = ""
+        self._held = b""
         self._master, self._slave = os.openpty()
         tty.setraw(self._slave)
         os.set_blocking(self._master, False)
@@ -100,5 +102,10 @@ class FarEnd:
                 reply += self.drive.answer(data, self.position(), now_s)
         if reply and self._fault == "garbage":
             reply = GARBAGE
-        if reply and self._fault != "silent":
-            os.write(self._master, reply)
+        if self._fault == "delay":
+            self._held += reply
+            return
+        if (reply or self._held) and self._fault != "silent":
+            with suppress(BlockingIOError):  # nobody reads: what finds no room is lost
+                os.write(self._master, self._held + reply)
+            self._held = b""

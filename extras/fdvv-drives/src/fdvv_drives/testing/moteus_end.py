@@ -42,7 +42,8 @@ class FarMoteus:
 
     ID = 1
 
-    def __init__(self) -> None:
+    def __init__(self, watchdog_s: float | None) -> None:
+        """Ignore watchdog_s: it comes with every command."""
         self.torque = 0.0
         self.mode, self.fault = STOPPED, 0
         self._registers: dict[int, float] = {}

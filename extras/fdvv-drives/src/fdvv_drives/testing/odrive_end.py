@@ -16,18 +16,18 @@ HEARTBEAT_s = 0.1
 
 
 class FarODrive:
-    """One axis, node 3, with enable_watchdog.
+    """One axis, node 3; watchdog_s is None where enable_watchdog is off.
 
     Attributes
     ----------
     torque : in Nm.
     """
 
-    NODE, WATCHDOG_s = 3, 0.05
+    NODE = 3
 
-    def __init__(self, has_watchdog: bool = True) -> None:
+    def __init__(self, watchdog_s: float | None) -> None:
         self.torque = 0.0
-        self.has_watchdog = has_watchdog
+        self.watchdog_s = watchdog_s
         self.state, self.error = IDLE, 0
         self._input, self._modes = 0.0, (3, 1)  # position control, as delivered
         self._heard_s = self._beat_s = 0.0
@@ -40,7 +40,7 @@ class FarODrive:
 
     def look(self, position: float, now_s: float) -> bytes:
         self._position = position
-        if self.state == CLOSED_LOOP and self.has_watchdog and now_s - self._heard_s > self.WATCHDOG_s:
+        if self.state == CLOSED_LOOP and self._is_silent(now_s):
             self.state, self.error = IDLE, self.error | WATCHDOG
         in_torque_control = self._modes == (1, 1)
         self.torque = self._input if self.state == CLOSED_LOOP and in_torque_control else 0.0
@@ -48,6 +48,9 @@ class FarODrive:
             return b""
         self._beat_s = now_s
         return self._sent(0x01, struct.pack("<IBBBB", self.error, self.state, 0, 0, 0))
+
+    def _is_silent(self, now_s: float) -> bool:
+        return self.watchdog_s is not None and now_s - self._heard_s > self.watchdog_s
 
     def answer(self, data: bytes, position: float, now_s: float) -> bytes:
         *commands, self._waiting = (self._waiting + data).split(b"\r")
@@ -84,6 +87,8 @@ class FarODrive:
             self.state = IDLE if state == CLOSED_LOOP and self.error else state
 
     def _estimate(self, command: int) -> bytes:
+        if command == 0x03:
+            return self._sent(command, struct.pack("<II", self.error, 0))
         if command == 0x09:
             return self._sent(command, struct.pack("<ff", self._position, 0.0))
         if command == 0x1C:

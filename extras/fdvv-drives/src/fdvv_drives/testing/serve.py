@@ -22,14 +22,19 @@ from fdvv_drives.testing.simplefoc_end import FarSimpleFOC
 LEAD_mm_rev, N_Nm, N_A = 10.0, 500.0, 4.0
 TRAVEL_mm = 6.0
 DRIVES: dict[str, tuple[type, str, float, float]] = {
-    "moteus": (FarMoteus, 'port = "{port}"', LEAD_mm_rev, N_Nm),
+    "moteus": (FarMoteus, 'port = "{port}"\nwatchdog_ms = {watchdog_ms}', LEAD_mm_rev, N_Nm),
     "odrive": (
         FarODrive,
-        'channel = "{port}"\ninterface = "slcan"\nnode = 3\nwatchdog_ms = 50',
+        'channel = "{port}"\ninterface = "slcan"\nnode = 3\nwatchdog_ms = {watchdog_ms}',
         LEAD_mm_rev,
         N_Nm,
     ),
-    "simplefoc": (FarSimpleFOC, 'port = "{port}"\nwatchdog_ms = 50', LEAD_mm_rev / 6.283185307179586, N_A),
+    "simplefoc": (
+        FarSimpleFOC,
+        'port = "{port}"\nwatchdog_ms = {watchdog_ms}',
+        LEAD_mm_rev / 6.283185307179586,
+        N_A,
+    ),
 }
 STAGE = """[{kind}]
 {part}
@@ -53,25 +58,25 @@ patience_s = 10.0
 """
 
 
-def stage_text(kind: str, port: str, rate_Hz: float, answer_ms: float, late_ms: float) -> str:
+def stage_text(kind: str, port: str, asked: argparse.Namespace) -> str:
     """Return the stage file of a far end."""
     in_rad = kind == "simplefoc"
     return STAGE.format(
         kind=kind,
-        part=DRIVES[kind][1].format(port=port),
+        part=DRIVES[kind][1].format(port=port, watchdog_ms=asked.watchdog_ms),
         lead=LEAD_mm_rev,
         force=f"force_N_A = {N_A}" if in_rad else f"force_N_Nm = {N_Nm}",
         zero="zero_rad" if in_rad else "zero_rev",
         travel=TRAVEL_mm,
-        rate_Hz=rate_Hz,
-        answer_ms=answer_ms,
-        late_ms=late_ms,
+        rate_Hz=asked.rate_Hz,
+        answer_ms=asked.answer_ms,
+        late_ms=asked.late_ms,
     )
 
 
-def make(kind: str) -> FarEnd:
+def make(kind: str, watchdog_s: float) -> FarEnd:
     factory, _, mm_unit, N_unit = DRIVES[kind]
-    drive: FarDrive = factory()
+    drive: FarDrive = factory(watchdog_s)
     return FarEnd(drive, mm_unit, N_unit, TRAVEL_mm)
 
 
@@ -81,9 +86,9 @@ def carry_out(end: FarEnd, order: dict[str, Any]) -> dict[str, Any]:
         end.plant.press(*order["press"])
     if "fault" in order:
         end.fault(order["fault"])
-    if "watchdog" in order:  # of the drive, on or off
+    if "watchdog" in order:  # what the drive is really set to, s
         drive: Any = end.drive
-        drive.has_watchdog, drive.watchdog_s = order["watchdog"], 0.05 if order["watchdog"] else None
+        drive.watchdog_s = order["watchdog"]
     return {"force_N": end.force_N, "x_mm": end.plant.x_mm, "motor_N": end.plant.motor_N}
 
 
@@ -111,12 +116,12 @@ def main() -> None:
     parser.add_argument("--rate-Hz", type=float, default=500.0)
     parser.add_argument("--answer-ms", type=float, default=5.0)
     parser.add_argument("--late-ms", type=float, default=20.0)
+    parser.add_argument("--watchdog-ms", type=float, default=50.0)
     parser.add_argument("--press-every", type=float, default=None, metavar="SECONDS")
     asked = parser.parse_args()
-    end = make(asked.kind)
+    end = make(asked.kind, asked.watchdog_ms / 1000)
     path = asked.folder / "stage.toml"
-    text = stage_text(asked.kind, end.port, asked.rate_Hz, asked.answer_ms, asked.late_ms)
-    path.write_text(text, encoding="utf-8")
+    path.write_text(stage_text(asked.kind, end.port, asked), encoding="utf-8")
     sys.stdout.write(f"{path}\n")
     sys.stdout.flush()
     run(end, asked.press_every)

@@ -8,7 +8,7 @@ COUNTS_RAD = 2**14 / 6.283185307179586
 
 
 class FarSimpleFOC:
-    """The sketch of docs/how-to/use-a-drive.md, whose loop disables the motor after 50 ms of silence.
+    """The sketch of docs/how-to/use-a-drive.md, whose loop disables the motor after some silence.
 
     watchdog_s : of the sketch; None for one without.
 
@@ -17,7 +17,7 @@ class FarSimpleFOC:
     torque : in A.
     """
 
-    def __init__(self, watchdog_s: float | None = 0.05) -> None:
+    def __init__(self, watchdog_s: float | None) -> None:
         self.torque = 0.0
         self.watchdog_s = watchdog_s
         self.enabled, self.verbose, self.decimals = True, 2, 3
