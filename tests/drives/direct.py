@@ -1,4 +1,4 @@
-"""A drive without bytes, on a clock of its own: what the loop does is then the same on any machine; simulated."""
+"""A drive without bytes, on a clock of its own, so that a loop does the same on any machine; simulated."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ class DirectDrive:
     Attributes
     ----------
     torque : that acts now, Nm. commanded : all of them. lose : so many of the next answers are lost.
-    moved_mm : by how much the position is wrong. calls : what was asked of it, in order.
+    moved_mm : by how much the position is wrong; drift_mm : more of it with every answer.
+    calls : what was asked of it, in order.
     """
 
     name: str = "direct"
@@ -41,7 +42,7 @@ class DirectDrive:
         self.torque, self.heard_s, self.enabled = 0.0, clock.time_s, False
         self.commanded: list[float] = []
         self.calls: list[Literal["enable", "stop", "close"]] = []
-        self.lose, self.moved_mm, self.has_watchdog = 0, 0.0, True
+        self.lose, self.moved_mm, self.drift_mm, self.has_watchdog = 0, 0.0, 0.0, True
 
     def enable(self) -> None:
         self.calls.append("enable")
@@ -53,6 +54,7 @@ class DirectDrive:
         self.plant.advance(self._clock.time_s, self._stage.force_N(self.torque))
         self.torque, self.heard_s = torque, self._clock.time_s
         self.commanded.append(torque)
+        self.moved_mm += self.drift_mm
         if self.lose:
             self.lose -= 1
             raise LostAnswerError(f"{self.name}: no answer")

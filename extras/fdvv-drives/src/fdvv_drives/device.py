@@ -185,7 +185,7 @@ class DriveDevice:
                     raise
                 continue
             received_s, lost = self._clock.now_s(), 0
-            now_ticks = max(ticks + 1, round((0.5 * (sent_s + received_s) - begin_s) / tick_s))
+            now_ticks = max(ticks + 1, round((received_s - begin_s) / tick_s))
             sensed_cN = self._sensed_cN(100 * stage.force_N(reading.torque))
             x_mm = stage.displacement_mm(reading.position, self._zero)
             step = self._controller.step(x_mm, sensed_cN, now_ticks - ticks, round(1e6 * received_s))

@@ -88,29 +88,26 @@ class PressFinder:
         self._travel_mm = travel_mm
         self._cycle = -1
         self._was_up = self._down = False
-        self._deepest_mm, self._up_again = 0.0, 0
+        self._deepest_mm, self._left = 0.0, LEAD_TICKS
         self.first = 0
 
     def feed(self, displacement_mm: float) -> bool:
         """Take the next cycle's displacement; return True with the last of the press."""
         self._cycle += 1
-        if displacement_mm > TOP_mm:
+        is_down = displacement_mm > TOP_mm
+        if self._left < LEAD_TICKS:  # it was pressed, and is back
+            self._left -= 1
+        elif is_down and self._was_up:  # not held as the loop began
             self._go_down(displacement_mm)
-            return False
-        self._was_up = True
-        if not self._down:
-            return False
-        if self._deepest_mm < DEEP_RATIO * self._travel_mm:
-            self._down = False  # a lighter touch
-            return False
-        self._up_again += 1
-        return self._up_again >= LEAD_TICKS
+        elif self._down and not is_down:
+            self._down = False
+            # a lighter touch is passed over
+            self._left -= self._deepest_mm >= DEEP_RATIO * self._travel_mm
+        self._was_up = self._was_up or not is_down
+        return self._left == 0
 
     def _go_down(self, displacement_mm: float) -> None:
-        if not self._was_up:
-            return  # it was held as the loop began
         if not self._down:
             self._down, self._deepest_mm = True, 0.0
             self.first = max(0, self._cycle - LEAD_TICKS)
-        self._up_again = 0
         self._deepest_mm = max(self._deepest_mm, displacement_mm)

@@ -54,8 +54,10 @@ class FarODrive:
 
     def answer(self, data: bytes, position: float, now_s: float) -> bytes:
         *commands, self._waiting = (self._waiting + data).split(b"\r")
-        replies = b"".join(self._command(command.decode("ascii"), now_s) for command in commands)
-        self.look(position, now_s)
+        replies = b""
+        for command in commands:
+            replies += self._command(command.decode("ascii"), now_s)
+            replies += self.look(position, now_s)
         return replies
 
     def _command(self, text: str, now_s: float) -> bytes:
