@@ -22,7 +22,9 @@ WELL = {
     "ME": "1",
     "ME0": "0",
     "M0.25000": "0.25000",
-    "MMG7": "0.25000;1.00000;0.00000;0.24000;0.01000;3.00000;1.57080",
+    "MMG1": "1.00000",
+    "MMG3": "0.24000",
+    "MMG6": "1.57080",
 }
 
 
@@ -43,7 +45,7 @@ def part(port: str, **other: object) -> SimpleFOCPart:
     return SimpleFOCPart(port, **{"watchdog_ms": 50.0, **other})  # type: ignore[arg-type]
 
 
-def test_a_cycle_is_a_target_and_a_question() -> None:
+def test_a_cycle_is_a_target_and_two_questions() -> None:
     with scripted(ScriptedBoard()) as line:
         drive = SimpleFOCDrive(part(line.port), 0.75, 0.5)
         drive.enable()
@@ -52,7 +54,7 @@ def test_a_cycle_is_a_target_and_a_question() -> None:
         sent = line.came[before:].decode()
         drive.stop()
         drive.close()
-    assert sent == "M0.25000\nMMG7\n"
+    assert sent == "M0.25000\nMMG6\nMMG3\n"
     assert reading == (1.5708, 0.24)  # angle, and current q
     assert line.came.decode().startswith("@1\n#5\nMT\nMLC0.7500\nMC0\nM0\nME1\n")
 
@@ -119,23 +121,32 @@ def test_a_motor_that_the_board_has_disabled_is_noticed_within_fifty_cycles() ->
 
 
 @pytest.mark.parametrize(
-    "answer",
+    ("command", "answer"),
     [
-        "0.25000;1.0;0.0;0.24;0.01;3.0",  # cut short
-        "0.11000;1.0;0.0;0.24;0.01;3.0;1.57",  # of an older command
-        "0.25000;1.0;0.0;nan;0.01;3.0;1.57",
-        "0.25000;1.0;x;0.2;0.01;3.0;1.57",
-        "\x01\x02\x03",
-        "",
+        ("M0.25000", "0.11000"),  # of an older command
+        ("M0.25000", ""),
+        ("MMG6", "nan"),
+        ("MMG6", "1.5;7"),
+        ("MMG6", "\x01\x02"),
+        ("MMG6", ""),
+        ("MMG3", "err"),
     ],
 )
-def test_what_is_no_answer_is_a_lost_one(answer: str) -> None:
+def test_what_is_no_answer_is_a_lost_one(command: str, answer: str) -> None:
     board = ScriptedBoard()
     with scripted(board) as line:
         drive = SimpleFOCDrive(part(line.port), 0.75, 0.05)
-        board.table["MMG7"] = answer
+        board.table[command] = answer
         with pytest.raises(LostAnswerError, match="no answer"):
             drive.exchange(0.25)
+        drive.close()
+
+
+def test_what_an_older_command_has_left_is_passed_over() -> None:
+    board = ScriptedBoard(**{"M0.25000": "0.11000\r\n9.0\r\n0.25000"})
+    with scripted(board) as line:
+        drive = SimpleFOCDrive(part(line.port), 0.75, 0.5)
+        assert drive.exchange(0.25) == (1.5708, 0.24)
         drive.close()
 
 

@@ -1,8 +1,8 @@
 """A board with SimpleFOC's commander on a serial port: ``commander.add('M', ...)`` with ``commander.motor``.
 
 Commands and their answers are those of src/communication/Commander.cpp (Arduino-FOC 2.3 and 2.4): every
-command of a motor begins with its letter, ``M0.5`` sets the target, ``MMG7`` asks for target, voltages,
-currents, velocity and angle in one line.
+command of a motor begins with its letter, ``M0.5`` sets the target and repeats it, ``MMG6`` asks for the
+angle, ``MMG3`` for the current, ``MMG1`` for the voltage.
 """
 
 from __future__ import annotations
@@ -106,31 +106,35 @@ class SimpleFOCDrive:
         self._cycles += 1
         self.line.drop()
         target = f"{torque:.{DECIMALS}f}"
-        look = self._motor("E\n") if self._cycles % LOOK_EVERY == 0 else ""
-        # the state is asked for last, so that an answer of one digit after it can only be that of E
-        self.line.write(f"{self._motor(target)}\n{self._motor('MG7')}\n{look}".encode())
-        found: Reading | None = None
+        asked = [target, "MG6", "MG1" if self._part.torque == "voltage" else "MG3"]
+        if self._cycles % LOOK_EVERY == 0:
+            asked.append("E")
+        self.line.write("".join(f"{self._motor(command)}\n" for command in asked).encode())
+        answers: list[float] = []
         for line in self.line.lines(time.perf_counter() + self._answer_s):
-            if found is None:
-                found = self._state(line, float(target))
-            elif line == b"0":
-                raise DeviceError(f"{self.name}: the board has disabled the motor")
-            if found is not None and (not look or line in (b"0", b"1")):
-                return found
+            if not self._is_next(line, answers, float(target)):
+                continue  # what an older command has left, or damaged: then too few follow
+            answers.append(float(line))
+            if len(answers) == len(asked):
+                return self._reading(answers)
         raise LostAnswerError(
             f"{self.name}: no answer on {self.line.name} in {1000 * self._answer_s:g} ms"
             f"{self.line.what_came()}"
         )
 
-    def _state(self, line: bytes, target: float) -> Reading | None:
-        """Return a reading from the answer to MG7; None for another line, a damaged or an older one."""
+    @staticmethod
+    def _is_next(line: bytes, answers: list[float], target: float) -> bool:
+        """Return whether a line is a number, and the first of them the target that was just sent."""
         try:
-            values = [float(word) for word in line.split(b";")]
+            value = float(line)
         except ValueError:
-            return None
-        if len(values) != 7 or not all(map(math.isfinite, values)) or abs(values[0] - target) > 2e-5:
-            return None
-        return Reading(values[6], values[1] if self._part.torque == "voltage" else values[3])
+            return False
+        return math.isfinite(value) and (bool(answers) or abs(value - target) < 2 * 10.0**-DECIMALS)
+
+    def _reading(self, answers: list[float]) -> Reading:
+        if answers[3:] == [0.0]:
+            raise DeviceError(f"{self.name}: the board has disabled the motor")
+        return Reading(answers[1], answers[2])
 
     def has_fallen(self) -> bool:
         for _ in range(3):

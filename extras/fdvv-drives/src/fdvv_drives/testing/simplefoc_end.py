@@ -78,12 +78,15 @@ class FarSimpleFOC:
         if text[:2] == "LC":
             self.limit = float(text[2:] or self.limit)
             return self._line("Limits| curr: ", self._number(self.limit))
-        return self._all() if text == "MG7" else self._line("unknown cmd ", "err")
+        if text[:2] == "MG":
+            return self._monitored(int(text[2:]))
+        return self._line("unknown cmd ", "err")
 
-    def _all(self) -> str:
+    def _monitored(self, variable: int) -> str:
         angle = round(self._position * COUNTS_RAD) / COUNTS_RAD
         values = (self.target, 0.0, 0.0, self.torque, 0.0, 0.0, angle)
-        return self._line("Monitor | all: ", ";".join(map(self._number, values)))
+        names = ("target", "Vq", "Vd", "Cq", "Cd", "vel", "angle")
+        return self._line(f"Monitor | {names[variable]}: ", self._number(values[variable]))
 
     def _number(self, value: float) -> str:
         return f"{value:.{self.decimals}f}"
