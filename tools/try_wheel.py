@@ -32,6 +32,7 @@ EXTRAS = {
     "fdvv_switch": (["mechanism", "mx-red"], "fdvv-switch"),
     "fdvv_m0": (["device", "info", "--device", "emulated"], "fdvv-m0"),
     "fdvv_haptics": (["export", "mx-clear", "-o", "clear.ahap"], "fdvv-haptics"),
+    "fdvv_drives": (["device", "info", "--device", "moteus:stage.toml"], "fdvv-drives"),
 }
 """A command that needs what an extra brings, by a module of it."""
 

@@ -32,6 +32,7 @@ def bare(monkeypatch: pytest.MonkeyPatch) -> None:
         (["hardware", "parts"], "fdvv-rig"),
         (["mechanism", "mx-red"], "fdvv-switch"),
         (["device", "info", "--device", "emulated"], "fdvv-m0"),
+        (["device", "info", "--device", "moteus:stage.toml"], "fdvv-drives"),
         (["device", "strip", "--strip", "host"], "fdvv-strip"),
         (["optimize", "run", "--folder", "run", "--strip", "host"], "fdvv-strip"),
         (["export", "mx-clear", "--to", "ahap", "-o", "a.ahap"], "fdvv-haptics"),

@@ -98,7 +98,7 @@ def test_the_wheel_works_alone_without_extras_and_without_the_repository(
     assert (ran.returncode, ran.stderr) == (0, "")
     # the extras are really away, else nothing was proven of them
     parts = "fdvv[plot], fdvv[study], fdvv[optimize], fdvv[serial]"
-    assert f"{parts}, fdvv-rig, fdvv-strip, fdvv-switch, fdvv-m0, fdvv-haptics" in ran.stdout
+    assert f"{parts}, fdvv-rig, fdvv-strip, fdvv-switch, fdvv-m0, fdvv-haptics, fdvv-drives" in ran.stdout
     where = "import fdvv; print(fdvv.__file__)"
     found = subprocess.run(
         [str(python), "-P", "-c", where],

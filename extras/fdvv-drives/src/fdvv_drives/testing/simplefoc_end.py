@@ -45,7 +45,7 @@ class FarSimpleFOC:
         replies = ""
         for command in commands:
             text = command.decode("ascii")
-            if text[:1] == "M" and text[1:] != "E":  # a question about the state is no command
+            if text[:1] == "M":
                 self._heard_s = now_s
             replies += self._run(text)
             self.look(position, now_s)
