@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import os
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -21,6 +23,16 @@ GENEROUS = ("--answer-ms", "200", "--late-ms", "900", "--watchdog-ms", "300")
 """For what a test does not look at: machines that test are busy."""
 
 
+LIBRARIES = {"moteus": "moteus", "odrive": "can", "simplefoc": "serial"}
+
+
+def need(kind: str) -> None:
+    """Skip where the library of a drive is not installed; where CI is set it must be."""
+    if importlib.util.find_spec(LIBRARIES[kind]) is None:
+        missing = pytest.fail if os.environ.get("CI") else pytest.skip
+        missing(f"needs {LIBRARIES[kind]}")
+
+
 @pytest.fixture(scope="module")
 def far_of(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str], FarProcess]]:
     """Return the far end of a kind of drive, the same for all tests of a module."""
@@ -29,6 +41,7 @@ def far_of(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str],
     started: dict[str, FarProcess] = {}
 
     def find(kind: str) -> FarProcess:
+        need(kind)
         if kind not in started:
             started[kind] = FarProcess(kind, tmp_path_factory.mktemp("far"), *GENEROUS)
         return started[kind]
@@ -46,6 +59,7 @@ def start(tmp_path: Path) -> Iterator[Callable[..., FarProcess]]:
     started: list[FarProcess] = []
 
     def begin(kind: str, *options: str) -> FarProcess:
+        need(kind)
         folder = tmp_path / f"far-{len(started)}"
         folder.mkdir()
         started.append(FarProcess(kind, folder, *(options or GENEROUS)))

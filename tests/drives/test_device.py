@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -202,13 +204,23 @@ def test_a_force_sensor_beyond_its_bound_falls_to_zero() -> None:
 
 
 def test_settings_that_would_loosen_the_stage_are_refused() -> None:
-    from dataclasses import replace
-
     device, _drive, _clock = made()
     limit = device.settings().force_limit_cN64
-    for other in ({"force_limit_cN64": limit + 64}, {"tick_us": 500}, {"force_gain_q14": 100}):
-        with pytest.raises(DeviceError):
-            device.configure(replace(device.settings(), **other))
+    own = device.settings()
+    looser = {
+        "force_limit_cN64": limit + 64,
+        "tick_us": 500,
+        "force_gain_q14": 100,
+        "reading_low": own.reading_low - 1,
+        "reading_high": own.reading_high + 1,
+        "jump_um16": own.jump_um16 + 1,
+        "late_ticks": own.late_ticks + 1,
+    }
+    for name, value in looser.items():
+        with pytest.raises(DeviceError, match="."):
+            device.configure(replace(own, **{name: value}))
+        assert device.settings() == own
+    device.configure(replace(own, late_ticks=own.late_ticks - 1, reading_high=own.reading_high - 100))
 
 
 def test_a_closed_device_has_stopped_its_drive_and_presses_no_more() -> None:

@@ -11,7 +11,14 @@ from fdvv.errors import BuildError, DeviceError
 from fdvv_drives.drive import LostAnswerError
 from fdvv_drives.moteus_drive import MoteusDrive, MoteusPart
 from fdvv_drives.testing.moteus_end import FarMoteus
+from tests.drives.conftest import need
 from tests.drives.scripted import ScriptedLine, scripted
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _library() -> None:
+    need("moteus")
+
 
 MANUAL_COMMAND = "01000a07206000200150ff140400130d"
 MANUAL_REPLY = "2404000a005000000170ff230d181400"

@@ -10,7 +10,13 @@ import pytest
 from fdvv.errors import BuildError, DeviceError
 from fdvv_drives.drive import LostAnswerError
 from fdvv_drives.odrive_drive import ODriveDrive, ODrivePart
+from tests.drives.conftest import need
 from tests.drives.scripted import scripted
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _library() -> None:
+    need("odrive")
 
 
 class ScriptedODrive:

@@ -9,7 +9,14 @@ import pytest
 from fdvv.errors import BuildError, DeviceError
 from fdvv_drives.drive import LostAnswerError
 from fdvv_drives.simplefoc_drive import SimpleFOCDrive, SimpleFOCPart
+from tests.drives.conftest import need
 from tests.drives.scripted import scripted
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _library() -> None:
+    need("simplefoc")
+
 
 WELL = {
     "@1": "on!",

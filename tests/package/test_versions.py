@@ -29,7 +29,7 @@ def test_the_version_stands_in_one_place_and_the_citation_follows_it(project: di
 
 def test_the_extras_have_the_version_of_the_core() -> None:
     extras = sorted((REPOSITORY / "extras").glob("*/src/*/__init__.py"))
-    assert len(extras) == 6
+    assert len(extras) == 7
     for module in extras:
         assert f'__version__ = "{__version__}"' in module.read_text(encoding="utf-8"), module
 

@@ -18,6 +18,8 @@ FORCE_ZERO_counts = 32768
 FORCE_GAIN_q14 = 2**14
 """Of a force sensor: one count is 1/64 cN."""
 LONGEST_GAP_ticks = 65535
+GUARDS = {"reading_low": -1, "reading_high": 1, "jump_um16": 1, "late_ticks": 1}
+"""Settings that the stage file bounds: from below (-1) or above."""
 
 
 class Step(NamedTuple):
@@ -62,6 +64,7 @@ class Controller:
                 f"{self._stage.source}: a tick of {settings.tick_us} us; its loop has "
                 f"{self._stage.tick_us} us, from rate_Hz of the stage file"
             )
+        self._refuse_looser(settings)
         if bool(settings.force_gain_q14) != bool(self.settings.force_gain_q14):
             raise DeviceError(f"{self._stage.source}: settings cannot add or take away a force sensor")
         try:
@@ -69,6 +72,17 @@ class Controller:
         except ModelError as error:
             raise DeviceError(str(error)) from error
         self._core.activate(None)
+
+    def _refuse_looser(self, settings: Settings) -> None:
+        """Refuse settings beyond the stage file, in what no limits of a board bound. DeviceError."""
+        own = self._stage.own_settings()
+        for name, sign in GUARDS.items():
+            asked, allowed = getattr(settings, name), getattr(own, name)
+            if sign * asked > sign * allowed:
+                raise DeviceError(
+                    f"{self._stage.source}: {name} is {asked}, the stage file allows {allowed}; "
+                    "settings can only be tighter"
+                )
 
     def activate(self, image: bytes) -> None:
         try:

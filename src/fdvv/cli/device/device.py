@@ -88,8 +88,8 @@ def device() -> None:
     """Work with a device: look at it, press it, set it, check it, or make one of your own.
 
     --device is 'host' (the firmware as a program of this machine), 'emulated' (the program of the board in an
-    emulator), 'twin', 'serial:PORT', 'replay:FILE', a motor drive (moteus, odrive, simplefoc) with the file of its
-    stage, or a simulated rig of your own. What is simulated says so.
+    emulator), 'twin', 'serial:PORT', 'replay:FILE', a motor drive (moteus, odrive, simplefoc) with its stage
+    file, or a simulated rig of your own. What is simulated says so.
     """
 
 

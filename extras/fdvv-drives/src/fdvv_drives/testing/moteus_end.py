@@ -39,7 +39,7 @@ class FarMoteus:
 
     Attributes
     ----------
-    torque : in Nm. log : the frames that came, as written registers.
+    torque : in Nm. mode, fault : as the registers 0x000 and 0x00f.
     """
 
     ID = 1

@@ -59,8 +59,9 @@ class LivePlant:
     def press(self, travel_mm: float, velocity_mm_s: float) -> None:
         """Have the hand press once from now on; it learns the pace from press to press."""
         entered_s, left_s, span_mm = self._press_s
-        if left_s > entered_s > 0:
-            self.hand.achieved(span_mm / (left_s - entered_s))
+        pace_mm_s = span_mm / (left_s - entered_s) if left_s > entered_s > 0 else 0.0
+        if 0.3 * velocity_mm_s < pace_mm_s < 3.0 * velocity_mm_s:  # else it pressed no button
+            self.hand.achieved(pace_mm_s)
         self._asked = 0.1 * travel_mm, 0.9 * travel_mm
         self._press_s = (0.0, 0.0, 0.8 * travel_mm)
         self.hand.press(travel_mm, velocity_mm_s)

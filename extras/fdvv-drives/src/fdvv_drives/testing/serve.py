@@ -92,11 +92,16 @@ def carry_out(end: FarEnd, order: dict[str, Any]) -> dict[str, Any]:
     return {"force_N": end.force_N, "x_mm": end.plant.x_mm, "motor_N": end.plant.motor_N}
 
 
+def is_up(end: FarEnd) -> bool:
+    """Return whether the cap is up by a force, and can be pressed."""
+    return end.force_N > 0.0 and end.plant.x_mm < 0.1
+
+
 def run(end: FarEnd, every_s: float | None) -> None:
     """Serve until standard input ends."""
     orders, press_s = b"", time.monotonic()
     while True:
-        if every_s is not None and time.monotonic() > press_s + every_s:
+        if every_s is not None and time.monotonic() > press_s + every_s and is_up(end):
             press_s = time.monotonic()
             end.plant.press(TRAVEL_mm - 1.0, 100.0)
         if not end.step([0]):
