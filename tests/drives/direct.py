@@ -30,11 +30,12 @@ class DirectDrive:
     ----------
     torque : that acts now, Nm. commanded : all of them. lose : so many of the next answers are lost.
     moved_mm : by how much the position is wrong; drift_mm : more of it with every answer.
-    calls : what was asked of it, in order.
+    held_s : the next answer is held up for so long. calls : what was asked of it, in order.
     """
 
     name: str = "direct"
     watchdog_s: float | None = 0.05
+    senses_force = False
 
     def __init__(self, clock: VirtualClock, stage: Stage) -> None:
         self._clock, self._stage = clock, stage
@@ -42,6 +43,7 @@ class DirectDrive:
         self.torque, self.heard_s, self.enabled = 0.0, clock.time_s, False
         self.commanded: list[float] = []
         self.calls: list[Literal["enable", "stop", "close"]] = []
+        self.held_s = 0.0
         self.lose, self.moved_mm, self.drift_mm, self.has_watchdog = 0, 0.0, 0.0, True
 
     def enable(self) -> None:
@@ -55,10 +57,13 @@ class DirectDrive:
         self.torque, self.heard_s = torque, self._clock.time_s
         self.commanded.append(torque)
         self.moved_mm += self.drift_mm
+        position = (self.plant.x_mm + self.moved_mm) / self._stage.mm_unit
+        self._clock.sleep(self.held_s)
+        self.held_s = 0.0
         if self.lose:
             self.lose -= 1
             raise LostAnswerError(f"{self.name}: no answer")
-        return Reading((self.plant.x_mm + self.moved_mm) / self._stage.mm_unit, torque)
+        return Reading(position, torque)
 
     def has_fallen(self) -> bool:
         return self.has_watchdog and self._clock.time_s - self.heard_s > (self.watchdog_s or 1e9)

@@ -74,9 +74,14 @@ def test_a_table_is_pressed_and_felt(start: Start, kind: str) -> None:
         assert device.info().simulated
         press = device.press(100.0)
         assert press.displacement_mm.max() > 3.9
-        deep = (press.displacement_mm > 0.5) & (press.displacement_mm < 3.5)
-        # what the drive reports is 35 to 60 cN, the table's
-        assert np.all(np.abs(press.force_cN[deep] - 47.5) < 13.0)
+        commanded_cN, force_cN = np.array(device.log.commanded_cN), np.array(device.log.force_cN)
+        assert device.force_is_estimated == (kind != "moteus")
+        if device.force_is_estimated:  # the torque of a cycle is the command of the one before
+            assert np.allclose(force_cN[1:], commanded_cN[:-1], atol=0.1)
+        else:  # a finger also feels friction, drag at up to 150 mm/s, and mass
+            x_mm = np.array(device.log.displacement_mm)
+            deep = (x_mm > 0.5) & (x_mm < 3.5)
+            assert 0.0 < np.median(np.abs(force_cN - commanded_cN)[deep]) < 14.0
         assert far.force_N() == 0.0
 
 
@@ -94,6 +99,9 @@ def test_a_fault_in_mid_press_ends_in_one_line_and_zero_torque(
     start: Start, kind: str, fault: FaultKind
 ) -> None:
     far = start(kind)
+    if fault == "jump":  # of 4 mm; a cycle of a busy machine may take 10 ms
+        limits = "[limits]\nvelocity_mm_s = 150.0"
+        far.stage.write_text(far.stage.read_text().replace("[limits]", limits))
     with pressing(far, kind) as device:
         text = fails_in_press(far, device, fault)
         assert is_zero_soon(far)

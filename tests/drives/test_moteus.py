@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -58,7 +59,30 @@ def test_the_manuals_reply_is_read_as_it_says() -> None:
         drive = drive_on(line)
         reading = drive.exchange(0.0)
         drive.close()
-    assert reading == pytest.approx((0.008, -1.44))
+    assert reading[:2] == pytest.approx((0.008, -1.44))
+    assert reading.force_N is None
+
+
+def test_a_load_cell_at_an_analog_input_is_asked_for_and_read() -> None:
+    cell = "2561" + struct.pack("<h", 32767 // 4).hex()  # int16, register 0x061: a quarter
+    with scripted(lambda _data: WELL[:-2] + cell.encode() + b"\r\n") as line:
+        cabled = MoteusPart(line.port, force_input="aux1.2", force_zero=0.5, force_span_N=-20.0)
+        drive = MoteusDrive(cabled, torque_limit=0.5, answer_s=0.5)
+        reading = drive.exchange(0.0)
+        drive.close()
+        sent = line.came.decode()
+    assert "1f01" + "130d" + "1561" in sent
+    assert drive.senses_force
+    assert reading.force_N == pytest.approx(-20.0 * (0.25 - 0.5), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"force_input": "aux3.1"}, {"force_input": "aux1.6"}, {"force_input": "aux1.1", "force_span_N": 0.0}],
+)
+def test_a_load_cell_that_is_not_described_is_refused(wrong: dict[str, Any]) -> None:
+    with pytest.raises(DeviceError, match=r"needs force_input aux1.1 to aux2.5, force_span_N"):
+        MoteusDrive(MoteusPart("nowhere", **{"force_span_N": 20.0, **wrong}), 0.5, 0.1)
 
 
 def test_the_far_end_reads_the_manuals_command_and_writes_its_reply() -> None:

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from fdvv.errors import BuildError, DeviceError
-from fdvv_drives.drive import LostAnswerError
+from fdvv_drives.drive import LostAnswerError, Reading
 from fdvv_drives.odrive_drive import ODriveDrive, ODrivePart
 from tests.drives.conftest import need
 from tests.drives.scripted import scripted
@@ -68,7 +68,7 @@ def test_a_cycle_is_a_torque_and_two_remote_frames() -> None:
     assert sent.startswith("C\rS8\r")  # 1 Mbit/s
     # node 3 is 0x060; 0x0e sets the torque, 0x09 and 0x1c ask for estimates and torques
     assert sent.endswith("O\r" + "t06E40000803E\r" + "r0698\r" + "r07C8\r")
-    assert reading == (1.5, -0.125)
+    assert reading == Reading(1.5, -0.125)
 
 
 def test_torque_mode_is_set_before_closed_loop_control_and_the_torque_is_zero() -> None:
@@ -110,7 +110,7 @@ def test_an_answer_that_comes_too_late_is_not_taken_for_the_next() -> None:
         script.deaf = False
         line.send(script.sent(0x09, struct.pack("<ff", -9.0, 0.0)))
         line.send(script.sent(0x1C, struct.pack("<ff", 0.0, 0.0)))
-        assert drive.exchange(0.0) == (1.5, -0.125)
+        assert drive.exchange(0.0) == Reading(1.5, -0.125)
         drive.close()
 
 

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from fdvv.errors import BuildError, DeviceError
-from fdvv_drives.drive import LostAnswerError
+from fdvv_drives.drive import LostAnswerError, Reading
 from fdvv_drives.simplefoc_drive import SimpleFOCDrive, SimpleFOCPart
 from tests.drives.conftest import need
 from tests.drives.scripted import scripted
@@ -62,7 +62,7 @@ def test_a_cycle_is_a_target_and_two_questions() -> None:
         drive.stop()
         drive.close()
     assert sent == "M0.25000\nMMG6\nMMG3\n"
-    assert reading == (1.5708, 0.24)  # angle, and current q
+    assert reading == Reading(1.5708, 0.24)  # angle, and current q
     assert line.came.decode().startswith("@1\n#5\nMT\nMLC0.7500\nMC0\nM0\nME1\n")
 
 
@@ -79,7 +79,7 @@ def test_a_stop_is_a_target_of_zero_and_a_disabled_motor() -> None:
 def test_in_voltage_control_the_limit_and_the_report_are_voltages() -> None:
     with scripted(ScriptedBoard(MT="volt", **{"MLU0.7500": "0.75000"})) as line:
         drive = SimpleFOCDrive(part(line.port, torque="voltage"), 0.75, 0.5)
-        assert drive.exchange(0.25) == (1.5708, 1.0)
+        assert drive.exchange(0.25) == Reading(1.5708, 1.0)
         drive.close()
 
 
@@ -153,7 +153,7 @@ def test_what_an_older_command_has_left_is_passed_over() -> None:
     board = ScriptedBoard(**{"M0.25000": "0.11000\r\n9.0\r\n0.25000"})
     with scripted(board) as line:
         drive = SimpleFOCDrive(part(line.port), 0.75, 0.5)
-        assert drive.exchange(0.25) == (1.5708, 0.24)
+        assert drive.exchange(0.25) == Reading(1.5708, 0.24)
         drive.close()
 
 

@@ -70,7 +70,7 @@ def test_the_core_reads_displacements_to_a_sixteenth_of_a_micrometre() -> None:
     for number, x_mm in enumerate((-0.9, 0.0, 0.00011, 1.2345678, 6.9)):
         step = controller.step(x_mm, 0.0, 1000, number)
         assert step.displacement_mm == pytest.approx(x_mm, abs=0.5 / 16000 + 1e-9)
-        assert not step.faulted
+        assert not controller.has_failed
 
 
 @pytest.mark.parametrize(

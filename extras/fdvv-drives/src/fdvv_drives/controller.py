@@ -18,7 +18,7 @@ FORCE_ZERO_counts = 32768
 FORCE_GAIN_q14 = 2**14
 """Of a force sensor: one count is 1/64 cN."""
 LONGEST_GAP_ticks = 65535
-GUARDS = {"reading_low": -1, "reading_high": 1, "jump_um16": 1, "late_ticks": 1}
+GUARDS = {"reading_low": -1, "reading_high": 1, "late_ticks": 1}
 """Settings that the stage file bounds: from below (-1) or above."""
 
 
@@ -27,13 +27,13 @@ class Step(NamedTuple):
 
     Attributes
     ----------
-    displacement_mm : as its settings calibrate it. commanded_cN : the new command, 0 in a fault.
+    displacement_mm : as its settings calibrate it. commanded_cN : the new command, 0 in a fault. limited :
+        it was cut.
     """
 
     displacement_mm: float
     commanded_cN: float
     limited: bool
-    faulted: bool
 
 
 class Controller:
@@ -102,6 +102,18 @@ class Controller:
     def disarm(self) -> None:
         self._core.disarm()
 
+    def check_speed(self, moved_mm: float, took_s: float) -> None:
+        """Latch position_jump where the cap moved further than the stage file allows in this time."""
+        allowed_mm = self._stage.limits.velocity_mm_s * took_s
+        if abs(moved_mm) > allowed_mm:
+            values = round(UM16_PER_mm * abs(moved_mm)), round(UM16_PER_mm * allowed_mm)
+            self._core.fail(Fault.POSITION_JUMP, *values)
+
+    @property
+    def has_failed(self) -> bool:
+        """Return whether a fault is latched: then there is no force."""
+        return self._core.mode is Mode.FAULT
+
     def clear(self) -> None:
         """Clear the latched fault; DeviceError while its cause lasts."""
         refusal = self._core.ask(CoreRequest.CLEAR, int(self._core.fault))
@@ -121,7 +133,6 @@ class Controller:
             float(output["displacement_um16"]) / UM16_PER_mm,
             float(output["commanded_cN64"]) / CN64_PER_cN,
             bool(output["flags"] & TickFlag.LIMITED),
-            bool(output["mode"] == Mode.FAULT),
         )
 
     def report(self) -> FaultReport:

@@ -51,7 +51,8 @@ class DriveDevice:
     Parameters
     ----------
     stage : its mechanics and limits. drive : in torque mode once enabled.
-    force_cN : reads a sensor at the cap, positive against the finger; None without one.
+    force_cN : reads a sensor at the cap, positive against the finger; None without one, or where the drive
+        has it.
     armed : called in the loop with travel and speed as soon as the cap is up: for a simulated hand.
 
     Attributes
@@ -72,9 +73,10 @@ class DriveDevice:
         self._clock = RealClock() if clock is None else clock
         self.stage, self.drive, self.armed = stage, drive, armed
         self._force_cN = force_cN
-        self.force_is_estimated = force_cN is None
+        has_sensor = force_cN is not None or drive.senses_force
+        self.force_is_estimated = not has_sensor
         self.log = LoopLog()
-        self._controller = Controller(stage, force_cN is not None)
+        self._controller = Controller(stage, has_sensor)
         self._travel_mm: float | None = None
         self._idle_since_s = self._clock.now_s()
         self._closed = False
@@ -158,11 +160,16 @@ class DriveDevice:
 
     def _begin(self) -> None:
         """Enable the drive, let the core know how long nothing was commanded, and arm it."""
-        self.drive.enable()
-        x_mm = self.stage.displacement_mm(self._first_reading().position, self._zero)
-        idle_ticks = round((self._clock.now_s() - self._idle_since_s) / (self.stage.tick_us * 1e-6))
-        self._controller.step(x_mm, self._sensed_cN(0.0), idle_ticks, 0)
+        self._look()
         self._controller.arm()
+
+    def _look(self) -> None:
+        """Have the core see where the cap is, at zero torque."""
+        self.drive.enable()
+        reading = self._first_reading()
+        x_mm = self.stage.displacement_mm(reading.position, self._zero)
+        idle_ticks = round((self._clock.now_s() - self._idle_since_s) / (self.stage.tick_us * 1e-6))
+        self._controller.step(x_mm, self._sensed_cN(reading), idle_ticks, round(1e6 * self._clock.now_s()))
 
     def _end(self) -> None:
         self._controller.disarm()
@@ -171,45 +178,58 @@ class DriveDevice:
             self.drive.stop()
 
     def _loop(self, log: LoopLog, finder: PressFinder, travel_mm: float, velocity_mm_s: float) -> None:
-        stage, period_s = self.stage, self.stage.period_s
-        tick_s = stage.tick_us * 1e-6
-        begin_s, ticks, lost, force_cN = self._clock.now_s(), 0, 0, 0.0
+        begin_s, lost, force_cN = self._clock.now_s(), 0, 0.0
         armed = self.armed
         while True:
             sent_s = self._clock.now_s()
             try:
-                reading = self.drive.exchange(stage.torque(0.01 * force_cN))
+                reading = self.drive.exchange(self.stage.torque(0.01 * force_cN))
             except LostAnswerError:
                 log.lost, lost = log.lost + 1, lost + 1
-                if lost > stage.limits.lost_answers:
+                if lost > self.stage.limits.lost_answers:
                     raise
                 continue
             received_s, lost = self._clock.now_s(), 0
-            now_ticks = max(ticks + 1, round((received_s - begin_s) / tick_s))
-            sensed_cN = self._sensed_cN(100 * stage.force_N(reading.torque))
-            x_mm = stage.displacement_mm(reading.position, self._zero)
-            step = self._controller.step(x_mm, sensed_cN, now_ticks - ticks, round(1e6 * received_s))
-            if step.faulted:
-                raise DeviceError(f"{self.drive.name}: fell to zero force, {self._controller.report()}")
-            ticks, force_cN = now_ticks, step.commanded_cN
-            log.note(sent_s, received_s, step.displacement_mm, sensed_cN, force_cN, step.limited)
-            if finder.feed(step.displacement_mm):
+            force_cN = self._step(log, reading, sent_s, received_s, begin_s)
+            if finder.feed(log.displacement_mm[-1]):
                 return
             if armed is not None and received_s - begin_s > ARMED_s:
                 armed(travel_mm, velocity_mm_s)
                 armed = None
-            self._wait(begin_s, period_s)
+            self._wait(begin_s)
 
-    def _wait(self, begin_s: float, period_s: float) -> None:
+    def _step(
+        self, log: LoopLog, reading: Reading, sent_s: float, received_s: float, begin_s: float
+    ) -> float:
+        """Return the new command in cN for an answer, and log both; DeviceError if a guard acts."""
+        stage, controller = self.stage, self._controller
+        tick_s = stage.tick_us * 1e-6
+        before_s = log.received_s[-1] if len(log) else begin_s
+        # counted from the start, so that what is rounded off does not add up
+        ticks = round((received_s - begin_s) / tick_s) - round((before_s - begin_s) / tick_s)
+        x_mm, sensed_cN = stage.displacement_mm(reading.position, self._zero), self._sensed_cN(reading)
+        step = controller.step(x_mm, sensed_cN, ticks, round(1e6 * received_s))
+        if len(log):  # a position is at least as old as its answer, and no older than its question
+            moved_mm = step.displacement_mm - log.displacement_mm[-1]
+            controller.check_speed(moved_mm, received_s - log.sent_s[-1])
+        if controller.has_failed:
+            raise DeviceError(f"{self.drive.name}: fell to zero force, {controller.report()}")
+        log.note(sent_s, received_s, step.displacement_mm, sensed_cN, step.commanded_cN, step.limited)
+        return step.commanded_cN
+
+    def _wait(self, begin_s: float) -> None:
         """Sleep until the next cycle; DeviceError once nobody has pressed for long."""
-        now_s = self._clock.now_s() - begin_s
+        now_s, period_s = self._clock.now_s() - begin_s, self.stage.period_s
         if now_s > self.stage.loop.patience_s:
             waited = f"nobody pressed within {self.stage.loop.patience_s:g} s"
             raise DeviceError(f"{self.drive.name}: {waited}; press the button fully")
         self._clock.sleep(period_s - now_s % period_s)
 
-    def _sensed_cN(self, reported_cN: float) -> float:
-        return reported_cN if self._force_cN is None else self._force_cN()
+    def _sensed_cN(self, reading: Reading) -> float:
+        """Return the force of the sensor, or that of the reported torque."""
+        if self._force_cN is not None:
+            return self._force_cN()
+        return 100 * (self.stage.force_N(reading.torque) if reading.force_N is None else reading.force_N)
 
     def stop(self) -> None:
         """Fall to zero force at once; allowed at any time."""
@@ -223,6 +243,10 @@ class DriveDevice:
 
     def clear_fault(self) -> None:
         """Clear the latched fault; DeviceError while its cause lasts."""
+        try:
+            self._look()
+        finally:
+            self._end()
         self._controller.clear()
 
     def close(self) -> None:

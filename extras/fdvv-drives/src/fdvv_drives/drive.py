@@ -18,10 +18,14 @@ class LostAnswerError(DeviceError):
 
 
 class Reading(NamedTuple):
-    """One answer: position in the drive's unit, torque in that of its command, as reported."""
+    """One answer: position in the drive's unit, torque in that of its command, as reported.
+
+    force_N : against the finger, of a load cell at the drive's own input; None without one.
+    """
 
     position: float
     torque: float
+    force_N: float | None = None
 
 
 class Drive(Protocol):
@@ -31,10 +35,12 @@ class Drive(Protocol):
     ----------
     name : for messages.
     watchdog_s : the drive falls to no torque when it hears nothing for so long; None if nothing does.
+    senses_force : its readings hold the force of a load cell.
     """
 
     name: str
     watchdog_s: float | None
+    senses_force: bool
 
     def enable(self) -> None:
         """Switch torque mode on at zero torque; refuses a drive that reports an error or another mode."""

@@ -8,6 +8,7 @@ for one answer anyway.
 from __future__ import annotations
 
 import math
+import re
 import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -51,12 +52,36 @@ FAULTS = {
 """Of the register 0x00f, from mjbots' reference manual."""
 
 
+ANALOG_INPUTS = {"1": 0x060, "2": 0x068}
+"""Registers of the first analog input of each auxiliary port; they read from 0 to 1."""
+
+
 class MoteusPart(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The table [moteus]: port of the fdcanusb, CAN id, and the watchdog that every command carries."""
+    """The table [moteus]: port of the fdcanusb, CAN id, and the watchdog that every command carries.
+
+    force_input : the analog input of a load cell's amplifier, "aux1.1" to "aux2.5"; "" without one.
+    force_zero : its reading at no force, from 0 to 1. force_span_N : force against the finger that raises it
+        by 1; negative if it falls.
+    """
 
     port: str
     id: int = 1
     watchdog_ms: float = 50.0
+    force_input: str = ""
+    force_zero: float = 0.5
+    force_span_N: float = 0.0
+
+    def force_register(self) -> int | None:
+        """Return the register of the analog input; None without one. DeviceError if there is none such."""
+        if not self.force_input:
+            return None
+        found = re.fullmatch(r"aux([12])\.([1-5])", self.force_input)
+        if found is None or not self.force_span_N or not 0.0 <= self.force_zero <= 1.0:
+            raise DeviceError(
+                f"moteus {self.id}: a load cell needs force_input aux1.1 to aux2.5, force_span_N and a "
+                "force_zero from 0 to 1"
+            )
+        return ANALOG_INPUTS[found[1]] + int(found[2]) - 1
 
 
 class Answer(NamedTuple):
@@ -64,6 +89,7 @@ class Answer(NamedTuple):
     position: float
     torque: float
     fault: int
+    force_N: float | None
 
 
 class _Frame(NamedTuple):
@@ -82,7 +108,11 @@ class MoteusDrive:
         self.name = f"moteus {part.id}"
         self.watchdog_s: float | None = part.watchdog_ms / 1000
         self._register, self._part = moteus.Register, part
-        self._controller: Any = moteus.Controller(id=part.id)
+        self._force_register = part.force_register()
+        self.senses_force = self._force_register is not None
+        asked = moteus.QueryResolution()
+        asked._extra = {} if self._force_register is None else {self._force_register: moteus.INT16}
+        self._controller: Any = moteus.Controller(id=part.id, query_resolution=asked)
         self._torque_limit, self._answer_s = torque_limit, answer_s
         self.line = SerialLine(part.port, 115200)  # USB: the rate is not used
 
@@ -97,7 +127,7 @@ class MoteusDrive:
         answer = self._ask(self._position(torque))
         if answer.mode != POSITION_MODE or answer.fault:
             raise DeviceError(self._in_fault(answer))
-        return Reading(answer.position, answer.torque)
+        return Reading(answer.position, answer.torque, answer.force_N)
 
     def _position(self, torque: float) -> Any:
         """Return the command: no gain, no integral; torque cut once more, by the drive."""
@@ -163,9 +193,16 @@ class MoteusDrive:
             register = self._register
             mode, fault = int(values[register.MODE]), int(values[register.FAULT])
             position, torque = float(values[register.POSITION]), float(values[register.TORQUE])
+            force_N = self._force_N(values)
         except Exception:  # whatever the library makes of damaged bytes
             return None
-        return Answer(mode, position, torque, fault) if math.isfinite(position + torque) else None
+        is_whole = math.isfinite(position + torque + (force_N or 0.0))
+        return Answer(mode, position, torque, fault, force_N) if is_whole else None
+
+    def _force_N(self, values: dict[int, float]) -> float | None:
+        if self._force_register is None:
+            return None
+        return self._part.force_span_N * (values[self._force_register] - self._part.force_zero)
 
     def has_fallen(self) -> bool:
         return self._ask(self._controller.make_query(), tries=5).mode != POSITION_MODE

@@ -85,7 +85,9 @@ class ODrivePart(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class ODriveDrive:
-    """A drive as in fdvv_drives.drive.Drive; positions in rev, torques in Nm."""
+    """A drive as in fdvv_drives.drive.Drive, without a load cell; positions in rev, torques in Nm."""
+
+    senses_force = False
 
     def __init__(self, part: ODrivePart, answer_s: float) -> None:
         self.name = f"odrive {part.node}"

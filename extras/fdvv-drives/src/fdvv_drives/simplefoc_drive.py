@@ -46,7 +46,9 @@ class SimpleFOCPart(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class SimpleFOCDrive:
-    """A drive as in fdvv_drives.drive.Drive; positions in rad, torques in V or A."""
+    """A drive as in fdvv_drives.drive.Drive, without a load cell; positions in rad, torques in V or A."""
+
+    senses_force = False
 
     def __init__(self, part: SimpleFOCPart, torque_limit: float, answer_s: float) -> None:
         self.watchdog_s = part.watchdog_ms / 1000 or None

@@ -193,7 +193,6 @@ class Stage:
         if high_mm - low_mm + 1.0 > SPAN_mm:
             reason = f"travel and overtravel span {high_mm - low_mm:g} mm"
             raise self._wrong("stage.travel_mm", reason, f"stay below {SPAN_mm - 1:g} mm")
-        jump_um16 = UM16_PER_mm * limits.velocity_mm_s * self.tick_us * 1e-6
         return Settings(
             position_gain_q14=2**14,
             position_offset_um16=self._lowest_um16,
@@ -202,7 +201,7 @@ class Stage:
             force_limit_cN64=round(100 * CN64_PER_cN * limits.force_N),
             reading_low=self.counts(low_mm) // COUNTS_READING,
             reading_high=self.counts(high_mm) // COUNTS_READING,
-            jump_um16=min(65535, max(160, round(jump_um16))),
+            jump_um16=65535,  # how long ago the last position was is known here, not there
             stuck_ticks=65535,  # an encoder at rest reads the same for long
             late_ticks=max(self.ticks, min(1000, round(1000 * limits.late_ms / self.tick_us))),
             reads=COUNTS_READING,

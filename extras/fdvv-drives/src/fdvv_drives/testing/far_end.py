@@ -26,9 +26,11 @@ class FarDrive(Protocol):
     Attributes
     ----------
     torque : what it commands its motor at the moment, in its own unit, 0 where it is off.
+    finger_N : between finger and cap, for a drive with an input for a load cell.
     """
 
     torque: float
+    finger_N: float
 
     def answer(self, data: bytes, position: float, now_s: float) -> bytes:
         """Take bytes from the line and return what goes back."""
@@ -88,6 +90,7 @@ class FarEnd:
         ready = select.select(files, [], [], IDLE_s)[0]
         now_s = time.perf_counter()
         self.plant.advance(now_s, self.force_N)
+        self.drive.finger_N = self.plant.finger_N
         if self._master >= 0:
             self._serve(self._master in ready, now_s)
         else:

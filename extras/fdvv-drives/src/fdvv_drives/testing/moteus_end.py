@@ -16,6 +16,8 @@ from fdvv_drives.testing.far_end import FaultKind
 STOPPED, FAULT, POSITION, TIMEOUT = 0, 1, 10, 11
 OVER_TEMPERATURE = 38
 COUNTS_REV = 2**14
+CELL_ZERO, CELL_SPAN_N = 0.25, 20.0
+"""Of the load cell at the input aux1.2, register 0x061."""
 KINDS = ("<b", "<h", "<i", "<f")
 SCALES = {
     0x01: (0.01, 1e-4, 1e-5),
@@ -29,6 +31,7 @@ SCALES = {
     0x23: (1 / 127, 1 / 32767, 1 / 2147483647),
     0x24: (1 / 127, 1 / 32767, 1 / 2147483647),
     0x25: (0.5, 0.01, 0.001),
+    0x61: (1 / 127, 1 / 32767, 1 / 2147483647),
     0x27: (0.01, 0.001, 1e-6),
 }
 """Of a register as an integer of 1, 2 and 4 bytes; others are plain numbers."""
@@ -46,7 +49,7 @@ class FarMoteus:
 
     def __init__(self, watchdog_s: float | None) -> None:
         """Ignore watchdog_s: it comes with every command."""
-        self.torque = 0.0
+        self.torque = self.finger_N = 0.0
         self.mode, self.fault = STOPPED, 0
         self._registers: dict[int, float] = {}
         self._heard_s = 0.0
@@ -155,6 +158,7 @@ class FarMoteus:
             0x0D: 24.0,
             0x0E: 31.0,
             0x0F: float(self.fault),
+            0x61: min(1.0, max(0.0, CELL_ZERO + self.finger_N / CELL_SPAN_N)),
         }.get(register, 0.0)
 
 

@@ -26,7 +26,7 @@ class FarODrive:
     NODE = 3
 
     def __init__(self, watchdog_s: float | None) -> None:
-        self.torque = 0.0
+        self.torque = self.finger_N = 0.0
         self.watchdog_s = watchdog_s
         self.state, self.error = IDLE, 0
         self._input, self._modes = 0.0, (3, 1)  # position control, as delivered

@@ -43,7 +43,7 @@ class LivePlant:
 
     Attributes
     ----------
-    motor_N : against the finger, as the drive makes it at the moment.
+    motor_N : against the finger, as the drive makes it at the moment. finger_N : between finger and cap.
     """
 
     LAG_s = 3e-4
@@ -51,7 +51,7 @@ class LivePlant:
 
     def __init__(self, travel_mm: float, seed: int = 0) -> None:
         self.cap, self.hand = CapOnGuide(travel_mm), Hand(np.random.default_rng(seed))
-        self.motor_N = 0.0
+        self.motor_N = self.finger_N = 0.0
         self.x_mm = 0.0
         self._v_mm_s, self._time_s = 0.0, 0.0
         self._press_s, self._asked = (0.0, 0.0, 0.0), (0.0, 0.0)
@@ -79,8 +79,8 @@ class LivePlant:
         while self._time_s + STEP_s <= now_s:
             self._time_s += STEP_s
             self.motor_N += share * (command_N - self.motor_N)
-            finger_N = self.hand.step(self.x_mm, self._v_mm_s, STEP_s)
-            x_mm = self.cap.step(self.motor_N, finger_N, math.inf, STEP_s)
+            self.finger_N = self.hand.step(self.x_mm, self._v_mm_s, STEP_s)
+            x_mm = self.cap.step(self.motor_N, self.finger_N, math.inf, STEP_s)
             self._v_mm_s, self.x_mm = 1e3 * self.cap.v_m_s, x_mm
             self._note_pace()
 

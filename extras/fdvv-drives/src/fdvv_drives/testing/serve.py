@@ -15,14 +15,20 @@ from pathlib import Path
 from typing import Any
 
 from fdvv_drives.testing.far_end import FarDrive, FarEnd
-from fdvv_drives.testing.moteus_end import FarMoteus
+from fdvv_drives.testing.moteus_end import CELL_SPAN_N, CELL_ZERO, FarMoteus
 from fdvv_drives.testing.odrive_end import FarODrive
 from fdvv_drives.testing.simplefoc_end import FarSimpleFOC
 
 LEAD_mm_rev, N_Nm, N_A = 10.0, 500.0, 4.0
 TRAVEL_mm = 6.0
 DRIVES: dict[str, tuple[type, str, float, float]] = {
-    "moteus": (FarMoteus, 'port = "{port}"\nwatchdog_ms = {watchdog_ms}', LEAD_mm_rev, N_Nm),
+    "moteus": (
+        FarMoteus,
+        'port = "{port}"\nwatchdog_ms = {watchdog_ms}\n'
+        f'force_input = "aux1.2"\nforce_zero = {CELL_ZERO}\nforce_span_N = {CELL_SPAN_N}',
+        LEAD_mm_rev,
+        N_Nm,
+    ),
     "odrive": (
         FarODrive,
         'channel = "{port}"\ninterface = "slcan"\nnode = 3\nwatchdog_ms = {watchdog_ms}',

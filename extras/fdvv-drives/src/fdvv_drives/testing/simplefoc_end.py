@@ -18,7 +18,7 @@ class FarSimpleFOC:
     """
 
     def __init__(self, watchdog_s: float | None) -> None:
-        self.torque = 0.0
+        self.torque = self.finger_N = 0.0
         self.watchdog_s = watchdog_s
         self.enabled, self.verbose, self.decimals = True, 2, 3
         self.motion, self.target, self.limit = "angle", 0.0, 0.2
