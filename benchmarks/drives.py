@@ -3,7 +3,7 @@
 Run as ``python -m benchmarks.drives``. Each adapter talks with its simulated far end in a process of its
 own: what is measured is this machine, its Python and the vendors' libraries, no bus and no motor. Beside it
 is the time that the bytes of a cycle take on the real line, computed from their number and the bit rate;
-both together are the least that a cycle takes.
+both together are the least that a cycle takes. With ``learn``, whether a drive with a load cell learns.
 """
 
 from __future__ import annotations
@@ -18,10 +18,22 @@ from typing import Any
 
 import numpy as np
 
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.boards import LibraryBoard
+from fdvv.device.contract import Device
+from fdvv.device.linked import LinkedDevice
+from fdvv.device.own_rig import OwnRigPerson, RigNumbers
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.surface import ForceSurface
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.probe import probe
 from fdvv.testing.conformance import plain_surface
 from fdvv.units import FloatArray
 from fdvv_drives.device import DriveDevice
 from fdvv_drives.open import open_moteus, open_odrive, open_simplefoc
+from fdvv_drives.testing.direct import direct_device
+from fdvv_drives.testing.plant import CapOnGuide
 from fdvv_drives.testing.process import FarProcess
 
 OPEN: dict[str, Callable[[str], DriveDevice]] = {
@@ -31,6 +43,7 @@ OPEN: dict[str, Callable[[str], DriveDevice]] = {
 }
 GENEROUS = ("--rate-Hz", "1000", "--answer-ms", "100", "--late-ms", "900", "--watchdog-ms", "300")
 EXCHANGES, PRESSES = 3000, 3
+VELOCITIES_mm_s = (50.0, 100.0)
 NOMINAL_bit_s, DATA_bit_s = 1e6, 5e6
 UART_bit_s = (115_200, 1_000_000)
 STUFF_RATIO = 1.2
@@ -63,8 +76,9 @@ def answers_s(device: DriveDevice) -> FloatArray:
 
 def line_s(kind: str, device: DriveDevice) -> dict[str, float]:
     """Return what the bytes of a cycle take on each line."""
-    if kind == "moteus":  # 48 bytes, and 22 in a frame that holds 24
-        return {"CAN-FD 1/5 Mbit/s": can_fd_s(48) + can_fd_s(24)}
+    if kind == "moteus":  # 48 bytes and 22, with a load cell 50 and 26, in the next longer frames
+        plain_s, cell_s = can_fd_s(48) + can_fd_s(24), can_fd_s(64) + can_fd_s(32)
+        return {"CAN-FD 1/5 Mbit/s": plain_s, "CAN-FD 1/5 Mbit/s, load cell": cell_s}
     if kind == "odrive":
         return {"CAN 1 Mbit/s": can_s(4) + 2 * can_s(0) + 2 * can_s(8)}
     drive: Any = device.drive
@@ -93,7 +107,42 @@ def spread(times_s: FloatArray) -> str:
     return f"{middle:5.2f} ({low:.2f} to {high:.2f}, worst {worst:.1f})"
 
 
+class Guide(CapOnGuide):
+    """The far ends' cap, for the firmware's own board at the same rate."""
+
+    numbers = RigNumbers("guide", full_duty_N=6.0, force_limit_N=3.0, tick_us=1000, force_sensor_N=5.0)
+
+    def __init__(self) -> None:
+        super().__init__(6.0)
+
+
+def errors_cN(device: Device, surface: ForceSurface, button: FDVVModel) -> str:
+    """Return mean errors on fresh presses in true displacement."""
+    judged = probe(device, button, surface, VELOCITIES_mm_s, 6)
+    found = [curve.to_dict() for curve in judged.curves]
+    return ", ".join(f"{c['stroke']} {c['velocity_mm_s']:g}: {c['mean_error_cN']:.1f}" for c in found)
+
+
+def learn() -> None:
+    """Learn with a load cell on a drive in simulated time, and with the firmware's own board beside it."""
+    button = load_builtin("mx-clear")
+    plain = ForceSurface.of_model(button, list(VELOCITIES_mm_s), 0.02)
+    devices: dict[str, Device] = {
+        "drive": direct_device(has_cell=True)[0],
+        "board": LinkedDevice(LibraryBoard(), OwnRigPerson(Guide)),
+    }
+    print("MX Clear on a guide of 30 g with a load cell, mean error in cN at mm/s, 1 kHz, simulated")
+    for name, device in devices.items():
+        print(f"  {name}: not learned {errors_cN(device, plain, button)}")
+        learned = compensate(device, button, VELOCITIES_mm_s, RigAware())
+        found = f"looks {device.settings().lead_us} us ahead"
+        print(f"  {name}: learned     {errors_cN(device, learned.surface, button)}; {found}")
+
+
 def main() -> None:
+    if sys.argv[1:] == ["learn"]:
+        learn()
+        return
     if sys.platform == "win32":
         raise SystemExit("needs pseudo-terminals")
     print(f"emulated over a pseudo-terminal, without bus and motor; load average {os.getloadavg()[0]:.1f}")

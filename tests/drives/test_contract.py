@@ -9,9 +9,9 @@ import pytest
 
 from fdvv.testing.conformance import ProgramConformance
 from fdvv_drives.device import DriveDevice
+from fdvv_drives.testing.direct import direct_device
 from fdvv_drives.testing.process import FarProcess
 from tests.drives.conftest import opened
-from tests.drives.direct import direct_device
 
 
 class TestDirect(ProgramConformance):

@@ -13,7 +13,7 @@ from fdvv.rendering.compensate import check_force_sensor
 from fdvv.testing.conformance import plain_surface
 from fdvv_drives.device import DriveDevice
 from fdvv_drives.stage import Coil
-from tests.drives.direct import DirectDrive, VirtualClock, direct_device, direct_stage
+from fdvv_drives.testing.direct import DirectDrive, VirtualClock, direct_device, direct_stage
 
 
 class Pressing:

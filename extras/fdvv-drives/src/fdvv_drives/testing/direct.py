@@ -82,9 +82,12 @@ def direct_stage(coil: Coil | None = None, **limits: float) -> Stage:
     return Stage(mechanics, found, coil, Loop(rate_Hz=1000.0, patience_s=3.0))
 
 
-def direct_device(stage: Stage | None = None) -> tuple[DriveDevice, DirectDrive, VirtualClock]:
-    """Make a device whose simulated hand presses when the cap is up."""
+def direct_device(
+    stage: Stage | None = None, has_cell: bool = False
+) -> tuple[DriveDevice, DirectDrive, VirtualClock]:
+    """Make a device whose simulated hand presses when the cap is up; with a load cell, or without."""
     stage, clock = stage or direct_stage(), VirtualClock()
     drive = DirectDrive(clock, stage)
-    device = DriveDevice(stage, drive, armed=drive.plant.press, clock=clock)
+    force_cN = (lambda: 100 * drive.plant.finger_N) if has_cell else None
+    device = DriveDevice(stage, drive, force_cN, drive.plant.press, clock)
     return device, drive, clock
