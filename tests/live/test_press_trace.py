@@ -38,6 +38,15 @@ def test_columns_are_found_by_their_names(header: str) -> None:
         assert trace.displacement_mm == pytest.approx(x)
 
 
+def test_a_key_that_the_studio_recorded_is_read_below_its_comments() -> None:
+    head = "# fdvv key recording 1\n# key: Space\n# full_scale_mm: 4\n"
+    trace = read_press_trace(f"{head}t_ms,depth_mm\n0,0\n1,0.5\n2.5,1\n4,0\n".encode(), "key.csv")
+    assert trace.t_s == pytest.approx([0.0, 0.001, 0.0025, 0.004])
+    assert trace.displacement_mm == pytest.approx([0.0, 0.5, 1.0, 0.0])
+    with pytest.raises(InputError, match="line 6"):
+        read_press_trace(f"{head}t_ms,depth_mm\n0,0\n1,deep\n".encode(), "key.csv")
+
+
 def test_an_analogue_keyboards_log_gives_the_key_that_moved_most() -> None:
     rows = [(1000 + i, 40 if i % 2 else 41, 0.1 if i % 2 else i / 40) for i in range(40)]
     text = "unixtime,keyCode,keyValue\n" + "\n".join(f"{a},{b},{c}" for a, b, c in rows)

@@ -78,6 +78,20 @@ class Player:
         self.say("round", **self.shown(number, start_ms, at_ms + 100.0))
         return self.hear("kept")
 
+    def deeper(self, number: int, actuation_mm: float) -> tuple[dict[str, Any], float]:
+        """Press a key at 50 mm/s and let it go; return the message, and when it was at a depth, ms."""
+        start_ms = self.now_ms()
+        while (since_ms := self.now_ms() - start_ms) < 300.0:
+            depth_mm = min(4.0, since_ms / 20.0)
+            speed_mm_s = 50.0 if depth_mm < 4.0 else 0.0
+            self.say("follow", at_ms=start_ms + since_ms, displacement_mm=depth_mm, velocity_mm_s=speed_mm_s)
+            time.sleep(0.004)
+        self.say("follow", at_ms=self.now_ms(), displacement_mm=0.0, velocity_mm_s=0.0)
+        time.sleep(0.2)
+        key = {"hand": "analog", "input": {"ms": 4.0, "error_ms": 3.0}}
+        self.say("round", **{**self.shown(number, start_ms, start_ms + 100.0), **key})
+        return self.hear("kept"), 20.0 * actuation_mm
+
     def beside(self, number: int, rig: KeyedRig) -> tuple[dict[str, Any], float]:
         """Wait for a press on the table; return the message about it, and how late it was by the rig."""
         start_ms, before = self.now_ms(), len(rig.pressed_s)
@@ -207,6 +221,28 @@ def test_a_press_comes_out_with_the_asynchrony_that_its_times_say(
     rounds.close()
     assert [one.timing.display_ms for one in counting] == [30.0, 30.0]
     assert TemporalPointing(rounds=2, quantised=False).scores([one.press for one in counting]) == trial.scores
+
+
+def test_a_key_of_a_keyboard_presses_where_it_reaches_the_buttons_actuation(
+    ask: Callable[..., Any], client: TestClient, own_studio: Studio
+) -> None:
+    run = ask("create", **CREATE)["run"]
+    ask("next", run=run)
+    actuation_mm = ask("detail", run=run)["trials"][0]["design"]["actuation_mm"]
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        player.say("open", run=run, trial=0)
+        player.hear("ready")
+        for number in (1, 2):
+            found, crossed_ms = player.deeper(number, actuation_mm)
+            # less what the browser and the screen are said to take, alike in all rounds
+            assert found["late_ms"] == pytest.approx(crossed_ms - 100.0 - 4.0 - 30.0, abs=0.5)
+            assert 0 <= found["transport_ms"] < 200
+    rounds = TaskRounds(own_studio.project / "optimize" / str(run))
+    counting = rounds.counting(0)
+    rounds.close()
+    assert {(one.timing.source, one.timing.hand) for one in counting} == {(ClockSource.PAGE, "analog")}
+    assert [len(one.activations_s) for one in counting] == [1, 1]
 
 
 @pytest.mark.parametrize("way_ms", [0.0, 45.0, 150.0])

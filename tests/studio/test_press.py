@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import msgspec
+import numpy as np
 import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 
 from fdvv.model.file import load_builtin, model_to_json, save_model
 from fdvv.program.file import program_to_json, save_program
 from fdvv.program.library import load_shipped
+from fdvv.studio.api.press import PressStart, subject_of
 from fdvv.studio.studio import Studio
 from tests.studio.conftest import LIVE
 
@@ -86,6 +89,38 @@ def test_a_press_is_led_seen_and_reported(start: Callable[..., None]) -> None:
         assert page.until(lambda body: body.get("type") == "over")["reason"] == ""
 
     start(work, button="builtin:mx-clear")
+
+
+def test_a_key_of_a_keyboard_presses_the_button_to_where_it_is(start: Callable[..., None]) -> None:
+    def work(page: Page, _ready: dict[str, Any]) -> None:
+        for number in range(1, 76):
+            page.say("follow", displacement_mm=number / 25, velocity_mm_s=10.0, sequence=number)
+            time.sleep(0.004)
+        page.say("follow", displacement_mm=3.0, velocity_mm_s=0.0, sequence=76)
+        held = page.until(
+            lambda body: body.get("sequence") == 76 and np.ptp(body["displacement_mm"] or [0, 9]) < 0.02
+        )
+        assert held["key"] == 1
+        assert held["displacement_mm"][-1] == pytest.approx(3.0, abs=0.2)
+        page.say("follow", displacement_mm=0.0, velocity_mm_s=0.0, sequence=77)
+        page.until(event("pressed"))
+
+    start(work, button="builtin:mx-clear")
+
+
+@pytest.mark.parametrize("what", [{"button": "builtin:mx-clear"}, {"program": "shipped:non-newtonian"}])
+def test_forces_are_listed_at_speeds_close_enough_to_interpolate(
+    client: TestClient, own_studio: Studio, what: dict[str, Any]
+) -> None:
+    speeds = client.post("/api/press.forces", json=what).json()["speeds"]
+    asked = PressStart(**what)
+    subject = subject_of(own_studio, asked)
+    velocities = [one["velocity_mm_s"] for one in speeds]
+    for speed in (6.0, 37.0, 85.0, 120.0, 260.0, 380.0):
+        for name, wanted in zip(("press_cN", "release_cN"), subject.meant_cN(speed), strict=True):
+            rows = np.array([one[name] for one in speeds])
+            found = [np.interp(speed, velocities, column) for column in rows.T]
+            assert np.abs(found - wanted).max() < 2.0
 
 
 def test_documents_that_are_not_kept_yet_can_be_pressed(start: Callable[..., None]) -> None:

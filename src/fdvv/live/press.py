@@ -17,7 +17,7 @@ from fdvv.device.contract import FaultReport, FREE_CELL_cN
 from fdvv.errors import DeviceError
 from fdvv.firmware.core import CoreRequest
 from fdvv.force_text import force_text
-from fdvv.live.press_replay import DisplacementPath, path_of
+from fdvv.live.press_replay import DisplacementPath, KeyFollower, path_of
 from fdvv.live.press_subject import PressSubject
 from fdvv.live.press_trace import PressTrace
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
@@ -143,6 +143,7 @@ class LivePress:
         self.due_s = 0.0
         self._key, self._faulted, self._opened = 0, False, False
         self._path: DisplacementPath | None = None
+        self._follower: KeyFollower | None = None
         self._descent = Descent()
 
     @property
@@ -166,6 +167,16 @@ class LivePress:
     def lift(self) -> None:
         self._path = None
         self.rig.lift()
+
+    def follow(self, displacement_mm: float, velocity_mm_s: float) -> None:
+        """Lead the finger so that the cap goes where a key elsewhere is now: 0 at rest, positive down.
+
+        The finger knows the button's slow force and presses as much harder as it gives way under it.
+        """
+        self._path = None
+        self._follower = self._follower or KeyFollower(self.subject)
+        step = self._follower.step(displacement_mm, velocity_mm_s)
+        self.rig.lead(step.referent_mm, step.velocity_mm_s, step.near_1_s)
 
     def replay(self, trace: PressTrace) -> None:
         """Lead the finger along a recorded or drawn trace, from now on, and lift it after."""
@@ -349,6 +360,11 @@ class PressTimes:
             if at >= 0:
                 led_s, hand_s = self._leads[at]
                 self._activations_s.append(hand_s + simulated_s - led_s)
+
+    def pressed(self, hand_s: float) -> None:
+        """Note that the hand's own key went down at a time of its clock."""
+        with self._lock:
+            self._activations_s.append(hand_s)
 
     def between(self, start_s: float, end_s: float) -> tuple[float, ...]:
         """Return the activations from start to end on the hand's clock, rising."""

@@ -1,4 +1,4 @@
-"""Convert a recorded trace of the cap into the path that leads a finger along it."""
+"""Lead a finger so that the cap goes where a key was, or is: along a trace, or reading by reading."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ SMOOTH_s = 0.004
 NEAR_1_s = 500.0
 TOUCH_mm = 0.1
 """Over so much displacement the finger takes the button's force up."""
+REVERSAL_mm = 0.2
+"""Over so much displacement the other stroke's force comes in, where nothing says what the key will do."""
 
 
 class ReferentStep(NamedTuple):
@@ -58,11 +60,41 @@ def path_of(trace: PressTrace, subject: PressSubject, start_s: float) -> Displac
     down = np.gradient(x, REPLAY_STEP_s) >= 0
     slow = [np.interp(x, subject.displacement_mm, row) for row in subject.meant_cN(0.0)]
     force = np.where(down, *slow)
-    held = np.clip(x / TOUCH_mm, 0.0, 1.0) * np.maximum(force, 0.0)
-    stiffness = subject.finger.impedance.stiffness_N_m
-    yielding = [mm_from_m(depth_m(subject.finger, float(N_from_cN(f)), stiffness)) for f in held]
-    referent = _smooth(x + np.array(yielding))
+    referent = _smooth(x + _yields_mm(subject, x, force))
     return DisplacementPath(start_s, referent, np.gradient(referent, REPLAY_STEP_s))
+
+
+class KeyFollower:
+    """Leads a finger by a key that is read while it moves: as path_of does, without knowing what comes.
+
+    The force between the strokes is taken from both: the other one's comes in over REVERSAL_mm, so that
+    noise of the reading does not throw the finger to and fro.
+    """
+
+    def __init__(self, subject: PressSubject) -> None:
+        self._x_mm = subject.displacement_mm
+        self._yields_mm = [_yields_mm(subject, self._x_mm, force) for force in subject.meant_cN(0.0)]
+        self._press_ratio, self._last_mm = 1.0, 0.0
+
+    def step(self, displacement_mm: float, velocity_mm_s: float) -> ReferentStep:
+        """Return what leads the finger once the key is at a place (0: at rest) and moves at a speed."""
+        moved = (displacement_mm - self._last_mm) / REVERSAL_mm
+        self._press_ratio = min(1.0, max(0.0, self._press_ratio + moved))
+        self._last_mm = displacement_mm
+        referent = self._referent_mm(displacement_mm)
+        ahead = self._referent_mm(displacement_mm + velocity_mm_s * REPLAY_STEP_s)
+        return ReferentStep(referent, (ahead - referent) / REPLAY_STEP_s, NEAR_1_s, REPLAY_STEP_s)
+
+    def _referent_mm(self, x_mm: float) -> float:
+        press, release = (float(np.interp(x_mm, self._x_mm, row)) for row in self._yields_mm)
+        return x_mm + self._press_ratio * press + (1.0 - self._press_ratio) * release
+
+
+def _yields_mm(subject: PressSubject, x_mm: FloatArray, force_cN: FloatArray) -> FloatArray:
+    """Return how far finger and pulp give way at places under forces, (n,)."""
+    held = np.clip(x_mm / TOUCH_mm, 0.0, 1.0) * np.maximum(force_cN, 0.0)
+    stiffness = subject.finger.impedance.stiffness_N_m
+    return np.array([mm_from_m(depth_m(subject.finger, float(N_from_cN(f)), stiffness)) for f in held])
 
 
 def _smooth(x: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ FEWEST = 4
 TIMES = {"t_s": 1.0, "time_s": 1.0, "t_ms": 1e-3, "time_ms": 1e-3, "unixtime": 1e-3}
 """Columns that hold time, and what turns them into seconds."""
 
-PLACES = ("displacement_mm", "travel_mm", "x_mm")
+PLACES = ("displacement_mm", "depth_mm", "travel_mm", "x_mm")
 RATIO, KEY = "keyValue", "keyCode"
 """Columns of analogue keyboards: depth as a part of the travel, and which key."""
 
@@ -66,9 +66,10 @@ class PressTrace:
 def read_press_trace(data: bytes, source: str) -> PressTrace:
     """Read a trace from CSV or from JSON, an object of columns.
 
-    A column of time (t_s, time_s, t_ms, time_ms) and one of place (displacement_mm, travel_mm, x_mm), or an
-    analogue keyboard's log (unixtime, keyCode, keyValue as part of 4 mm; the key that moved most is taken).
-    Raises InputError with place and remedy.
+    A column of time (t_s, time_s, t_ms, time_ms) and one of place (displacement_mm, depth_mm, travel_mm,
+    x_mm), as the studio records a key too, or an analogue keyboard's log (unixtime, keyCode, keyValue as part
+    of 4 mm; the key that moved most is taken). Lines of CSV that begin with # are comments. Raises InputError
+    with place and remedy.
     """
     if len(data) > LARGEST_bytes:
         raise InputError(source, "whole file", f"is larger than {LARGEST_bytes // 1_000_000} MB", "cut it")
@@ -96,8 +97,8 @@ def _json_columns(text: str, source: str) -> dict[str, FloatArray]:
 
 
 def _csv_columns(text: str, source: str) -> dict[str, FloatArray]:
-    rows = csv.reader(io.StringIO(text))
-    names = [name.strip() for name in next(rows, [])]
+    rows = csv.reader("" if line.startswith("#") else line for line in io.StringIO(text))
+    names = [name.strip() for name in next(filter(None, rows), [])]
     numbers: list[list[float]] = []
     for row in rows:
         if not row:

@@ -15,6 +15,7 @@ from fdvv.live.device_key import DeviceKey
 from fdvv.live.press import LiveEventKind, LivePress, PressTimes
 from fdvv.live.press_subject import PressSubject
 from fdvv.live.run import LiveFrame, LiveRun
+from fdvv.live.travel_key import TravelKey
 from fdvv.optimize.run.task_rounds import ClockSource
 from fdvv.studio.contract import Message, Over, Tell
 from fdvv.studio.devices import DeviceLocks, available_devices, require_listed
@@ -40,6 +41,8 @@ class LiveTrial:
         self.played, self._tell = played, tell
         self._times, self._hand = PressTimes(), BinaryFinger.of(subject)
         self._faulted, self._pressed_s = False, (0.0, 0.0)
+        down_mm, up_mm = subject.actuation_mm or 0.0, subject.reset_mm or 0.0
+        self._key, self._by_travel = TravelKey(down_mm, min(down_mm, up_mm)), False
         self._came_ms = deque[tuple[float, float]](maxlen=10)  # a round has a handful of presses
         press = LivePress(subject, seed=played.seed)
         self.run = LiveRun(press, self._show, log.warning, lambda reason: tell(Over(reason)), CLOCK)
@@ -52,6 +55,19 @@ class LiveTrial:
     def up(self, at_ms: float) -> None:
         """Release after as long as the hand held: less input latency this time shortens no press."""
         self.run.ask(lambda press: self._release(press, at_ms / 1e3))
+
+    def follow(self, at_ms: float, displacement_mm: float, velocity_mm_s: float) -> None:
+        """Have the cap go where a key of the person's keyboard was at at_ms.
+
+        It presses where the key reached the button's actuation, on the page's clock. The simulated cap is
+        felt by nobody and counts for nothing, since its finger gives way and snaps; it is heard.
+        """
+        self._by_travel = True
+        pressed_s = self._key.read(at_ms / 1e3, displacement_mm)
+        if pressed_s is not None:
+            self._times.pressed(pressed_s)
+            self._came_ms.append((at_ms, 1e3 * CLOCK()))
+        self.run.ask(lambda press: press.follow(displacement_mm, velocity_mm_s))
 
     def close(self) -> None:
         self.run.close()
@@ -71,7 +87,7 @@ class LiveTrial:
 
     def _show(self, seen: LiveFrame) -> None:
         for event in seen.events:
-            if event.kind in DOWN:
+            if event.kind in DOWN and not self._by_travel:
                 self._times.activated(event.t_s)
             elif event.kind is LiveEventKind.VIBRATION:
                 at_ms = 1e3 * (event.t_s + seen.zero_s)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Count = Annotated[int, Meta(ge=0, le=2**31)]
 Time = Annotated[float, Meta(ge=0, le=1e12)]
 Delay = Annotated[float, Meta(ge=0, le=1000)]
-Hand = Literal["key", "mouse", "touch", "pen", "button"]
+Hand = Literal["key", "analog", "mouse", "touch", "pen", "button"]
 
 
 class PlayDelay(Message):

@@ -46,7 +46,8 @@ class RoundTiming(Struct, frozen=True, forbid_unknown_fields=True):
     clock_ms, clock_error_ms : the server's clock less the source's, and its bound; None where not known.
     transport_ms : from the browser's event to the simulated finger; taken out.
     frame_ms : between two pictures of the screen.
-    hand : what the person pressed: "key", "mouse", "touch", "pen"; "button" of a device.
+    hand : what the person pressed: "key", "mouse", "touch", "pen"; "analog", a key that reports its depth;
+        "button" of a device.
     """
 
     source: ClockSource

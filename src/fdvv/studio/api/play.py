@@ -12,6 +12,7 @@ from msgspec import Meta, field
 from fdvv.errors import InputError, ModelError
 from fdvv.live.device_key import DeviceKey
 from fdvv.live.press_subject import model_subject
+from fdvv.studio.api.press import Depth, Speed
 from fdvv.studio.api.press_frames import ShakeSignal
 from fdvv.studio.contract import ChannelKind, Message, Over, Tell, error_line, message_of
 from fdvv.studio.optimizations import Optimizations
@@ -47,6 +48,17 @@ class PlayUp(Message, tag="up"):
     """The hand let go."""
 
     at_ms: Time
+
+
+class PlayFollow(Message, tag="follow"):
+    """A key of the person's keyboard is so deep, and so fast: the simulated cap goes along.
+
+    displacement_mm : 0 at rest, positive down. at_ms : of the report.
+    """
+
+    at_ms: Time
+    displacement_mm: Depth
+    velocity_mm_s: Speed
 
 
 class PlayClose(Message, tag="close"):
@@ -94,6 +106,8 @@ class PlayChannel:
                 live.down(ask.at_ms)
             case PlayUp() if isinstance(live, LiveTrial):
                 live.up(ask.at_ms)
+            case PlayFollow() if isinstance(live, LiveTrial):
+                live.follow(ask.at_ms, ask.displacement_mm, ask.velocity_mm_s)
             case PlayRound() if live:
                 kept = live.keep(ask)
                 if kept.finished:
@@ -137,6 +151,6 @@ class PlayChannel:
         return LiveTrial(played, subject, self._tell), subject.description, signals
 
 
-ASKS = (PlayOpen, PlayPing, PlayDown, PlayUp, PlayRound, PlayClose)
+ASKS = (PlayOpen, PlayPing, PlayDown, PlayUp, PlayFollow, PlayRound, PlayClose)
 TELLS = (PlayReady, PlayPong, PlayClick, PlayKept, Over)
 CHANNEL = ChannelKind("play", ASKS, TELLS, PlayChannel)

@@ -41,6 +41,28 @@ from fdvv.studio.studio import Studio
 
 Count = Annotated[int, Meta(ge=0, le=2**53)]
 Number = Annotated[float, Meta(ge=-1e6, le=1e6)]
+Depth = Annotated[float, Meta(ge=-10, le=20)]
+Speed = Annotated[float, Meta(ge=-1e4, le=1e4)]
+"""Of a key of a keyboard, mm/s."""
+
+
+FORCE_SPEEDS_mm_s = (0.0, 12.0, 25.0, 50.0, 75.0, 100.0, 150.0, 200.0, 300.0, 400.0)
+"""At which forces are listed; dense where models change."""
+
+
+class PressForcesAsk(Message):
+    """What is pressed: one of button, program (ids), model or code (documents)."""
+
+    button: str | None = None
+    program: str | None = None
+    model: dict[str, Any] | None = None
+    code: dict[str, Any] | None = None
+
+
+class PressForces(Message):
+    """The target forces over displacement, at speeds from slow to fast."""
+
+    speeds: list[PressMeant]
 
 
 class TraceRead(Message):
@@ -100,6 +122,17 @@ class PressLead(Message, tag="lead"):
     velocity_mm_s: Number
     sequence: Count
     near_1_s: Annotated[float, Meta(ge=1, le=1000)] = 125.0
+
+
+class PressFollow(Message, tag="follow"):
+    """Lead the finger so that the cap goes where a key of the person's keyboard is, and as fast.
+
+    displacement_mm : 0 at rest, positive down. sequence : as of lead.
+    """
+
+    displacement_mm: Depth
+    velocity_mm_s: Speed
+    sequence: Count
 
 
 class PressPush(Message, tag="push"):
@@ -168,6 +201,12 @@ def list_choices(studio: Studio, _ask: Empty) -> PressList:
         [_trace_item(trace) for trace in drawn_traces()],
         list(PRESS_RIGS),
     )
+
+
+@call("press.forces")
+def list_forces(studio: Studio, ask: PressForcesAsk) -> PressForces:
+    subject = subject_of(studio, PressStart(ask.button, ask.program, ask.model, ask.code))
+    return PressForces([meant_force(subject, speed) for speed in FORCE_SPEEDS_mm_s])
 
 
 @call("press.trace")
@@ -240,6 +279,8 @@ def _lead(run: LiveRun, ask: Message) -> None:
     match ask:
         case PressLead():
             run.ask(lambda press: press.lead(ask.referent_mm, ask.velocity_mm_s, ask.near_1_s), ask.sequence)
+        case PressFollow():
+            run.ask(lambda press: press.follow(ask.displacement_mm, ask.velocity_mm_s), ask.sequence)
         case PressPush():
             run.ask(lambda press: press.push(ask.force_cN), ask.sequence)
         case PressLift():
@@ -269,7 +310,7 @@ def _given_trace(ask: PressReplay) -> PressTrace:
 
 
 ASKS = (
-    *(PressStart, PressLead, PressPush, PressLift, PressReplay, PressHostEvent),
+    *(PressStart, PressLead, PressFollow, PressPush, PressLift, PressReplay, PressHostEvent),
     *(Here, PressPause, PressStop, PressFail, PressClear),
 )
 TELLS = (PressReady, PressMeant, PressFrame, PressRefused, Over)
