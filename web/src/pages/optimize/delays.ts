@@ -21,6 +21,8 @@ const STATED: Delays = {
   display: null,
   input: {
     key: { ms: 10, error_ms: 8 },
+    // no debounce: its scan and a poll of the bus
+    analog: { ms: 4, error_ms: 3 },
     mouse: { ms: 6, error_ms: 5 },
     touch: { ms: 30, error_ms: 20 },
     pen: { ms: 20, error_ms: 15 },
@@ -48,9 +50,10 @@ export function readDelays(text: string | null): Delays {
   try {
     const found = JSON.parse(text ?? "null") as Delays | null;
     const known = found && (found.display === null || whole(found.display));
-    return known && Object.keys(STATED.input).every((hand) => whole(found.input[hand as InputDevice]))
-      ? found
-      : STATED;
+    if (!known) return STATED;
+    // what was kept before there was a kind of input has none of it
+    const input = { ...STATED.input, ...found.input };
+    return Object.values(input).every(whole) ? { ...found, input } : STATED;
   } catch {
     return STATED;
   }

@@ -8,7 +8,8 @@ export interface Strip {
   readonly speed_px_s: number;
 }
 
-export type InputDevice = "key" | "mouse" | "touch" | "pen";
+/** analog: a key that tells how deep it is. */
+export type InputDevice = "key" | "analog" | "mouse" | "touch" | "pen";
 
 /** Something the hand did, on the page's clock. */
 export interface Press {

@@ -22,6 +22,8 @@ import {
 
 /** No device is pressed: the simulated button, with key, mouse or touch. */
 export const SIMULATED = "";
+/** The same with a key of the person's keyboard that tells how deep it is; no device is called so. */
+export const ANALOG = "analog key of this page";
 /** A clock that is not known yet is asked often, later now and then; this tells the server too that somebody is here. */
 const SOON_ms = 80;
 const LATER_ms = 500;
@@ -103,8 +105,13 @@ export class Play {
       type: "open",
       run: this.run,
       trial: this.trial.peek() ?? 0,
-      device: this.device.peek(),
+      device: this.beside() ? this.device.peek() : SIMULATED,
     });
+  }
+
+  /** Whether a device beside the page is pressed. */
+  beside(): boolean {
+    return this.device() !== SIMULATED && this.device() !== ANALOG;
   }
 
   /** Put the button away; rounds of an unfinished trial are kept and do not count. */
@@ -130,6 +137,13 @@ export class Play {
     this.channel.send({ type: "down", at_ms });
     this.game.set(pressed(game, { at_ms, hand }));
     this.clicker.wake();
+  }
+
+  /** The key of an analog keyboard is so deep: the server knows where the button under test goes down. */
+  follow(at_ms: number, displacement_mm: number, velocity_mm_s: number): void {
+    const game = this.game.peek();
+    if (!game || game.phase === "pause" || this.device.peek() !== ANALOG) return;
+    this.channel.send({ type: "follow", at_ms, displacement_mm, velocity_mm_s });
   }
 
   /** The key or pointer was released. */
@@ -177,13 +191,14 @@ export class Play {
     this.release(performance.now());
     const frame_ms = this.frameClock.frame_ms();
     const clock = this.clock.at(performance.now());
-    const beside = this.device.peek() !== SIMULATED;
+    const beside = this.beside();
+    const hand = this.device.peek() === ANALOG ? "analog" : over.hand;
     this.channel.send({
       type: "round",
       ...over,
-      hand: beside ? "button" : over.hand,
+      hand: beside ? "button" : hand,
       display: displayDelay(delays.peek(), frame_ms),
-      input: beside ? { ms: 0, error_ms: 0 } : delays.peek().input[over.hand],
+      input: beside ? { ms: 0, error_ms: 0 } : delays.peek().input[hand],
       clock_ms: clock?.offset_ms ?? null,
       clock_error_ms: clock ? Math.min(1000, clock.error_ms) : null,
       frame_ms: Math.min(1000, frame_ms),

@@ -1,4 +1,4 @@
-/** What leads the finger: pointer height, pressure, a hold that grows, keys. All may be used at any time. */
+/** What leads the finger: pointer height, pressure, a hold that grows, keys, travel. All may be used at any time. */
 
 import type { Scale } from "../../draw";
 import { addShortcuts, onCleanup, type Signal, signal } from "../../ui";
@@ -28,6 +28,8 @@ export interface FingerTarget {
   travel_mm(): number | null;
   lead(referent_mm: number, velocity_mm_s: number, at_ms: number, near_1_s?: number): void;
   push(force_cN: number, at_ms: number): void;
+  /** Have the cap go where a key of the person's keyboard is. */
+  follow?(displacement_mm: number, velocity_mm_s: number, at_ms: number): void;
   lift(at_ms: number): void;
 }
 
@@ -39,7 +41,7 @@ export interface HandOptions {
   readonly used: () => void;
 }
 
-export type How = "" | "height" | "pressure" | "hold" | "key";
+export type How = "" | "height" | "pressure" | "hold" | "key" | "travel";
 
 export class FingerInput {
   /** Where the finger is aimed at, mm; null where nothing leads it or a force does. */
@@ -125,6 +127,14 @@ export class FingerInput {
     };
     this.again = push;
     push(at_ms);
+  }
+
+  /** Follow a key that tells how deep it is; what else leads the finger ends. */
+  follow(depth_mm: number, velocity_mm_s: number, at_ms: number): void {
+    if (this.how.peek() !== "travel") this.begin("travel");
+    this.aim_mm.set(depth_mm);
+    this.again = (now_ms) => this.session.follow?.(depth_mm, 0, now_ms);
+    this.session.follow?.(depth_mm, velocity_mm_s, at_ms);
   }
 
   lift(at_ms: number): void {

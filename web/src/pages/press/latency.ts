@@ -25,12 +25,12 @@ export class Latency {
     return now_ms - at_ms;
   }
 
-  /** Return how many delays were found, their middle and the one that 99 of 100 stay below; null before the first. */
-  summary(): { readonly count: number; readonly median_ms: number; readonly p99_ms: number } | null {
+  /** Return how many delays were found, their middle, and what 95 and 99 of 100 stay below; null before the first. */
+  summary(): Readonly<Record<"count" | "median_ms" | "p95_ms" | "p99_ms", number>> | null {
     if (!this.found_ms.length) return null;
     const sorted = [...this.found_ms].sort((a, b) => a - b);
     const at = (part: number) =>
       sorted[Math.min(sorted.length - 1, Math.floor(part * sorted.length))] as number;
-    return { count: sorted.length, median_ms: at(0.5), p99_ms: at(0.99) };
+    return { count: sorted.length, median_ms: at(0.5), p95_ms: at(0.95), p99_ms: at(0.99) };
   }
 }

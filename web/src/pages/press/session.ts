@@ -99,6 +99,10 @@ export class PressSession {
     this.send({ type: "lead", referent_mm, velocity_mm_s, sequence: this.next(at_ms), ...near });
   }
 
+  follow(displacement_mm: number, velocity_mm_s: number, at_ms: number): void {
+    this.send({ type: "follow", displacement_mm, velocity_mm_s, sequence: this.next(at_ms) });
+  }
+
   push(force_cN: number, at_ms: number): void {
     this.send({ type: "push", force_cN, sequence: this.next(at_ms) });
   }

@@ -46,6 +46,12 @@ describe("delays", () => {
     expect(readDelays(JSON.stringify(kept))).toEqual(kept);
   });
 
+  it("are kept from before there were analog keys", () => {
+    const { analog, ...before } = readDelays(null).input;
+    const kept = { display: null, input: { ...before, key: { ms: 3, error_ms: 1 } } };
+    expect(readDelays(JSON.stringify(kept)).input).toEqual({ ...kept.input, analog });
+  });
+
   it("take the pace of a screen from its middle gap, so that one late picture changes nothing", () => {
     const pace = new FrameClock();
     expect(pace.frame_ms()).toBeCloseTo(16.67, 2);

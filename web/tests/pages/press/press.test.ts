@@ -52,7 +52,7 @@ describe("the delay from hand to screen", () => {
     expect(latency.drawn(2, 146)).toBeNull();
     latency.sent(3, 150);
     expect(latency.drawn(3, 160)).toBe(10);
-    expect(latency.summary()).toEqual({ count: 2, median_ms: 30, p99_ms: 30 });
+    expect(latency.summary()).toEqual({ count: 2, median_ms: 30, p95_ms: 30, p99_ms: 30 });
   });
 
   it("says nothing before there was a move", () => {
