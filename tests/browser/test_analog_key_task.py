@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.task_rounds import ClockSource
@@ -59,7 +60,7 @@ def test_a_run_is_played_to_its_end_with_a_recorded_key(
     page.wait_for_selector("text=Recording of drawn, K")
     for trial in (1, 2):
         page.get_by_role("button", name=f"Play trial {trial}").click()
-        assert page.locator("text=Press your key").is_visible()
+        expect(page.get_by_text("Press your key")).to_be_visible()
         page.wait_for_selector(f".opt-line >> text=/^Trial {trial}: asynchrony/", timeout=60_000)
     page.get_by_role("button", name="Stop playing").click()
     page.get_by_role("link", name="All runs").click()

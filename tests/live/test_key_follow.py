@@ -106,6 +106,18 @@ def test_the_mouse_takes_over_and_the_key_again() -> None:
     assert lifted.displacement_mm[-1] < 0.1
 
 
+def test_a_key_of_which_nothing_more_is_said_stops_where_it_was() -> None:
+    """A page that is busy must not push the finger on into the stop."""
+    press = LivePress(model_subject(load_builtin("mx-red")), seed=None)
+    for i in range(-50, 20):
+        press.follow(0.1 * max(0, i), 25.0 if i >= 0 else 0.0)
+        press.advance(STEP_s)
+    stopped = np.concatenate([press.advance(0.1)[0].displacement_mm for _ in range(3)])
+    # half a millimetre further, and as deep as pulp that is squeezed fast lets it; else to the stop
+    assert stopped.max() < 2.8
+    assert stopped[-1] == pytest.approx(1.9, abs=0.1)
+
+
 @pytest.mark.shared
 @pytest.mark.parametrize("button", BUTTONS)
 def test_a_persons_typing_moves_a_button(shared_data: Path, button: str) -> None:

@@ -115,6 +115,8 @@ def stretches(columns: InteractiveTicks, was_down: bool) -> Iterator[tuple[Float
 
 PACE_mm_s = (5.0, 1000.0)
 """Speeds of a press that the next one may be announced with."""
+STILL_s = 0.02
+"""A key of which nothing more is said moves on for so long."""
 HEARD_s = 0.01
 """Presses that ended are looked for this often, however time is cut; the next is announced at their speed."""
 
@@ -144,6 +146,8 @@ class LivePress:
         self._key, self._faulted, self._opened = 0, False, False
         self._path: DisplacementPath | None = None
         self._follower: KeyFollower | None = None
+        self._still_s: float | None = None
+        self._still_mm = 0.0
         self._descent = Descent()
 
     @property
@@ -156,30 +160,33 @@ class LivePress:
 
     def lead(self, referent_mm: float, velocity_mm_s: float = 0.0, near_1_s: float = NEAR_1_s) -> None:
         """Lead the finger's referent to a place (0: the cap at rest, positive into the button)."""
-        self._path = None
+        self._path = self._still_s = None
         self.rig.lead(referent_mm, velocity_mm_s, near_1_s)
 
     def push(self, force_cN: float) -> None:
         """Lead the force that the finger's muscle pushes with."""
-        self._path = None
+        self._path = self._still_s = None
         self.rig.push(force_cN)
 
     def lift(self) -> None:
-        self._path = None
+        self._path = self._still_s = None
         self.rig.lift()
 
     def follow(self, displacement_mm: float, velocity_mm_s: float) -> None:
         """Lead the finger so that the cap goes where a key elsewhere is now: 0 at rest, positive down.
 
-        The finger knows the button's slow force and presses as much harder as it gives way under it.
+        The finger knows the button's slow force and presses as much harder as it gives way under it. It
+        stops where the key was last, STILL_s after that was said.
         """
         self._path = None
         self._follower = self._follower or KeyFollower(self.subject)
         step = self._follower.step(displacement_mm, velocity_mm_s)
         self.rig.lead(step.referent_mm, step.velocity_mm_s, step.near_1_s)
+        self._still_s, self._still_mm = self.time_s + STILL_s, step.referent_mm
 
     def replay(self, trace: PressTrace) -> None:
         """Lead the finger along a recorded or drawn trace, from now on, and lift it after."""
+        self._still_s = None
         self._path = path_of(trace, self.subject, self.time_s)
 
     def event(self, number: int) -> None:
@@ -257,6 +264,8 @@ class LivePress:
 
     def _lead_along(self, ticks: int) -> int:
         """Lead by the trace that is replayed, if any; return how many ticks may pass before the next lead."""
+        if self._still_s is not None:
+            return self._lead_still(ticks, self._still_s)
         if self._path is None or not ticks:
             return ticks
         step = self._path.at(self.time_s)
@@ -265,6 +274,15 @@ class LivePress:
             return ticks
         self.rig.lead(step.referent_mm, step.velocity_mm_s, step.near_1_s)
         return min(ticks, max(1, round(step.holds_s / self._tick_s)))
+
+    def _lead_still(self, ticks: int, still_s: float) -> int:
+        """Stop where a key was last once nothing more is said of it; return how many ticks may pass."""
+        rest = round((still_s - self.time_s) / self._tick_s)
+        if rest > 0:
+            return min(ticks, rest)
+        self.rig.lead(self._still_mm, 0.0, NEAR_1_s)
+        self._still_s = None
+        return ticks
 
     def _events(self, columns: InteractiveTicks) -> tuple[LiveEvent, ...]:
         kinds = (self._keys, self._vibrations, self._loop, self._presses, self._faults)
