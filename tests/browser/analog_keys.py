@@ -60,7 +60,7 @@ FAKE = """() => {
 
 
 def plug_in(page: Page) -> None:
-    """Give the page a keyboard; before it is opened."""
+    """Have the page find a keyboard; before it is opened."""
     page.add_init_script(f"({FAKE})()")
 
 

@@ -17,13 +17,13 @@ from playwright.sync_api import expect
 from tests.browser.accessibility import audit
 from tests.browser.analog_keys import KEY_A, SPACE, move, plug_in, report
 from tests.browser.boxes import faults, record
-from tests.browser.pressing import DOWN, UP, presses, ready
+from tests.browser.pressing import DOWN, UP, ready
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
-TAP = ((60.0, 0.0), (110.0, 255.0), (170.0, 255.0), (220.0, 0.0), (260.0, 0.0))
-"""Down and up at 80 mm/s of a key of 4 mm; ms and steps."""
+TAP = ((60.0, 0.0), (160.0, 255.0), (320.0, 255.0), (420.0, 0.0), (480.0, 0.0))
+"""Down and up at 40 mm/s of a key of 4 mm; ms and steps."""
 
 
 def opened(page: Page) -> Locator:
@@ -50,6 +50,12 @@ def own(page: Page) -> Locator:
     return part
 
 
+def pressed(page: Page, least: int) -> None:
+    """Wait until the simulated button was pressed so often; on a busy machine its finger may bounce."""
+    script = "least => Number(document.querySelector('[data-value=presses]').textContent) >= least"
+    page.wait_for_function(script, arg=least)
+
+
 def count(own: Locator) -> int:
     return int(own.locator("[data-own='actuations']").inner_text())
 
@@ -63,14 +69,14 @@ def test_the_key_that_is_pressed_presses_the_button_of_the_page(page: Page, own:
     report(page, (KEY_A, 255))  # another key: the chosen one is up
     page.wait_for_selector(UP)
     report(page)
-    presses(page, 1)
+    pressed(page, 1)
     for number in (2, 3):
         move(page, SPACE, *TAP)
-        presses(page, number)
+        pressed(page, number)
     assert count(own) == 3
     held_ms = float(own.locator("[data-own='held']").inner_text().partition(" ")[0])
     # from 1.5 mm down to 1.3 mm up, less and more what this machine's timers miss
-    assert held_ms == pytest.approx(60 + 50 * (2.5 + 2.7) / 4, abs=25)
+    assert held_ms == pytest.approx(160 + 100 * (2.5 + 2.7) / 4, abs=60)
 
 
 def test_what_the_key_types_presses_nothing_twice_and_works_no_shortcut(page: Page, own: Locator) -> None:
@@ -133,7 +139,7 @@ def test_what_is_recorded_plays_the_same_presses_again(page: Page, own: Locator,
     own.get_by_role("button", name="Record", exact=True).click()
     for number in (1, 2):
         move(page, SPACE, *TAP)
-        presses(page, number)
+        pressed(page, number)
     with page.expect_download() as saved:
         own.get_by_role("button", name="Stop and save").click()
     path = tmp_path / "mine.csv"
@@ -150,13 +156,13 @@ def test_what_is_recorded_plays_the_same_presses_again(page: Page, own: Locator,
     before = count(own)
     own.get_by_label("A recording of a key").set_input_files(path)
     expect(own.get_by_role("status")).to_contain_text("Recording of Wooting 60HE, Space")
-    presses(page, 4)
+    pressed(page, 4)
     assert count(own) == before + 2
     expect(own.get_by_role("status")).to_contain_text("Wooting 60HE, Space")
     # and it is a trace, too
     page.click("text=Replay a key")
     page.set_input_files("main input[aria-label^='A CSV']", path)
-    presses(page, 6)
+    pressed(page, 6)
 
 
 def test_a_file_that_is_no_recording_is_refused_in_one_line(page: Page, tmp_path: Path) -> None:
@@ -186,8 +192,10 @@ def test_a_report_is_drawn_soon(page: Page, own: Locator) -> None:
     for _ in range(8):
         move(page, SPACE, *TAP)
     delay = own.locator("[data-own='delay']")
-    expect(delay).to_have_text(re.compile(r"report to drawn frame .* ms, 95 % within .* ms \(\d\d+ frames\)"))
-    found = re.search(r"frame ([\d.]+) ms, 95 % within ([\d.]+) ms \((\d+)", delay.inner_text())
+    expect(delay).to_have_text(
+        re.compile(r"From report to drawn frame: .* ms, 95 % within .* ms \(\d\d+ frames\).")
+    )
+    found = re.search(r"frame: ([\d.]+) ms, 95 % within ([\d.]+) ms \((\d+)", delay.inner_text())
     assert found is not None
     sys.stdout.write(f"{delay.inner_text()}\n")
     median_ms, p95_ms, frames = map(float, found.groups())

@@ -14,7 +14,7 @@ import {
   type TriggerSettings,
   type TriggerState,
 } from "../../keyboard/trigger";
-import { onCleanup, type Signal, signal } from "../../ui";
+import { effect, onCleanup, type Signal, signal, untracked } from "../../ui";
 import { Latency } from "./latency";
 import type { PressStage } from "./stage";
 
@@ -48,6 +48,11 @@ export class OwnKey {
     this.lead = newest<Sample>(LEADS_ms, ({ depth_mm, velocity_mm_s, t_ms }) =>
       stage.hands.follow(depth_mm, velocity_mm_s, t_ms),
     );
+    // the finger rests on the cap before the key moves, else it would fall on it
+    effect(() => {
+      if (["live", "playing"].includes(analogKey.status()))
+        untracked(() => stage.hands.follow(0, 0, performance.now()));
+    });
     const unfollow = analogKey.follow((sample) => this.read(sample));
     onCleanup(() => {
       unfollow();

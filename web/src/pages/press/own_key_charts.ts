@@ -10,6 +10,8 @@ import type { OwnKey } from "./own_key";
 const SHOWN_s = 3;
 /** More points than a plot is wide would not be seen. */
 const POINTS = 800;
+/** Room for what is said beside the key. */
+const LABEL_px = 150;
 /** The key itself, wherever it is drawn. */
 const KEY = 2;
 const DOWN = 4;
@@ -63,7 +65,7 @@ function drawForces(brush: Brush, view: View, speeds: readonly PressMeant[]): vo
   const { surface, text } = palette();
   brush.circle(at, 6, { colour: series(KEY).colour }, { colour: surface, width_px: 1.5 });
   const said = at_cN === null ? "beyond its stop" : force(at_cN, 0);
-  const right = at.x_px > view.box.left + 0.75 * view.box.width;
+  const right = at.x_px > view.box.left + view.box.width - LABEL_px;
   brush.text(
     `${said} at ${shown(Math.abs(key.velocity_mm_s), 0)} mm/s`,
     { x_px: at.x_px + (right ? -10 : 10), y_px: Math.max(view.box.top + 9, at.y_px - 12) },
@@ -77,8 +79,7 @@ export function keyTimePlot(own: OwnKey): Plot {
     label: "Displacement of your key over the last seconds, with its trigger",
     x: { label: "time before now", unit: "s" },
     y: { label: "displacement", unit: "mm" },
-    // down is down
-    whole: () => ({ x: { low: -SHOWN_s, high: 0 }, y: { low: analogKey.full_scale_mm() + 0.2, high: -0.3 } }),
+    whole: () => ({ x: { low: -SHOWN_s, high: 0 }, y: { low: -0.3, high: analogKey.full_scale_mm() + 0.3 } }),
     still: (brush, view) => drawTriggerPoints(brush, view, own),
     moving: (brush, view) => drawTravel(brush, view, own),
     height_px: 240,
@@ -90,8 +91,8 @@ function drawTriggerPoints(brush: Brush, view: View, own: OwnKey): void {
   const { accent, surface, text } = palette();
   const { left, width } = view.box;
   for (const [mm, name, dash, base] of [
-    [actuation_mm, "actuation", [], "top"],
-    [reset_mm, "reset", [4, 3], "bottom"],
+    [actuation_mm, "actuation", [], "bottom"],
+    [reset_mm, "reset", [4, 3], "top"],
   ] as const) {
     const y = view.y.px(mm);
     brush.line([left, left + width], [y, y], { colour: accent, dash, width_px: 1.5 });
