@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +25,8 @@ class Parameter:
     ----------
     name : with its unit, as ``actuation_mm``.
     low, high : bounds, both allowed; low < high.
+    scale : log where a ratio counts, not a difference; then low > 0.
+    unit : for people, where the name does not end in it.
 
     Raises ModelError on anything else.
     """
@@ -31,6 +34,8 @@ class Parameter:
     name: str
     low: float
     high: float
+    scale: Literal["linear", "log"] = "linear"
+    unit: str = ""
 
     def __post_init__(self) -> None:
         if not self.name.isidentifier():
@@ -39,6 +44,8 @@ class Parameter:
             raise ModelError(
                 f"{self.name} needs finite bounds, low below high, got {self.low} and {self.high}"
             )
+        if self.scale == "log" and not self.low > 0:
+            raise ModelError(f"{self.name} has a log scale and needs bounds above 0, got {self.low}")
 
 
 @dataclass(frozen=True)
@@ -106,14 +113,27 @@ class DesignSpace:
     def to_unit(self, designs: Sequence[Design]) -> FloatArray:
         """Map designs to the unit cube, (n, d)."""
         rows = [[design[name] for name in self.names] for design in designs]
-        low, high = self._bounds
-        return np.asarray((np.array(rows, dtype=np.float64).reshape(-1, low.size) - low) / (high - low))
+        low, high = self._scaled(self._bounds)
+        places = self._scaled(np.array(rows, dtype=np.float64).reshape(-1, low.size))
+        return np.asarray((places - low) / (high - low))
 
     def of_unit(self, places: npt.ArrayLike) -> list[dict[str, float]]:
         """Map places (n, d) of the unit cube to designs; what lies outside is brought to a bound."""
-        low, high = self._bounds
-        rows = np.clip(low + np.atleast_2d(np.asarray(places)) * (high - low), low, high)
+        low, high = self._scaled(self._bounds)
+        rows = low + np.atleast_2d(np.asarray(places)) * (high - low)
+        rows[:, self._log] = np.exp(rows[:, self._log])
+        rows = np.clip(rows, *self._bounds)
         return [dict(zip(self.names, row.tolist(), strict=True)) for row in rows]
+
+    @property
+    def _log(self) -> npt.NDArray[np.bool_]:
+        return np.array([one.scale == "log" for one in self.parameters])
+
+    def _scaled(self, rows: FloatArray) -> FloatArray:
+        """Return values, (n, d), on the scales that engines search evenly."""
+        scaled = rows.copy()
+        scaled[:, self._log] = np.log(rows[:, self._log])
+        return scaled
 
     @property
     def _bounds(self) -> FloatArray:

@@ -21,7 +21,7 @@ from fdvv.optimize.model_space import model_of, model_space
 from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.problem import Objective, Problem, Trial
 from fdvv.optimize.realistic import realistic_bounds, realistic_cN
-from fdvv.optimize.space import Constraint, Design, DesignSpace
+from fdvv.optimize.space import Constraint, Design, DesignSpace, Parameter
 from fdvv.optimize.tasks import ASYNCHRONY, TemporalPointing
 from fdvv.rendering.feasibility import CurveFeasibility, feasibility
 from fdvv.rendering.rig_catalog import AvailableRig, RigCatalog
@@ -92,19 +92,21 @@ class SpaceSetup(Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes
     ----------
-    kind : paper, its eight parameters; model, variations of a button.
+    kind : paper, its eight parameters; model, variations of a button; own, numbers of another program.
     base : that button, as its file says. names, bounds : what of it is varied, see `model_space`.
     most_cN : no force of a variation is larger; None: what a motor gives.
     rig : id of a rig that must be able to render a design; velocities_mm_s : at which.
+    parameters : of the kind own.
     """
 
-    kind: Literal["paper", "model"] = "paper"
+    kind: Literal["paper", "model", "own"] = "paper"
     base: dict[str, Any] | None = None
     names: tuple[str, ...] = ("FDV",)
     bounds: dict[str, tuple[float, float]] = {}
     most_cN: float | None = None
     rig: str | None = None
     velocities_mm_s: tuple[float, ...] = (100.0,)
+    parameters: tuple[Parameter, ...] = ()
 
 
 class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -182,6 +184,8 @@ def setup_text(setup: Struct) -> str:
 
 def space_of(setup: SpaceSetup, rigs: RigCatalog) -> DesignSpace:
     """Return the space of a setup with its constraints. Raises InputError."""
+    if setup.kind == "own":
+        return DesignSpace("own", setup.parameters)
     free = paper_space() if setup.kind == "paper" else _variations(setup)
     if setup.rig is None:
         return free
@@ -203,8 +207,15 @@ def designer_of(setup: SpaceSetup) -> Callable[[Design], FDVVModel]:
     """Return what turns a design of the space into a button."""
     if setup.kind == "paper":
         return paper_model
+    if setup.kind == "own":
+        return _no_button
     base = _base(setup)
     return lambda design: model_of(base, design)
+
+
+def _no_button(_design: Design) -> FDVVModel:
+    reason = "its designs are numbers of another program, no buttons"
+    raise InputError("setup", "space", reason, "use the numbers, or begin with a button")
 
 
 def model_space_setup(
