@@ -15,11 +15,11 @@ def piece(t_s: np.ndarray, seed: int = 0) -> TickPiece:
     random = np.random.default_rng(seed)
     place_mm, force_cN, commanded_cN = random.normal(size=(3, t_s.size))
     state, cut = random.integers(0, 4, t_s.size), random.random(t_s.size) < 0.1
-    return TickPiece(t_s, place_mm, force_cN, commanded_cN, state, cut)
+    return TickPiece(t_s, place_mm, force_cN, commanded_cN, state, cut, ~cut)
 
 
 def part(whole: TickPiece, start: int, end: int) -> TickPiece:
-    names = ("t_s", "displacement_mm", "force_cN", "commanded_cN", "state", "cut")
+    names = ("t_s", "displacement_mm", "force_cN", "commanded_cN", "state", "cut", "rendered")
     return TickPiece(*(getattr(whole, name)[start:end] for name in names))
 
 

@@ -42,6 +42,7 @@ COMMANDS = {
     "probe": ("rendering.compensate", "Measure on fresh presses how well a rig renders a model."),
     "process": ("bench.process", "Turn recorded presses into a model, with its spread over presses."),
     "program": ("program", "Work with programs: list, show, make, check, compile, render."),
+    "serve": ("serve", "Let another program optimise, and drive a rig, over a WebSocket of this machine."),
     "show": ("show", "Show landmarks and curves of a button."),
     "studio": ("studio", "See, edit, press and tune buttons in the browser."),
     "study": ("study.study", "Compare buttons blind, with people, and analyse what they said."),
@@ -67,6 +68,7 @@ GROUPS = {
     "Models and files": ("library", "merge", "assign", "vibration", "import", "export", "check"),
     "Recordings": ("process", "join"),
     "Rigs": ("device", "feasible", "probe", "tune", "program"),
+    "Other programs": ("serve",),
     "Many at once": ("sweep",),
 }
 """The commands as help lists them; those of extras come last."""

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
-from fdvv.protocol.tables import RecordsRequest
+from fdvv.protocol.tables import Mode, RecordsRequest
 from fdvv.units import FloatArray
 
 IntArray = npt.NDArray[np.int64]
@@ -87,6 +87,11 @@ class Telemetry:
         """Forget records and counts, as before telemetry is switched on; the sequence is still followed."""
         self._pieces, self._due = [], None
         self.missing_frames = self.lost_records = self.late_ticks = self.missing_ticks = 0
+
+    def armed(self) -> npt.NDArray[np.bool_]:
+        """Return for each record of columns() whether the device rendered then."""
+        armed = [head.mode in (Mode.ARMED, Mode.DERATED) for head, _ in self._pieces]
+        return np.repeat(np.array(armed, dtype=np.bool_), [head.count for head, _ in self._pieces])
 
     def take(self) -> TickColumns:
         """Return what has arrived and forget it; counts and gaps go on."""

@@ -22,7 +22,8 @@ class TickPiece(NamedTuple):
     ----------
     t_s : on one clock through all pieces.
     displacement_mm, force_cN, commanded_cN : as the device has them; force as NaN where it has no sensor.
-    state : of the program. cut : the command was cut, by a limit, its slew or heat.
+    state : of the program. cut : the command was cut, by a limit, its slew or heat. rendered : the device
+        was armed; else a cap that nothing holds may sink.
     """
 
     t_s: FloatArray
@@ -31,6 +32,7 @@ class TickPiece(NamedTuple):
     commanded_cN: FloatArray
     state: IntArray
     cut: BoolArray
+    rendered: BoolArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -185,12 +185,12 @@ def new_token() -> str:
     return secrets.token_urlsafe(24)
 
 
-def saved_token(project: Path) -> str:
-    """Return the token that a project keeps; draw it when it is first asked for.
+def saved_token(project: Path, name: str = TOKEN_FILE) -> str:
+    """Return the token that a project keeps in a file; draw it when it is first asked for.
 
     InputError where others can read it, or where it is none. OSError.
     """
-    path = project / TOKEN_FILE
+    path = project / name
     project.mkdir(parents=True, exist_ok=True)
     try:
         # readable by its owner only, from the moment it exists
@@ -203,7 +203,7 @@ def saved_token(project: Path) -> str:
         os.fsync(stream.fileno())
     if not (project / IGNORE_FILE).exists():
         # projects are put under version control
-        write_atomic(project / IGNORE_FILE, f"{TOKEN_FILE}\n")
+        write_atomic(project / IGNORE_FILE, f"{name}\n")
     sync_folder(project)
     return token
 

@@ -6,6 +6,7 @@ import contextlib
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import msgspec
 
@@ -19,12 +20,14 @@ from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.program.button import button_program
 from fdvv.program.compile import compile_program
+from fdvv.program.program import Program
+from fdvv.program.surface import Limits
 from fdvv.protocol.tables import Fault
 from fdvv.rendering.compensate import CompensationResult
 from fdvv.rendering.tuning import tune
 from fdvv.studio.contract import Message, Tell
 from fdvv.studio.device_findings import CellCheck, cell_check, press_seen
-from fdvv.studio.device_thread import DeviceThread, mode_of
+from fdvv.studio.device_thread import DeviceThread, KeyChange, mode_of
 from fdvv.studio.devices import DeviceLocks, require_listed
 from fdvv.studio.jobs.inputs import RIGS, check_speeds
 from fdvv.studio.studio import Studio
@@ -132,8 +135,12 @@ class UploadedButton:
         put_button(held, self.model, self.learned, self.speeds_mm_s)
 
 
-Subscriber = tuple[Callable[[TickPiece], None], Tell]
-"""One page that follows the device: what takes its ticks, and what takes status and presses."""
+class Subscriber(NamedTuple):
+    """One page that follows the device: what takes its ticks, status and presses, and its key."""
+
+    ticks: Callable[[TickPiece], None]
+    tell: Tell
+    keys: Callable[[KeyChange], None]
 
 
 class DeviceSession:
@@ -159,7 +166,7 @@ class DeviceSession:
                 raise InputError("device", "device", reason, "disconnect it first")
             with self._locks.acquired(ask.device, HOLDER):
                 device = open_device(ask.device, load_rig(rig), None, ask.seed)
-                self._held = DeviceThread(device, self._ticks, self._lost)
+                self._held = DeviceThread(device, self._ticks, self._lost, self._keys)
             self._status = DeviceStatus(ask.device)
         return self.refresh("")
 
@@ -188,6 +195,14 @@ class DeviceSession:
         held.do(lambda: button.put(held))
         self._button = button
         return self.refresh(f"{model.name}{f', {ask.actuation}' if ask.actuation else ''}")
+
+    def upload_program(self, program: Program) -> DeviceStatus:
+        """Make a program of several states the device's. FdvvError."""
+        held = self.held()
+        image = compile_program(program, Limits(held.device.settings())).image
+        held.do(lambda: held.device.upload_program(image))  # type: ignore[attr-defined]  # as in put_button
+        self._button = None
+        return self.refresh(program.name)
 
     def press(self, velocity_mm_s: float) -> DeviceStatus:
         """Make one simulated press and send it to all subscribers. DeviceError."""
@@ -242,9 +257,14 @@ class DeviceSession:
                     self._status = found
         return self._changed()
 
-    def subscribe(self, ticks: Callable[[TickPiece], None], tell: Tell) -> Callable[[], None]:
-        """Send telemetry to a page until the returned function is called; both are called by any thread."""
-        subscriber = (ticks, tell)
+    def subscribe(
+        self,
+        ticks: Callable[[TickPiece], None],
+        tell: Tell,
+        keys: Callable[[KeyChange], None] = lambda _change: None,
+    ) -> Callable[[], None]:
+        """Send telemetry to a page until the returned function is called; all are called by any thread."""
+        subscriber = Subscriber(ticks, tell, keys)
         with self._lock:
             self._subscribers.append(subscriber)
         tell(self._status)
@@ -280,13 +300,17 @@ class DeviceSession:
         return held.do(lambda: with_faults(common, remote)) if remote else common
 
     def _ticks(self, piece: TickPiece) -> None:
-        for take, _ in self._current_subscribers():
-            take(piece)
+        for subscriber in self._current_subscribers():
+            subscriber.ticks(piece)
         with self._lock:
             held, mode = self._held, self._status.mode
         # a mode that changes by itself is sent at once: a fault, heat
         if held and held.remote and mode and mode_of(held.remote) != mode:
             self.refresh()
+
+    def _keys(self, change: KeyChange) -> None:
+        for subscriber in self._current_subscribers():
+            subscriber.keys(change)
 
     def _lost(self, error: DeviceError) -> None:
         with self._lock:
@@ -300,8 +324,8 @@ class DeviceSession:
         return self._status
 
     def _tell(self, message: Message) -> None:
-        for _, tell in self._current_subscribers():
-            tell(message)
+        for subscriber in self._current_subscribers():
+            subscriber.tell(message)
 
     def _current_subscribers(self) -> tuple[Subscriber, ...]:
         with self._lock:

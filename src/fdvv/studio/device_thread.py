@@ -7,7 +7,8 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any, TypeVar
+from contextlib import suppress
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -17,8 +18,8 @@ from fdvv.device.remote import Remote
 from fdvv.device.telemetry import TickColumns
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError
-from fdvv.live.tick_bins import TickPiece
-from fdvv.protocol.tables import Mode, TickFlag
+from fdvv.live.tick_bins import BoolArray, TickPiece
+from fdvv.protocol.tables import KeyRequest, Mode, TickFlag
 from fdvv.twin.trace import Trace
 
 Answer = TypeVar("Answer")
@@ -32,18 +33,33 @@ BETWEEN_s = 0.25
 CUT = TickFlag.LIMITED | TickFlag.SLEWED | TickFlag.DERATED
 
 
+class KeyChange(NamedTuple):
+    """A key that changed its level, 0 while it is up: when on the clock of the ticks, and on the host's."""
+
+    level: int
+    t_s: float
+    host_s: float
+
+
 class DeviceThread:
     """A device in use by the studio.
 
     device : open; closed with this.
-    ticks : called with ticks as they come. lost : called once if the device goes away. Both in the thread.
+    ticks : called with ticks as they come. lost : called once if the device goes away. keys : called with
+        every change of the key. All in the thread.
     """
 
     def __init__(
-        self, device: Device, ticks: Callable[[TickPiece], None], lost: Callable[[DeviceError], None]
+        self,
+        device: Device,
+        ticks: Callable[[TickPiece], None],
+        lost: Callable[[DeviceError], None],
+        keys: Callable[[KeyChange], None] = lambda _change: None,
     ) -> None:
         self.device = device
-        self._ticks, self._lost = ticks, lost
+        self._ticks, self._lost, self._keys = ticks, lost, keys
+        if self.remote:
+            self.remote.client.on_key = self._key
         self._requests: queue.Queue[tuple[Callable[[], Any], Future[Any]]] = queue.Queue()
         self._over, self._lock = threading.Event(), threading.Lock()
         self._twin_s = 0.0
@@ -73,11 +89,39 @@ class DeviceThread:
         """Make one simulated press and stream its ticks; to be called through do(). DeviceError."""
         if isinstance(self.device, TwinDevice):
             trace = self.device.press_trace(velocity_mm_s)
-            self._ticks(self._of_twin(trace))
+            piece = self._of_twin(trace)
+            self._twin_keys(trace, piece)
+            self._ticks(piece)
             return trace.press(velocity_mm_s)
         press = self.device.press(velocity_mm_s)
         self._tell_ticks()
         return press
+
+    def host_s(self, t_s: float) -> float:
+        """Return when a recent moment of the ticks' clock was on the host's monotonic clock.
+
+        A simulated device has no time of its own there: it is when this is called.
+        """
+        last = self.remote.client.telemetry.last if self.remote else None
+        if last is None:
+            return time.monotonic()
+        after_us = 1e6 * t_s - last.first_tick * self.device.settings().tick_us
+        return self._host_s(last.first_us + round(after_us))
+
+    def _host_s(self, time_us: int) -> float:
+        if self.remote and not isinstance(self.device, LinkedDevice):
+            with suppress(DeviceError):  # until the clocks were compared
+                return self.remote.client.host_s(time_us % 2**32)
+        return time.monotonic()
+
+    def _key(self, notice: KeyRequest) -> None:
+        t_s = notice.tick * self.device.settings().tick_us * 1e-6
+        self._keys(KeyChange(notice.key, t_s, self._host_s(notice.time_us)))
+
+    def _twin_keys(self, trace: Trace, piece: TickPiece) -> None:
+        levels = trace.key[trace.tick]
+        for row in (np.flatnonzero(np.diff(levels)) + 1).tolist():
+            self._keys(KeyChange(int(levels[row]), float(piece.t_s[row]), time.monotonic()))
 
     def close(self) -> None:
         self._over.set()
@@ -133,11 +177,11 @@ class DeviceThread:
 
     def _tell_ticks(self) -> None:
         assert self.remote
-        ticks = self.remote.client.telemetry.take()
+        armed, ticks = self.remote.client.telemetry.armed(), self.remote.client.telemetry.take()
         if ticks.tick.size:
-            self._ticks(self._of_ticks(ticks))
+            self._ticks(self._of_ticks(ticks, armed))
 
-    def _of_ticks(self, ticks: TickColumns) -> TickPiece:
+    def _of_ticks(self, ticks: TickColumns, armed: BoolArray) -> TickPiece:
         settings = self.device.settings()
         force_cN = ticks.force_cN if settings.force_gain_q14 else np.full(ticks.tick.size, np.nan)
         return TickPiece(
@@ -147,6 +191,7 @@ class DeviceThread:
             ticks.commanded_cN,
             ticks.state,
             (ticks.flags & CUT) > 0,
+            armed,
         )
 
     def _of_twin(self, trace: Trace) -> TickPiece:
@@ -161,6 +206,7 @@ class DeviceThread:
             trace.commanded_cN[rows],
             trace.state[rows].astype(np.int64),
             trace.saturated[rows],
+            np.ones(int(rows.sum()), dtype=np.bool_),
         )
 
 

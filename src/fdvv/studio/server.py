@@ -22,6 +22,7 @@ from starlette.middleware import Middleware
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
+from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from fdvv.errors import BuildError, FdvvError, InputError
@@ -229,24 +230,31 @@ def serve(
         door = address_of(hosts, taken.getsockname()[1], token)
         places = [f"http://{_shown(name)}:{taken.getsockname()[1]}" for name in hosts]
         note_address(lock, places[0])
-        _serve(studio, door, taken, lambda: ready([f"{place}/?token={token}" for place in places]))
+        opened = [f"{place}/?token={token}" for place in places]
+        serve_app(create_app(studio, door), taken, lambda: ready(opened))
 
 
 def _shown(host: str) -> str:
     return f"[{host}]" if ":" in host else host
 
 
-def _serve(studio: Studio, door: ServerAddress, taken: socket.socket, ready: Callable[[], None]) -> None:
+def serve_app(app: ASGIApp, taken: socket.socket, ready: Callable[[], None], silent_s: float = 20.0) -> None:
+    """Serve an application on a port that is taken, until Ctrl-C or SIGTERM. ready : called once it answers.
+
+    silent_s : a WebSocket whose other end answers no ping for twice so long is closed.
+    """
     import uvicorn
 
     from fdvv.studio.connections import BoundedProtocol
 
     config = uvicorn.Config(
-        create_app(studio, door),
+        app,
         http=BoundedProtocol,
         log_level="warning",
         ws="websockets-sansio",
         ws_max_size=LARGEST_MESSAGE_bytes,
+        ws_ping_interval=silent_s,
+        ws_ping_timeout=silent_s,
         timeout_graceful_shutdown=3,
         server_header=False,
     )

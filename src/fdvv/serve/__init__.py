@@ -1,0 +1,1 @@
+"""Optimisation and a device for another program on this machine: JSON over one WebSocket."""
