@@ -17,7 +17,7 @@ from fdvv.twin.files import FIRST_RIG
 
 PROTOCOL = 1
 """Changes where a client of an earlier one would be wrong; a new call or optional field leaves it."""
-Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,59}$")]
+Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,59}\Z")]
 """Of a run: what makes a folder on every system, and no path."""
 Text = Annotated[str, Meta(max_length=500)]
 Number = Annotated[int, Meta(ge=0, le=2**53)]
