@@ -6,10 +6,13 @@ from collections.abc import Iterator
 
 import pytest
 
+from fdvv.device.open import person_of
 from fdvv.device.own_rig import OwnRigPerson
 from fdvv.device.remote import PressedDevice
 from fdvv.device.serial import SerialPort
 from fdvv.device.serve import RigServer
+from fdvv.model.file import load_builtin
+from fdvv.program.button import compile_button
 from fdvv.testing.conformance import plain_surface
 from tests.support.plain_rig import PlainRig
 
@@ -34,3 +37,18 @@ def test_a_served_rig_is_pressed_at_the_announced_speed_by_one_host_after_anothe
         lasted_s.append(press.t_s[-1])
     assert lasted_s[0] > 1.5 * lasted_s[1]
     assert server.counts["presses"] >= 2
+
+
+def test_the_twin_is_served_and_pressed_without_an_announced_speed() -> None:
+    server = RigServer(person_of("twin"), presses=1)
+    server.start()
+    with PressedDevice(SerialPort(server.path)) as device:
+        device.upload_program(compile_button(load_builtin("mx-clear")).image)
+        device.client.arm()
+        until_s = device.client.port.now_s() + 20
+        while not server.counts["presses"] and device.client.port.now_s() < until_s:
+            device.client.listen(device.client.port.now_s() + 0.05)
+        device.client.listen(device.client.port.now_s() + 0.05)
+        assert server.is_alive()
+    assert server.counts["presses"] == 1
+    server.end()

@@ -29,7 +29,8 @@ from tests.serve.running import DIRECT, Client, RefusedCall, RunningServer
 def test_nothing_is_answered_without_the_token(server: RunningServer, token: str) -> None:
     with pytest.raises(RefusedCall, match="is not this server's"):
         Client(server, token)
-    for first in ({"id": 1, "call": "clock"}, {"id": 1, "call": "optimize.ask", "run": "a"}, []):
+    firsts: tuple[Any, ...] = ({"id": 1, "call": "clock"}, {"id": 1, "call": "optimize.ask", "run": "a"}, [])
+    for first in firsts:
         with connect(server.address, **DIRECT) as stranger:
             stranger.send(json.dumps(first))
             assert "error" in json.loads(stranger.recv(10))

@@ -194,9 +194,11 @@ def test_stop_does_not_wait_for_the_call_before_it(client: Client, run: str) -> 
 
 
 def _piece(x_mm: list[float], rendered: bool = True) -> TickPiece:
-    n, x = len(x_mm), np.array(x_mm)
+    n, x = len(x_mm), np.array(x_mm, dtype=np.float64)
     none = np.zeros(n)
-    return TickPiece(np.arange(n) * 1.0, x, none, none, np.zeros(n, np.int64), none > 0, np.full(n, rendered))
+    return TickPiece(
+        np.arange(n, dtype=np.float64), x, none, none, np.zeros(n, np.int64), none > 0, np.full(n, rendered)
+    )
 
 
 @pytest.mark.parametrize(

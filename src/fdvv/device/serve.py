@@ -117,7 +117,8 @@ class RigServer(threading.Thread):
             return
         self.counts["presses"] += 1
         self.presses = None if self.presses is None else self.presses - 1
-        plant = self.person.press(image, self.board.announced_mm_s, self.settings)
+        # under the rig's own settings: its limits have no room for this board's patience with its host
+        plant = self.person.press(image, self.board.announced_mm_s, self.person.settings)
         self._due = plant.ticks + self._ticks_of(self.between_s)
         self.port.connect(plant)
 

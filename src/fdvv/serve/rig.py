@@ -176,7 +176,7 @@ class RigClient:
 
 
 class Touch:
-    """Tells when a cap leaves its rest and is back, from ticks in rising time."""
+    """When a cap leaves its rest and is back, from ticks in rising time."""
 
     def __init__(self) -> None:
         self._down: bool | None = None

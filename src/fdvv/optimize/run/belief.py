@@ -15,7 +15,7 @@ from fdvv.optimize.run.verdict import LEVEL
 
 @dataclass(frozen=True)
 class BestDesign:
-    """A recommended design, and what is believed of it.
+    """A recommended design, and what the scores say of it.
 
     Attributes
     ----------
