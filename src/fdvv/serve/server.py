@@ -16,6 +16,7 @@ from fdvv.serve.connection import Connection, Served
 from fdvv.serve.rig import RigOwnership
 from fdvv.serve.runs import FOLDER, Runs
 from fdvv.studio.auth import saved_token
+from fdvv.studio.parts import prepare_records
 from fdvv.studio.server import bound_socket, serve_app
 from fdvv.studio.studio import Studio
 
@@ -39,6 +40,7 @@ def create_app(
     studio: Studio, token: str, port: int, origins: Collection[str], devices: Collection[str]
 ) -> Starlette:
     """Make the application. origins : of pages that may connect. devices : beside those that are found."""
+    prepare_records(set())  # while there is one thread
     served = Served(token, Runs(studio), RigOwnership(studio, devices))
     hosts = {f"{name}:{port}" for name in ("127.0.0.1", "localhost")}
 

@@ -106,7 +106,7 @@ class SpaceSetup(Struct, frozen=True, forbid_unknown_fields=True):
     most_cN: float | None = None
     rig: str | None = None
     velocities_mm_s: tuple[float, ...] = (100.0,)
-    parameters: tuple[Parameter, ...] = ()
+    parameters: tuple[Parameter, ...] | msgspec.UnsetType = msgspec.UNSET
 
 
 class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -185,7 +185,7 @@ def setup_text(setup: Struct) -> str:
 def space_of(setup: SpaceSetup, rigs: RigCatalog) -> DesignSpace:
     """Return the space of a setup with its constraints. Raises InputError."""
     if setup.kind == "own":
-        return DesignSpace("own", setup.parameters)
+        return DesignSpace("own", setup.parameters or ())
     free = paper_space() if setup.kind == "paper" else _variations(setup)
     if setup.rig is None:
         return free
