@@ -16,7 +16,7 @@ from tools.docstrings import SECTION, read
 import fdvv
 from fdvv.cli.main import cli
 
-HIDDEN = ("__main__", "_native", "cad", "static", "cli", "studio")
+HIDDEN = ("__main__", "_native", "cad", "static", "cli", "serve", "studio")
 """Packages without names for users; commands and messages have pages of their own."""
 CODE = re.compile(
     r"(`+)(.+?)\1|(?<![\w*])(?P<stars>\*\*?)(?=[^\s*])[^*]*[^\s*](?P=stars)(?![\w*])", flags=re.DOTALL

@@ -30,11 +30,13 @@ NOT_RUN = {"docs/how-to/exchange.md"}
 """Pages that start from a recording of the reader."""
 FAST = {
     "docs/features.md",
+    "docs/how-to/drive-from-another-program.md",
     "docs/tutorials/first-button.md",
     "docs/tutorials/new-program.md",
     "docs/tutorials/capture-a-button.md",
 }
 NEEDS = {
+    "docs/how-to/drive-from-another-program.md": ("sklearn",),
     "docs/how-to/work-in-a-notebook.md": ("matplotlib", "pandas"),
     "docs/how-to/from-a-model-to-a-switch.md": ("matplotlib", "ezdxf"),
     "docs/tutorials/first-button.md": ("matplotlib",),
