@@ -16,7 +16,7 @@ PAGE = "http://localhost:8000"
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunningServer]:
     running = RunningServer(tmp_path_factory.mktemp("serve") / "project", more=("--origin", PAGE))
     yield running
-    running.stop()
+    assert "Traceback" not in running.stop()
 
 
 @pytest.fixture

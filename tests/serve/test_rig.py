@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from fdvv.device.open import person_of
+from fdvv.device.plant import Inputs, Plant
 from fdvv.device.serve import RigServer
 from fdvv.live.tick_bins import TickPiece
 from fdvv.model.file import load_builtin, model_to_json
@@ -150,7 +151,8 @@ def rig() -> Iterator[RigServer]:
     found = RigServer(person_of("twin"), presses=0)
     found.start()
     yield found
-    found.end()
+    if not found.over.is_set():
+        found.end()
 
 
 @pytest.mark.parametrize("how", ["vanishes", "closes", "server is killed"])
@@ -176,6 +178,59 @@ def test_an_armed_device_falls_to_zero_force_when_its_client_or_server_goes(
     _until(lambda: not rig.port.outputs.enable and rig.port.outputs.duty_q15 == 0, 5.0)
     assert rig.port.outputs.mode in ((Mode.IDLE,) if how != "server is killed" else (Mode.IDLE, Mode.FAULT))
     server.stop(signal.SIGKILL)
+
+
+class Dark:
+    """A rig whose supply has failed, as long as it says so."""
+
+    def __init__(self, plant: Plant) -> None:
+        self._plant, self.fails = plant, True
+
+    def step(self, *outputs: int) -> Inputs:
+        found = self._plant.step(*outputs)
+        return found._replace(supply_mV=0) if self.fails else found
+
+
+def test_a_fault_and_a_rig_that_goes_are_events_and_what_follows_is_refused(
+    rig: RigServer, tmp_path: Path
+) -> None:
+    pytest.importorskip("serialx")
+    device = f"serial:{rig.path}"
+    server = RunningServer(tmp_path / "project", more=("--device", device))
+    client = Client(server)
+    client.call("device.open", device=device)
+    client.call("device.upload", button="mx-clear")
+    client.call("device.arm")
+    dark = Dark(rig.person.rest(rig.settings))
+    rig.port.connect(dark)
+    fault = _event(client, "device.fault")
+    assert (fault["gone"], "supply" in fault["fault"]) == (False, True)
+    with pytest.raises(RefusedCall, match="latched|fault"):
+        client.call("device.arm")
+    dark.fails = False
+    _until(lambda: _cleared(client))
+    assert client.call("device.info")["fault"] == ""
+    rig.end()
+    assert _event(client, "device.fault")["gone"]
+    with pytest.raises(RefusedCall, match="no device is connected"):
+        client.call("device.arm")
+    client.call("device.close")
+    client.close()
+    assert "Traceback" not in server.stop()
+
+
+def _event(client: Client, name: str) -> dict[str, Any]:
+    while (message := client.receive()).get("event") != name:
+        pass
+    return message
+
+
+def _cleared(client: Client) -> bool:
+    try:
+        client.call("device.clear_fault")
+    except RefusedCall:
+        return False
+    return True
 
 
 def test_stop_does_not_wait_for_the_call_before_it(client: Client, run: str) -> None:

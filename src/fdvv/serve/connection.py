@@ -208,10 +208,11 @@ class Connection:
             self._start(self._socket.close(SLOW, "the client does not read"))
 
     async def _write(self) -> None:
-        while True:
-            body = await self._outgoing.get()
-            await self._socket.send_text(body.decode())
-            self._outgoing.task_done()
+        with suppress(WebSocketDisconnect, RuntimeError):  # it has gone, which the reader sees
+            while True:
+                body = await self._outgoing.get()
+                await self._socket.send_text(body.decode())
+                self._outgoing.task_done()
 
     async def _close(self, code: int, reason: str) -> None:
         with suppress(TimeoutError):
