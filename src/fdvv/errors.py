@@ -5,6 +5,7 @@ FdvvError
 ├── ModelError    numbers that do not make a curve or a model
 ├── FitError      a curve cannot be fitted as asked
 ├── DeviceError   a device refused, failed or went away
+│   └── PartFaultError  a part of its rig is broken or wired wrongly
 ├── WorkerError   work in another process failed
 └── BuildError    this installation lacks a part (compiled library, optional extra)
 """
@@ -13,6 +14,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 NEAR_ratio = 0.5
 """How alike a misspelt name and a known one are at least (``difflib``)."""
@@ -57,6 +59,32 @@ class FitError(FdvvError, ValueError):
 
 class DeviceError(FdvvError):
     """A device refused, failed or went away; says which and why."""
+
+
+@dataclass(frozen=True)
+class PartFault:
+    """A part of a rig that is broken or wired wrongly.
+
+    Attributes
+    ----------
+    part : its name, without an article. seen : what shows it, a clause that begins with the part.
+    remedy : what to do about it, an imperative.
+    """
+
+    part: str
+    seen: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return f"{self.seen}: {self.remedy}"
+
+
+class PartFaultError(DeviceError):
+    """A part of a device's rig is at fault; its text is the fault's sentence."""
+
+    def __init__(self, fault: PartFault, text: str = "") -> None:
+        self.fault = fault
+        super().__init__(text or str(fault))
 
 
 class WorkerError(FdvvError):

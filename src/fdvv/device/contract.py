@@ -7,7 +7,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from fdvv.errors import DeviceError
+from fdvv.errors import DeviceError, PartFault
 from fdvv.force_text import force_text
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
@@ -75,6 +75,29 @@ WHAT_TO_LOOK_AT = {
 }
 """The part behind a fault whose name does not say enough."""
 
+POSITION, SUPPLY, DRIVER = "position sensor", "supply", "coil driver"
+FAULTY_PARTS = {
+    Fault.POSITION_LOW: (POSITION, "look for a wire that is off or shorted"),
+    Fault.POSITION_HIGH: (POSITION, "look for a wire that is off or shorted"),
+    Fault.POSITION_STUCK: (POSITION, "look at its cable, its supply and its conditioner"),
+    Fault.POSITION_JUMP: (POSITION, "look for a loose wire; part its wires from the coil's"),
+    Fault.SUPPLY_LOW: (SUPPLY, "measure it under load; look at joints, fuse and stop button"),
+    Fault.SUPPLY_HIGH: (SUPPLY, "measure it, and the divider that the board reads it by"),
+    Fault.BROWN_OUT: (SUPPLY, "measure it under load; look at joints and fuse"),
+    Fault.OUTPUT: (DRIVER, "look for a short of the coil's wires; feel whether it is hot"),
+    Fault.VIBRATION_BOARD: ("vibration board", "look at its cable and its power"),
+    **{fault: ("thermistor", text) for fault, text in WHAT_TO_LOOK_AT.items()},
+}
+"""Part behind a fault of the firmware, and what to do; other faults are no part's."""
+
+
+class PressError(DeviceError):
+    """A press that failed, with what was recorded of it until then; None if nothing was."""
+
+    def __init__(self, text: str, press: Press | None) -> None:
+        self.press = press
+        super().__init__(text)
+
 
 @dataclass(frozen=True)
 class FaultReport:
@@ -105,6 +128,15 @@ class FaultReport:
             f"at {self.displacement_mm:.3f} mm and {force_text(self.commanded_cN, '.1f')}, "
             f"{self.time_s:.3f} s on the device's clock{self._part}"
         )
+
+    @property
+    def part_fault(self) -> PartFault | None:
+        """The part behind it; None if it is no part's."""
+        if self.fault not in FAULTY_PARTS:
+            return None
+        part, remedy = FAULTY_PARTS[self.fault]
+        name = self.fault.name.lower()
+        return PartFault(part, f"the {part} failed ({name}: {self.value}, allowed {self.bound})", remedy)
 
     @property
     def _part(self) -> str:

@@ -215,8 +215,9 @@ class LinkedDevice(Remote):
                 self.stop()
             self.port.connect(self._person.rest(self._settings))
         self._fail_on_fault()
-        self.force_loop.check()
-        return self._joined(truth, ticks, velocity_mm_s)
+        press = self._joined(truth, ticks, velocity_mm_s)
+        self.force_loop.check(press)
+        return press
 
     def _joined(self, truth: Truth, ticks: IntArray, velocity_mm_s: float) -> Press:
         """Join the telemetry of the board with the truth at the same ticks."""

@@ -9,7 +9,14 @@ from typing import Self
 import numpy as np
 
 from fdvv.device.client import Client
-from fdvv.device.contract import DeviceInfo, FaultReport, check_speed, check_table
+from fdvv.device.contract import (
+    DeviceInfo,
+    FaultReport,
+    PressError,
+    SPEED_LIMITS_mm_s,
+    check_speed,
+    check_table,
+)
 from fdvv.device.remote_loop import RemoteLoop
 from fdvv.device.telemetry import TickColumns
 from fdvv.device.wire import Port, RefusedError
@@ -241,8 +248,9 @@ class PressedDevice(Remote):
             found = self._wait(travel_mm)
         finally:
             self.stop()
-        self.force_loop.check()
-        return self._record(found, velocity_mm_s)
+        press = self._record(found, velocity_mm_s)
+        self.force_loop.check(press)
+        return press
 
     def _arm(self) -> None:
         try:
@@ -263,7 +271,9 @@ class PressedDevice(Remote):
             if telemetry.last is not None and telemetry.last.mode == Mode.FAULT:
                 self._fail_on_fault()
         waited = f"nobody pressed within {self._patience_s:g} s"
-        raise DeviceError(f"{port.name}: {waited}; press the button fully")
+        seen = telemetry.columns()
+        record = self._record(seen, SPEED_LIMITS_mm_s[0]) if seen.tick.size > LEAD_TICKS else None
+        raise PressError(f"{port.name}: {waited}; press the button fully", record)
 
     def _record(self, columns: TickColumns, velocity_mm_s: float) -> Press:
         t_s = (columns.tick - columns.tick[0]) * self._settings.tick_us * 1e-6

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from fdvv.device.client import Client
+from fdvv.device.contract import PressError
 from fdvv.errors import DeviceError
+from fdvv.model.press import Press
 from fdvv.protocol.tables import BoardFlag, CellSpec, ForceLoopGains, LoopFault, LoopState
 
 NO_CELL = CellSpec(plate_kg=0.0, stiffness_N_m=0.0, damping_N_s_m=0.0, filter_s=0.0)
@@ -82,14 +84,15 @@ class RemoteLoop:
         state = LoopState(found.state).name.lower()
         return f"{state}, {LoopFault(found.fault).name.lower()}" if found.fault else state
 
-    def check(self) -> None:
-        """Raise DeviceError if the loop was opened by itself since it was closed."""
+    def check(self, press: Press | None = None) -> None:
+        """Raise PressError, with the press, if the loop was opened by itself since it was closed."""
         if self.gains is None:
             return
         fault = LoopFault(self._client.read_force_loop().fault)
         if fault is not LoopFault.SOUND:
             self.forget()
-            raise DeviceError(
+            raise PressError(
                 f"{self._client.port.name}: the force loop opened, {fault.name.lower()}; "
-                "check the load cell and its cable, then close the loop again"
+                "check the load cell and its cable, then close the loop again",
+                press,
             )

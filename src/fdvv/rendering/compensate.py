@@ -21,6 +21,7 @@ from fdvv.errors import DeviceError, InputError
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.known_rig import with_rig_check
+from fdvv.rendering.part_watch import watch_of
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
 from fdvv.rendering.session import Session
 from fdvv.rendering.session_log import PressLog
@@ -132,6 +133,7 @@ def compensate(
             lambda state: velocity_progress(job, method.count(state), log, method.done(state).curves),
             progress or (lambda _done: None),
             guide or Guide(),
+            parts=watch_of(device, job.travel_mm),
         )
         if known and not log.used:  # a resumed session has been checked already
             about = known.rig, job.travel_mm, isinstance(method, ForceLoop)

@@ -29,6 +29,7 @@ from fdvv.rendering.evaluation.vibration_presses import (
 )
 from fdvv.rendering.exciter import prepare_exciter
 from fdvv.rendering.known_rig import with_rig_check
+from fdvv.rendering.part_watch import watch_of
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
 from fdvv.rendering.session import MANIFEST, Session, plain, read_manifest, table_digest
 from fdvv.rendering.session_log import PressEntry, PressLog
@@ -209,6 +210,7 @@ def probe(
         progress or (lambda _done: None),
         guide or Guide(),
         partial(upload_vibrating, model=model, playback=playback) if playback else None,
+        watch_of(device, model.travel_mm),
     )
     with session.open_log(manifest, PressLog) as log:
         if not log.used:

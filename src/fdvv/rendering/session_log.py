@@ -2,13 +2,15 @@
 
 Both files are journals (see `fdvv.eventlog`), with ``{"run": {…}}`` for each start of the program.
 ``presses.jsonl`` has ``{"press": {…}}`` for every press, used or not, with all columns (`fdvv.io.columns`)
-and the table it was made on; ``answers.jsonl`` has ``{"answer": {…}}`` for every answer of a tuning.
+and the table it was made on, ``{"check": {…}}`` for every check of the rig's parts that passed, and
+``{"part": {…}}`` where a part was found at fault; ``answers.jsonl`` has ``{"answer": {…}}`` for every answer
+of a tuning.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar, Generic, TypeVar
 
@@ -103,7 +105,31 @@ class SessionFile(Generic[Entry]):
 
 PRESSES = "presses.jsonl"
 REMEDY = "begin a new session in another folder"
-PRESSES_KIND = JournalKind({"run": SessionRun, "press": Any}, REMEDY)
+
+
+class CheckRecord(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A check of the rig's parts that passed, with what it could not see; made : when, UTC."""
+
+    unseen: list[str]
+    made: str
+
+
+class PartRecord(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A part that was found at fault: from press from_press on the rig is another, made : when, UTC."""
+
+    from_press: int
+    part: str
+    seen: str
+    remedy: str
+    made: str
+
+    def __str__(self) -> str:
+        return f"the rig was another from here on: {self.seen}"
+
+
+PRESSES_KIND = JournalKind(
+    {"run": SessionRun, "press": Any, "check": CheckRecord, "part": PartRecord}, REMEDY
+)
 
 
 class PressEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -147,19 +173,38 @@ class PressRecord:
 
 
 class PressLog(SessionFile[PressEntry]):
-    """The presses of a session; in memory only what became of each."""
+    """The presses of a session; in memory only what became of each.
+
+    Attributes
+    ----------
+    checked : the last check of the rig's parts; None before one, and since a part was found at fault.
+    parts : that were found at fault. A press made since then is not used, as a rig that changed taught it.
+    """
 
     name, noun, kind = PRESSES, "presses", PRESSES_KIND
 
+    def __init__(self, folder: Path | None = None) -> None:
+        self.checked: CheckRecord | None = None
+        self.parts: list[PartRecord] = []
+        super().__init__(folder)
+
     def _entry(self, body: Any, number: int) -> PressEntry:
         return _record(self.path, body, number).entry
+
+    def _replay(self, key: str, body: Any) -> None:
+        if key == "check":
+            self.checked = body
+        elif key == "part":
+            self._set_apart(body)
+        else:
+            super()._replay(key, body)
 
     def records(self) -> Iterator[PressRecord]:
         """Read the presses on file again, with all columns, in order; nothing if there is no file."""
         bodies = read_bodies(self.path, self.kind) if self.path else ()
         presses = (body for key, body, _ in bodies if key == "press")
         for number, body in enumerate(presses, 1):
-            yield _record(self.path, body, number)
+            yield replace(_record(self.path, body, number), entry=self.entries[number - 1])
 
     @property
     def used(self) -> int:
@@ -170,6 +215,25 @@ class PressLog(SessionFile[PressEntry]):
         if self.path is not None:
             self._write({"press": _packed(record)})
         self.entries.append(record.entry)
+
+    def add_check(self, check: CheckRecord) -> None:
+        self._write({"check": msgspec.to_builtins(check)})
+        self.checked = check
+
+    def set_apart(self, part: PartRecord) -> None:
+        """Record a part at fault, and use no press that was made since it is."""
+        self._write({"part": msgspec.to_builtins(part)})
+        self._set_apart(part)
+
+    def _set_apart(self, part: PartRecord) -> None:
+        self.checked = None
+        self.parts.append(part)
+        self.entries[:] = [
+            msgspec.structs.replace(entry, reason=str(part))
+            if entry.used and entry.number >= part.from_press
+            else entry
+            for entry in self.entries
+        ]
 
 
 def _packed(record: PressRecord) -> dict[str, Any]:

@@ -5,19 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
-from typing import Any, Generic, NoReturn, TypeVar, cast
+from typing import Any, Generic, NoReturn, Protocol, TypeVar, cast
 
 import numpy as np
 
 from fdvv.compensation.method import CurveOutcome, Trial, TrialSource
+from fdvv.compensation.parts.guard import Found, PartGuard
 from fdvv.compensation.presses import PressAcceptance
-from fdvv.device.contract import Device, FaultReport, ProgramDevice
-from fdvv.errors import DeviceError, InputError, ModelError
+from fdvv.device.contract import Device, FaultReport, PressError, ProgramDevice
+from fdvv.errors import DeviceError, InputError, ModelError, PartFault, PartFaultError
 from fdvv.io.files import defer_interrupt
 from fdvv.model.press import Press
 from fdvv.protocol.tables import Fault
 from fdvv.rendering.session import now
-from fdvv.rendering.session_log import REMEDY, PressEntry, PressLog, PressRecord, SessionFile
+from fdvv.rendering.session_log import (
+    REMEDY,
+    PartRecord,
+    PressEntry,
+    PressLog,
+    PressRecord,
+    SessionFile,
+)
 from fdvv.rendering.tuning import tune
 
 
@@ -109,6 +117,7 @@ class SessionPlan(Generic[S]):
     velocity_progress : of a state.
     progress : called after every press; guide : called before it, and with notices.
     upload_vibrating : uploads a trial whose vibrations are played; None where no trial has any.
+    parts : watches the parts of a real rig; None where there is nothing that can be wired wrongly.
     """
 
     stage: str
@@ -120,6 +129,21 @@ class SessionPlan(Generic[S]):
     progress: Progress = lambda _done: None
     guide: Guide = field(default_factory=Guide)
     upload_vibrating: Callable[[Device, Trial], None] | None = None
+    parts: PartWatch | None = None
+
+
+class PartWatch(Protocol):
+    """Checks the parts of a rig before a session's first press, and looks at each press."""
+
+    @property
+    def guard(self) -> PartGuard:
+        """What looks at presses."""
+
+    def check(self, device: Device, guide: Guide, log: PressLog) -> None:
+        """Check the parts, unless the log has a check of today. Raises PartFaultError."""
+
+    def confirmed(self, device: Device, found: Found) -> Found:
+        """Return what was found, after a look at the rig at rest where a press cannot tell parts apart."""
 
 
 def prepare(
@@ -168,6 +192,8 @@ def released(device: Device, resume: Callable[[], str]) -> Iterator[None]:
         release_force(device)
         if isinstance(error, KeyboardInterrupt):
             raise KeyboardInterrupt(f"interrupted; {resume()}") from None
+        if isinstance(error, PartFaultError):
+            raise PartFaultError(error.fault, f"{error}; {resume()}") from error
         if isinstance(error, DeviceError):
             raise DeviceError(f"{error}; {resume()}") from error
         raise
@@ -185,6 +211,8 @@ def replay(plan: SessionPlan[S], state: S, log: PressLog) -> S:
             state = plan.source.step(record.press, state)
         except ModelError as error:
             _refuse(log, record, str(error))
+        if plan.parts:
+            plan.parts.guard.learn(record.press)
     return state
 
 
@@ -217,25 +245,27 @@ def _refuse(log: PressLog, record: PressRecord, reason: str) -> NoReturn:
 def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S:
     before, in_a_row = None, 0
     clear_latched(device, plan.guide.notice)
+    if plan.parts and plan.source.trial(state) is not None:
+        _check(device, plan, log)
+    last: PartFault | None = None
     while (trial := plan.source.trial(state)) is not None:
         prepare(device, trial, plan.travel_mm, before, plan.upload_vibrating)
         count = plan.source.count(state)
         plan.guide.ask(PressRequest(trial.velocity_mm_s, plan.travel_mm, count.made + 1, count.total))
-        press, fault = None, ""
-        try:
-            press = device.press(trial.velocity_mm_s)
-        except DeviceError as error:
-            if not _faulted(device):
-                raise
-            fault = str(error)
+        made = _made(device, trial)
         # a person cannot repeat a press: Ctrl-C waits until it is on file
         with defer_interrupt():
-            entry, state = _taken(plan, state, trial, (press, fault), log)
-        _report(plan, state, entry, press)
+            entry, state, found = _taken(device, plan, state, trial, made, log)
+        _report(plan, state, entry, made.press)
+        if found:
+            _stop_at(log, found, entry)
+        if made.error and not made.faulted:
+            raise made.error
         before = trial
-        if fault:
-            _cleared(device)
+        if made.faulted:
+            _cleared_or_named(device, made.part, last, log)
             before = None  # a cleared device needs its program again
+        last = made.part
         in_a_row = 0 if entry.used else in_a_row + 1
         if in_a_row >= plan.patience:
             name = device.info().name
@@ -243,10 +273,79 @@ def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S
     return state
 
 
+@dataclass(frozen=True, eq=False)
+class _Made:
+    """What came of asking for a press.
+
+    press : as far as it was recorded. error : why it failed. faulted : the board fell to zero force, part :
+    for that one.
+    """
+
+    press: Press | None
+    error: DeviceError | None = None
+    faulted: bool = False
+    part: PartFault | None = None
+
+    @property
+    def reason(self) -> str:
+        return str(self.part or self.error or "")
+
+
+def _made(device: Device, trial: Trial) -> _Made:
+    """Ask for a press. Raises DeviceError where nothing is known of it and the board has no fault."""
+    try:
+        return _Made(device.press(trial.velocity_mm_s))
+    except DeviceError as error:
+        if _faulted(device):
+            return _Made(None, error, True, cast(ProgramDevice, device).fault().part_fault)
+        if isinstance(error, PressError) and error.press:
+            return _Made(error.press, error)
+        raise
+
+
+def _check(device: Device, plan: SessionPlan[S], log: PressLog) -> None:
+    assert plan.parts is not None
+    try:
+        plan.parts.check(device, plan.guide, log)
+    except PartFaultError as error:
+        log.set_apart(_part_record(error.fault, len(log.entries) + 1))
+        raise
+
+
+def _stop_at(log: PressLog, found: Found, entry: PressEntry) -> NoReturn:
+    """Set the presses of a rig that is another now apart, and end the session."""
+    log.set_apart(_part_record(found.fault, max(1, entry.number - found.presses + 1)))
+    raise PartFaultError(found.fault)
+
+
+def _part_record(fault: PartFault, from_press: int) -> PartRecord:
+    return PartRecord(from_press, fault.part, fault.seen, fault.remedy, now())
+
+
+def _cleared_or_named(device: Device, part: PartFault | None, last: PartFault | None, log: PressLog) -> None:
+    """Clear the board's fault. Raises PartFaultError if a part's fault lasts, or comes a second time."""
+    try:
+        _cleared(device)
+    except DeviceError as error:
+        if part is None:
+            raise
+        lasts: DeviceError | None = error
+    else:
+        lasts = None
+    if part and (lasts or (last and last.part == part.part)):
+        log.set_apart(_part_record(part, len(log.entries)))
+        raise PartFaultError(part) from lasts
+
+
 def clear_latched(device: Device, notice: Callable[[str], None]) -> None:
     """Clear a latched fault, with a notice. Raises DeviceError while its cause lasts."""
     if _faulted(device):
-        notice(f"warning: {device.info().name} had fallen to zero force, {_cleared(device)}; cleared")
+        part = cast(ProgramDevice, device).fault().part_fault
+        try:
+            report = _cleared(device)
+        except DeviceError as error:
+            raise (PartFaultError(part) if part else error) from error
+        notice(f"warning: {device.info().name} had fallen to zero force, {report}; cleared")
 
 
 def _faulted(device: Device) -> bool:
@@ -266,12 +365,15 @@ def _cleared(device: Device) -> FaultReport:
 
 
 def _taken(
-    plan: SessionPlan[S], state: S, trial: Trial, made: tuple[Press | None, str], log: PressLog
-) -> tuple[PressEntry, S]:
-    """Judge and log a press, and use it if it is usable."""
-    press, reason = made
-    verdict = PressAcceptance(reason, float("nan")) if press is None else plan.judge(press, trial.pace_ratio)
-    reason, after = verdict.reason, state
+    device: Device, plan: SessionPlan[S], state: S, trial: Trial, made: _Made, log: PressLog
+) -> tuple[PressEntry, S, Found | None]:
+    """Judge and log a press, and use it if it is usable; return the part at fault, if it shows one."""
+    press, reason = made.press, made.reason
+    failed = press is None or bool(reason)
+    nothing = PressAcceptance(reason, float("nan"))
+    verdict = nothing if press is None or failed else plan.judge(press, trial.pace_ratio)
+    found = _looked(device, plan, press, not verdict.reason, bool(reason))
+    reason, after = str(found.fault) if found else verdict.reason, state
     if press is not None and not reason:
         try:
             after = plan.source.step(press, state)
@@ -280,7 +382,17 @@ def _taken(
     achieved = verdict.achieved_mm_s if np.isfinite(verdict.achieved_mm_s) else None
     entry = PressEntry(len(log.entries) + 1, trial.velocity_mm_s, reason, achieved, now())
     log.add(PressRecord(entry, trial.surface, press, trial.tuning, trial.vibrating))
-    return entry, after
+    return entry, after, found
+
+
+def _looked(
+    device: Device, plan: SessionPlan[S], press: Press | None, used: bool, failed: bool
+) -> Found | None:
+    """Look at the parts before a person is blamed for a press."""
+    if plan.parts is None or press is None:
+        return None
+    found = plan.parts.guard.look(press, used, sure=failed)
+    return plan.parts.confirmed(device, found) if found else None
 
 
 def _report(plan: SessionPlan[S], state: S, entry: PressEntry, press: Press | None) -> None:

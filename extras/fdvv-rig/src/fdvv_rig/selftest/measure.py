@@ -13,13 +13,14 @@ from fdvv.device.remote import Remote
 from fdvv.device.telemetry import TickColumns
 from fdvv.device.wire import RefusedError
 from fdvv.errors import DeviceError
+from fdvv.program.force_ramp import force_ramp_image
 from fdvv.protocol.messages import CN64_PER_cN
 from fdvv.protocol.tables import Fault, Part, SelfTestResult, Settings
 from fdvv.units import FloatArray
 from fdvv_rig.selftest.evidence import Evidence, GAUGES_mm, Latched, Lift, WEIGHT_g
 from fdvv_rig.selftest.faults import SLOW_PWM_Hz
 from fdvv_rig.selftest.operator import G_cN, Operator
-from fdvv_rig.selftest.programs import TONE_s, TONES_Hz, force_image, tone_image
+from fdvv_rig.selftest.programs import TONE_s, TONES_Hz, tone_image
 
 DEEP_mm, STOPS_mm = 5.0, (3.5, 2.0)
 """A stop that is a millimetre off must not leave the range of the position sensor."""
@@ -113,7 +114,7 @@ class _Measuring:
         )
 
     def _gauges(self) -> None:
-        self._load(force_image(self._settings, DEEP_mm, 0.0, 0.0, 0.0))
+        self._load(force_ramp_image(self._settings, DEEP_mm, 0.0, 0.0, 0.0))
         found = []
         for size_mm in GAUGES_mm:
             self._hands.gauge(size_mm)
@@ -129,10 +130,10 @@ class _Measuring:
     def _stop(self) -> None:
         found = []
         for travel_mm in STOPS_mm:
-            self._load(force_image(self._settings, travel_mm, 0.0, 0.0, 0.0))
+            self._load(force_ramp_image(self._settings, travel_mm, 0.0, 0.0, 0.0))
             found.append((travel_mm, self._settled()))
         self._add(stops_mm=tuple(found))
-        self._load(force_image(self._settings, DEEP_mm, 0.0, 0.0, 0.0))
+        self._load(force_ramp_image(self._settings, DEEP_mm, 0.0, 0.0, 0.0))
         self._settled()
 
     def _lift_empty(self) -> None:
@@ -150,7 +151,7 @@ class _Measuring:
         self._device.configure(replace(self._settings, supply_low_mV=low_mV))
         try:
             hard_cN = self._settings.force_limit_cN64 / CN64_PER_cN
-            columns = self._armed(force_image(self._settings, DEEP_mm, 0.0, hard_cN, 0.3), 0.3 + HARD_s)
+            columns = self._armed(force_ramp_image(self._settings, DEEP_mm, 0.0, hard_cN, 0.3), 0.3 + HARD_s)
             found = self._device.fault()
             sag = float(found.value) if found.fault is Fault.SUPPLY_LOW else math.nan
             self._add(sag_mV=sag)
@@ -254,9 +255,9 @@ class _Measuring:
             self._device.stop()
 
     def _lifted(self) -> Lift:
-        up = self._armed(force_image(self._settings, DEEP_mm, LOW_cN, HIGH_cN, RAMP_s), RAMP_s)
+        up = self._armed(force_ramp_image(self._settings, DEEP_mm, LOW_cN, HIGH_cN, RAMP_s), RAMP_s)
         self._device.stop()
-        down = self._armed(force_image(self._settings, DEEP_mm, HIGH_cN, LOW_cN, RAMP_s), RAMP_s)
+        down = self._armed(force_ramp_image(self._settings, DEEP_mm, HIGH_cN, LOW_cN, RAMP_s), RAMP_s)
         self._settled()
         return lift_of(up, down)
 

@@ -1,4 +1,4 @@
-"""Small programs that a rig runs while it is tested: a steady or growing force, and tones."""
+"""The program that a rig runs while its exciter is tested: tones, and no force."""
 
 from __future__ import annotations
 
@@ -14,16 +14,6 @@ TONES_Hz = (310.0, 430.0, 550.0, 670.0)
 """About the exciter's resonance, wherever it is; none folds onto another at 1 kHz."""
 TONE_s = 2.5
 COUNTS = 2047.0
-
-
-def force_image(settings: Settings, travel_mm: float, start_cN: float, end_cN: float, span_s: float) -> bytes:
-    """Return a program whose force goes from one to the other in that time, wherever the cap is."""
-    flat = Surface("flat", (0.0, travel_mm), ((0.0, 0.0),))
-    span_ms = round(1e3 * span_s)
-    state = State(
-        "push", "flat", "flat", bias_cN=start_cN, bias_end_cN=end_cN if span_ms else 0.0, bias_ms=span_ms
-    )
-    return _compiled(Program("force", travel_mm, "push", (state,), (flat,)), settings)
 
 
 def tone_image(settings: Settings, travel_mm: float) -> bytes:

@@ -1,0 +1,161 @@
+"""Is a part that breaks named within two presses, and is nothing named on a sound rig? Simulated.
+
+Run as ``python -m benchmarks.rig_faults [first seed] [rigs] [sound sessions]``; 500, 20 and 200 by default,
+half an hour on one core. Rigs and people are drawn: like the recommended one with its load cell, and of the
+paper's parts with a force sensor in the cap. Rigs that the firmware refuses, and people who cannot press
+theirs to the end of a sound session, are drawn anew. Twelve faults are planted in the plant behind the real
+firmware core, each from the start and from a press in mid-session on where both make sense; then a whole
+session of learning is run. It counts as named if the session ends with that part's name at the second press
+from the fault's begin on, the check's own press included. Seeds from 700 on were used to tune.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from tests.support.rig_faults import PLANTED, PlantedPerson, WatchedBoard
+
+from benchmarks.drawn_rigs import BUTTONS, Case, SPEEDS_mm_s
+from benchmarks.force_loop import DESIGNS, RECOMMENDED, parts
+from fdvv.compensation.rig_aware import RigAware
+from fdvv.device.linked import LinkedDevice
+from fdvv.errors import FdvvError, ModelError, PartFaultError
+from fdvv.model.file import load_builtin
+from fdvv.rendering.compensate import compensate
+from fdvv.rendering.part_check import CHECK_cN
+from fdvv.rendering.session_run import Guide, PressDone
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import Rig
+
+FIRST, RIGS, SOUND = 500, 20, 200
+WITHIN = 2
+FAMILIES = ("load cell", "force sensor in the cap")
+LATE = 4
+"""Mid-session faults begin at this press or up to three later, the check's own counted."""
+
+
+def drawn(seed: int, family: str) -> tuple[Rig, Finger]:
+    """Draw a rig and a person. ModelError if the firmware cannot hold the rig."""
+    cell = family == FAMILIES[0]
+    rig, finger = parts(Case(seed, BUTTONS[seed % len(BUTTONS)], DESIGNS[RECOMMENDED] if cell else ()), cell)
+    if not cell:
+        rig = replace(rig, keycap_sensor=replace(rig.keycap_sensor, kind="force"))
+    return rig, finger
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a session ended: the part it named, or "-"; presses since the fault began; its text.
+
+    largest_cN : commanded before the check had passed. finished : it came to its end.
+    """
+
+    part: str
+    presses: int
+    text: str
+    largest_cN: float
+    finished: bool
+
+
+def session(seed: int, family: str, name: str = "", begins: int = 0) -> Outcome:
+    """Run a session of learning on a drawn rig in which a fault begins at a press, from 1; 0: at once."""
+    rig, finger = drawn(seed, family)
+    board = WatchedBoard()
+    person = PlantedPerson(rig, finger, seed, PLANTED.get(name), begins)
+    watched = _Watched(board)
+    with LinkedDevice(board, person) as device:
+        part, text, finished = "-", "", True
+        try:
+            model = load_builtin(BUTTONS[seed % len(BUTTONS)])
+            guide = Guide(lambda _ask: watched.asked())
+            compensate(device, model, SPEEDS_mm_s, RigAware(1), watched.done, guide=guide)
+        except PartFaultError as error:
+            part, text, finished = error.fault.part, str(error), False
+        except FdvvError as error:
+            text, finished = str(error), False
+        watched.asked()
+    return Outcome(part, person.presses - max(begins, 1) + 1, text, watched.largest_cN, finished)
+
+
+class _Watched:
+    """Keeps the largest command until the first press of learning is asked for."""
+
+    def __init__(self, board: WatchedBoard) -> None:
+        self._board, self._passed = board, False
+        self.largest_cN = 0.0
+
+    def asked(self) -> None:
+        """Look before each press that is asked for, and at the end: nothing was armed in between."""
+        if not self._passed:
+            self.largest_cN = self._board.largest_cN
+
+    def done(self, _done: PressDone) -> None:
+        self._passed = True
+
+
+def begins_of(seed: int, name: str) -> Iterator[int]:
+    """Give the presses at which a fault begins: at once, and in mid-session."""
+    if not PLANTED[name].begins_late:
+        yield 0
+    yield LATE + seed % 4
+
+
+def is_right(outcome: Outcome, name: str) -> bool:
+    return outcome.part in PLANTED[name].parts and outcome.presses <= WITHIN
+
+
+def rigs(first: int, count: int, family: str) -> list[int]:
+    """Return seeds whose sound session ends well, so that a fault is all that is wrong."""
+    found: list[int] = []
+    seed = first
+    while len(found) < count:
+        try:
+            outcome = session(seed, family)
+        except ModelError:
+            outcome = None
+        if outcome and (outcome.finished or outcome.part != "-"):
+            found.append(seed)
+        seed += 1
+    return found
+
+
+def main() -> None:
+    given = [int(text) for text in sys.argv[1:4]]
+    first, count, sound = (*given, *(FIRST, RIGS, SOUND)[len(given) :])
+    for family in FAMILIES:
+        seeds = rigs(first, max(count, sound // 2), family)
+        print(f"\n{family}, rigs {seeds[0]} to {seeds[count - 1]}\n")
+        confusion: dict[str, Counter[str]] = {}
+        right = cases = 0
+        largest_cN = 0.0
+        for name in PLANTED:
+            row = confusion.setdefault(name, Counter())
+            for seed in seeds[:count]:
+                for begins in begins_of(seed, name):
+                    outcome = session(seed, family, name, begins)
+                    good, cases = is_right(outcome, name), cases + 1
+                    right += good
+                    largest_cN = max(largest_cN, outcome.largest_cN)
+                    row[outcome.part if good or outcome.part not in PLANTED[name].parts else "late"] += 1
+                    if not good:
+                        print(f"  {name}, rig {seed} from press {begins}: {outcome}", flush=True)
+        print_confusion(confusion)
+        false = [seed for seed in seeds if session(seed, family).part != "-"]
+        print(f"named within {WITHIN} presses: {right} of {cases}, {100 * right / cases:.1f} %")
+        print(f"largest command before the check had passed: {largest_cN:.1f} of {CHECK_cN:.0f} cN")
+        print(f"sound sessions with a part named: {len(false)} of {len(seeds)} {false}", flush=True)
+
+
+def print_confusion(confusion: dict[str, Counter[str]]) -> None:
+    parts_named = sorted({part for row in confusion.values() for part in row})
+    print("\n| fault | " + " | ".join(parts_named) + " |")
+    print("|---|" + "---|" * len(parts_named))
+    for name, row in confusion.items():
+        print(f"| {name} | " + " | ".join(str(row[part] or "") for part in parts_named) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,146 @@
+"""Watches the presses of a session: which part is at fault, and from which press on the rig is another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fdvv.compensation.parts.balance import PressBalance
+from fdvv.compensation.parts.facts import PressFacts
+from fdvv.compensation.parts.rules import COIL, FORCE, RULES, SURE_RULES, part_at_fault
+from fdvv.errors import PartFault
+from fdvv.force_text import force_text
+from fdvv.model.press import Press
+
+WEAK_gain, BACKWARDS_gain = 0.7, -0.2
+"""Force per command below which a coil is not what its settings say; calibrations and droop take 0.25."""
+KNOWN_gain_error = 0.25
+"""The gain is judged once it is known so well."""
+YOUNG_presses = 2
+"""A gain that is wrong from the start shows in the first presses; later ones are held against those."""
+CHANGED_ratio, CHANGED_cN = 0.13, 5.0
+"""Of the coil's force, and at least: twice in a row a change, once nothing. Sound presses scatter by half."""
+REVERSED_ratio = 0.8
+MOVED_ratio = 0.5
+"""Of what is missing, that the lowest reading must share to be the zero's."""
+WARM_ratio = 0.33
+"""A coil that has lost no more may be warm; none gets so warm that it loses half."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A part at fault, and how many presses have shown it, the last one among them."""
+
+    fault: PartFault
+    presses: int = 1
+
+
+def weak_coil(balance: PressBalance) -> PartFault | None:
+    """Return whether the coil's force is not what is commanded, as far as presses show it."""
+    gain, error = balance.gain
+    if error > KNOWN_gain_error or gain + error > WEAK_gain:
+        return None
+    if gain < BACKWARDS_gain:
+        seen = "the coil pushes the other way: the finger feels less force, the more is commanded"
+        return PartFault(COIL, seen, "exchange its two wires")
+    seen = f"the coil pushes {gain:.2f} of what is commanded"
+    return PartFault(COIL, seen, "measure its resistance and the supply, then set duty_gain_q16")
+
+
+@dataclass(frozen=True, eq=False)
+class _Suspect:
+    """A press that differs, until the next one says whether that was chance; look : counts presses."""
+
+    facts: PressFacts
+    off_cN: float
+    used: bool
+    look: int
+
+
+class PartGuard:
+    """Held against each press of a session on one rig, in order.
+
+    A force that changed counts only once two presses in a row show it: single ones of a sound rig do now and
+    then. travel_mm : where the stop is asked to be. has_force : the settings have a force sensor.
+    """
+
+    def __init__(self, travel_mm: float, has_force: bool) -> None:
+        self.travel_mm, self.has_force = travel_mm, has_force
+        self.balance = PressBalance()
+        self._looks = 0
+        self._suspects: list[_Suspect] = []
+
+    def facts(self, press: Press) -> PressFacts | None:
+        return PressFacts.of_press(press, self.travel_mm, self.has_force)
+
+    def learn(self, press: Press) -> None:
+        """Count a press that is known to be sound."""
+        if facts := self.facts(press):
+            self.learn_facts(facts)
+
+    def learn_facts(self, facts: PressFacts) -> None:
+        self.balance = self.balance.with_press(facts)
+
+    def look(self, press: Press, used: bool, sure: bool = False) -> Found | None:
+        """Return the part that this press, or the one before and this, show to be at fault.
+
+        used : the press is one as it was asked for; only such ones teach what is sound. sure : something is
+        wrong, the board has said so: this press alone counts.
+        """
+        self._looks += 1
+        facts = self.facts(press)
+        if facts is None:
+            return None
+        if fault := part_at_fault(facts, SURE_RULES if sure else RULES):
+            return Found(fault)
+        if found := self._changed(facts, used, sure):
+            return found
+        if used and not self._suspects:
+            self.learn_facts(facts)
+            young = self.balance.presses <= YOUNG_presses
+            if young and (weak := weak_coil(self.balance)):
+                return Found(weak, self.balance.presses)
+        return None
+
+    def _changed(self, facts: PressFacts, used: bool, sure: bool) -> Found | None:
+        """Hold a press against those before it; keep it apart if it differs, until the next one agrees."""
+        missed = self.balance.missed_cN(facts) if self.balance.presses >= YOUNG_presses else None
+        if missed is None:
+            return None
+        off_cN, coil_cN = missed
+        ratio = off_cN / max(coil_cN, 1.0)
+        if abs(ratio) < CHANGED_ratio or abs(off_cN) < CHANGED_cN:
+            self._clear()
+            return None
+        before = [one for one in self._suspects if one.off_cN * off_cN > 0]
+        self._suspects = [*before, _Suspect(facts, off_cN, used, self._looks)]
+        if not before and not sure and ratio > -REVERSED_ratio:
+            return None
+        fault = _change(facts, off_cN, ratio)
+        return Found(fault, self._looks - self._suspects[0].look + 1) if fault else None
+
+    def _clear(self) -> None:
+        """A press fits again: what was kept apart was chance."""
+        for one in self._suspects:
+            if one.used:
+                self.learn_facts(one.facts)
+        self._suspects = []
+
+
+def _change(facts: PressFacts, off_cN: float, ratio: float) -> PartFault | None:
+    """Name what changed: the zero if the sensor's lowest reading moved along, else the coil if it lost."""
+    lowest, _ = facts.still_cN
+    if lowest / off_cN > MOVED_ratio:
+        by, least = force_text(off_cN, "+.0f"), force_text(lowest, "+.0f")
+        seen = f"the force sensor is off by {by}: it reads {least} at the least"
+        return PartFault(
+            FORCE, seen, "its zero wanders: let it warm up, look at its plug and amplifier, zero it"
+        )
+    if off_cN > 0:
+        return None
+    if ratio < -REVERSED_ratio:
+        seen = "the coil pushes the other way now"
+        return PartFault(COIL, seen, "look at its wires and at the driver")
+    lost = f"the coil lost {-ratio:.0%} of its force since the session began"
+    if ratio > -WARM_ratio:
+        return PartFault(COIL, lost, "let it cool down; press at longer intervals, look at supply and plug")
+    return PartFault(COIL, lost, "look at its plug, at the driver, the supply and for a shorted winding")

@@ -1,0 +1,54 @@
+"""Watches the parts of a rig in a session: a check before the first press, then a look at each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+
+from fdvv.compensation.parts.guard import Found, PartGuard
+from fdvv.device.contract import Device
+from fdvv.device.remote import Remote
+from fdvv.force_text import force_text
+from fdvv.rendering.part_check import CHECK_cN, check_parts, confirmed
+from fdvv.rendering.session import now
+from fdvv.rendering.session_log import CheckRecord, PressLog
+from fdvv.rendering.session_run import Guide, PressRequest
+
+
+@dataclass(frozen=True, eq=False)
+class PartWatch:
+    """What a session on a real rig, or on a board that behaves like one, is watched by."""
+
+    guard: PartGuard
+
+    def check(self, device: Device, guide: Guide, log: PressLog) -> None:
+        """Check the parts, unless the log has a check of today. Raises PartFaultError, DeviceError."""
+        assert isinstance(device, Remote)
+        if log.checked and _is_today(log.checked.made):
+            return
+        most = force_text(CHECK_cN, ".0f")
+        guide.notice(f"first the rig's parts are checked, at {most} at most: hands off, then one press")
+        checked = check_parts(
+            device, self.guard, lambda speed, travel: guide.ask(PressRequest(speed, travel, 1, 1))
+        )
+        log.add_check(CheckRecord(list(checked.unseen), now()))
+        if checked.unseen:
+            guide.notice(str(checked))
+
+    def confirmed(self, device: Device, found: Found) -> Found:
+        """Return what was found, after a look at the rig at rest where a press cannot tell parts apart."""
+        assert isinstance(device, Remote)
+        return replace(found, fault=confirmed(device, found.fault))
+
+
+def watch_of(device: Device, travel_mm: float) -> PartWatch | None:
+    """Return what watches a device; None for one without a board, such as the twin, which nobody wires."""
+    if not isinstance(device, Remote):
+        return None
+    return PartWatch(PartGuard(travel_mm, bool(device.settings().force_gain_q14)))
+
+
+def _is_today(made: str) -> bool:
+    """Return whether a time in UTC is of the same day here; a rig that stood overnight is checked again."""
+    then = datetime.fromisoformat(made)
+    return then.astimezone().date() == datetime.now(UTC).astimezone().date()
