@@ -21,7 +21,7 @@ from fdvv.model.model import FDVVModel
 from fdvv.program.button import compile_button
 from fdvv.program.surface import Limits
 from fdvv.protocol.tables import Fault, KeyRequest
-from fdvv.rendering.session_run import clear_latched
+from fdvv.rendering.press_made import clear_latched
 
 Found = TypeVar("Found")
 

@@ -16,7 +16,7 @@ from fdvv.program.compile import compile_program
 from fdvv.program.program import Program, Signal, State
 from fdvv.program.surface import Limits, Surface
 from fdvv.protocol.tables import Settings
-from fdvv.rendering.session_run import clear_latched
+from fdvv.rendering.press_made import clear_latched
 from fdvv.units import FloatArray
 from fdvv.vibration.exciter import (
     FULL_SCALE_V,

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
-from typing import Any, Generic, NoReturn, Protocol, TypeVar, cast
+from typing import Any, Generic, NoReturn, Protocol, TypeVar
 
 import numpy as np
 
 from fdvv.compensation.method import CurveOutcome, Trial, TrialSource
 from fdvv.compensation.parts.guard import Found, PartGuard
 from fdvv.compensation.presses import PressAcceptance
-from fdvv.device.contract import Device, FaultReport, PressError, ProgramDevice
+from fdvv.device.contract import Device
 from fdvv.errors import DeviceError, InputError, ModelError, PartFault, PartFaultError
 from fdvv.io.files import defer_interrupt
 from fdvv.model.press import Press
-from fdvv.protocol.tables import Fault
+from fdvv.rendering.press_made import PressMade, clear_latched, lasting_part, made_press
 from fdvv.rendering.session import now
 from fdvv.rendering.session_log import (
     REMEDY,
@@ -252,18 +252,19 @@ def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S
         prepare(device, trial, plan.travel_mm, before, plan.upload_vibrating)
         count = plan.source.count(state)
         plan.guide.ask(PressRequest(trial.velocity_mm_s, plan.travel_mm, count.made + 1, count.total))
-        made = _made(device, trial)
+        made = made_press(device, trial.velocity_mm_s)
+        if made.error and not made.faulted:
+            _stop_or_raise(device, plan, trial, made.press, made.error, log)
         # a person cannot repeat a press: Ctrl-C waits until it is on file
         with defer_interrupt():
             entry, state, found = _taken(device, plan, state, trial, made, log)
         _report(plan, state, entry, made.press)
         if found:
             _stop_at(log, found, entry)
-        if made.error and not made.faulted:
-            raise made.error
         before = trial
         if made.faulted:
-            _cleared_or_named(device, made.part, last, log)
+            if lasting := lasting_part(device, made.part, last):
+                _stop_at(log, Found(lasting), entry)
             before = None  # a cleared device needs its program again
         last = made.part
         in_a_row = 0 if entry.used else in_a_row + 1
@@ -273,36 +274,6 @@ def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S
     return state
 
 
-@dataclass(frozen=True, eq=False)
-class _Made:
-    """What came of asking for a press.
-
-    press : as far as it was recorded. error : why it failed. faulted : the board fell to zero force, part :
-    for that one.
-    """
-
-    press: Press | None
-    error: DeviceError | None = None
-    faulted: bool = False
-    part: PartFault | None = None
-
-    @property
-    def reason(self) -> str:
-        return str(self.part or self.error or "")
-
-
-def _made(device: Device, trial: Trial) -> _Made:
-    """Ask for a press. Raises DeviceError where nothing is known of it and the board has no fault."""
-    try:
-        return _Made(device.press(trial.velocity_mm_s))
-    except DeviceError as error:
-        if _faulted(device):
-            return _Made(None, error, True, cast(ProgramDevice, device).fault().part_fault)
-        if isinstance(error, PressError) and error.press:
-            return _Made(error.press, error)
-        raise
-
-
 def _check(device: Device, plan: SessionPlan[S], log: PressLog) -> None:
     assert plan.parts is not None
     try:
@@ -310,6 +281,23 @@ def _check(device: Device, plan: SessionPlan[S], log: PressLog) -> None:
     except PartFaultError as error:
         log.set_apart(_part_record(error.fault, len(log.entries) + 1))
         raise
+
+
+def _stop_or_raise(
+    device: Device,
+    plan: SessionPlan[S],
+    trial: Trial,
+    press: Press | None,
+    error: DeviceError,
+    log: PressLog,
+) -> NoReturn:
+    """End the session with the part that a failed press shows to be at fault, else with its own error."""
+    found = None if press is None else _looked(device, plan, press, used=False, sure=True)
+    if found is None:
+        raise error
+    entry = PressEntry(len(log.entries) + 1, trial.velocity_mm_s, str(found.fault), None, now())
+    log.add(PressRecord(entry, trial.surface, press, trial.tuning, trial.vibrating))
+    _stop_at(log, found, entry)
 
 
 def _stop_at(log: PressLog, found: Found, entry: PressEntry) -> NoReturn:
@@ -322,57 +310,16 @@ def _part_record(fault: PartFault, from_press: int) -> PartRecord:
     return PartRecord(from_press, fault.part, fault.seen, fault.remedy, now())
 
 
-def _cleared_or_named(device: Device, part: PartFault | None, last: PartFault | None, log: PressLog) -> None:
-    """Clear the board's fault. Raises PartFaultError if a part's fault lasts, or comes a second time."""
-    try:
-        _cleared(device)
-    except DeviceError as error:
-        if part is None:
-            raise
-        lasts: DeviceError | None = error
-    else:
-        lasts = None
-    if part and (lasts or (last and last.part == part.part)):
-        log.set_apart(_part_record(part, len(log.entries)))
-        raise PartFaultError(part) from lasts
-
-
-def clear_latched(device: Device, notice: Callable[[str], None]) -> None:
-    """Clear a latched fault, with a notice. Raises DeviceError while its cause lasts."""
-    if _faulted(device):
-        part = cast(ProgramDevice, device).fault().part_fault
-        try:
-            report = _cleared(device)
-        except DeviceError as error:
-            raise (PartFaultError(part) if part else error) from error
-        notice(f"warning: {device.info().name} had fallen to zero force, {report}; cleared")
-
-
-def _faulted(device: Device) -> bool:
-    """Return whether the device is connected and has a latched fault."""
-    try:
-        return hasattr(device, "fault") and device.fault().fault is not Fault.NONE
-    except DeviceError:
-        return False
-
-
-def _cleared(device: Device) -> FaultReport:
-    """Clear and return the fault of a device. Raises DeviceError while its cause lasts."""
-    board = cast(ProgramDevice, device)
-    report = board.fault()
-    board.clear_fault()
-    return report
-
-
 def _taken(
-    device: Device, plan: SessionPlan[S], state: S, trial: Trial, made: _Made, log: PressLog
+    device: Device, plan: SessionPlan[S], state: S, trial: Trial, made: PressMade, log: PressLog
 ) -> tuple[PressEntry, S, Found | None]:
     """Judge and log a press, and use it if it is usable; return the part at fault, if it shows one."""
-    press, reason = made.press, made.reason
-    failed = press is None or bool(reason)
-    nothing = PressAcceptance(reason, float("nan"))
-    verdict = nothing if press is None or failed else plan.judge(press, trial.pace_ratio)
-    found = _looked(device, plan, press, not verdict.reason, bool(reason))
+    press, found = made.press, None
+    if press is None:
+        verdict = PressAcceptance(made.reason, float("nan"))
+    else:
+        verdict = plan.judge(press, trial.pace_ratio)
+        found = _looked(device, plan, press, not verdict.reason)
     reason, after = str(found.fault) if found else verdict.reason, state
     if press is not None and not reason:
         try:
@@ -386,12 +333,12 @@ def _taken(
 
 
 def _looked(
-    device: Device, plan: SessionPlan[S], press: Press | None, used: bool, failed: bool
+    device: Device, plan: SessionPlan[S], press: Press, used: bool, sure: bool = False
 ) -> Found | None:
     """Look at the parts before a person is blamed for a press."""
-    if plan.parts is None or press is None:
+    if plan.parts is None:
         return None
-    found = plan.parts.guard.look(press, used, sure=failed)
+    found = plan.parts.guard.look(press, used, sure)
     return plan.parts.confirmed(device, found) if found else None
 
 

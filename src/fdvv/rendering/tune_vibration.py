@@ -20,10 +20,11 @@ from fdvv.model.vibration import Vibration
 from fdvv.rendering.compensate import check_speeds
 from fdvv.rendering.evaluation.vibration_presses import has_exciter
 from fdvv.rendering.exciter import prepare_exciter
+from fdvv.rendering.press_made import clear_latched
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
 from fdvv.rendering.session import Session, now, plain, table_digest
 from fdvv.rendering.session_log import REMEDY, AnswerLog, AnswerRecord
-from fdvv.rendering.session_run import Guide, PressRequest, clear_latched, how_to_resume, released
+from fdvv.rendering.session_run import Guide, PressRequest, how_to_resume, released
 from fdvv.rendering.tune_candidates import Candidates, candidate_image, candidates_for, tuned_model
 from fdvv.rendering.tuning import tune
 from fdvv.vibration.exciter import KnownExciter

@@ -17,7 +17,7 @@ from fdvv.errors import DeviceError, InputError
 from fdvv.live.device_key import DeviceLine, RealLine, SimulatedLine
 from fdvv.program.surface import Limits
 from fdvv.protocol.tables import BoardFlag, Fault, Mode, TickFlag
-from fdvv.rendering.session_run import clear_latched
+from fdvv.rendering.press_made import clear_latched
 from fdvv.rendering.tuning import tune
 from fdvv.study.plan.plan import Stimulus
 from fdvv.study.stimulus.evidence import RenderingEvidence, fault_name
