@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.compensation.parts.facts import FEWEST_ticks, PressFacts
-from fdvv.compensation.parts.guard import KNOWN_gain_error, PartGuard, weak_coil
+from fdvv.compensation.parts.guard import KNOWN_gain_error, PartGuard
 from fdvv.compensation.parts.rules import (
     COIL,
     FORCE,
@@ -130,10 +130,11 @@ def raise_part(device: Remote) -> None:
 
 
 def _at_fault(facts: PressFacts, guard: PartGuard) -> PartFault | None:
+    """Judge all but how strong the coil is: small forces teach that, the next press decides."""
     if fault := part_at_fault(facts):
         return fault
     guard.learn_facts(facts)
-    return weak_coil(guard.balance)
+    return None
 
 
 def _unseen(guard: PartGuard, ramp: _Ramp) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ import pytest
 
 from fdvv.compensation.parts.balance import PressBalance
 from fdvv.compensation.parts.guard import Found, PartGuard, weak_coil
-from tests.compensation.parts.scripted_press import TRAVEL_mm, WEIGHT_cN, Scripted
+from tests.compensation.parts.scripted_press import Scripted, TRAVEL_mm, WEIGHT_cN
 
 
 def taught(presses: int = 4) -> PartGuard:

@@ -9,7 +9,7 @@ import pytest
 
 from fdvv.compensation.parts.facts import PressFacts
 from fdvv.compensation.parts.rules import RULES, SURE_RULES, force_silent, part_at_fault, was_touched
-from tests.compensation.parts.scripted_press import TRAVEL_mm, Scripted
+from tests.compensation.parts.scripted_press import Scripted, TRAVEL_mm
 
 SOUND = Scripted().facts()
 STILL = np.full(SOUND.place_mm.size, 0.01)
@@ -59,7 +59,9 @@ def test_a_reading_that_a_stroke_does_not_change_is_dead() -> None:
     found = part_at_fault(replace(SOUND, force_cN=np.zeros(STILL.size)))
     assert found is not None
     assert found.part == "force sensor"
-    assert str(found).startswith("the force sensor reads 0.0 cN and nothing else while the motor pushes up to 65")
+    assert str(found).startswith(
+        "the force sensor reads 0.0 cN and nothing else while the motor pushes up to 65"
+    )
 
 
 def test_a_reading_that_stands_still_from_before_the_deepest_on_is_dead() -> None:

@@ -223,9 +223,10 @@ def _lies_on_stop(facts: PressFacts) -> bool:
 
 
 def _standing(facts: PressFacts) -> tuple[int, int] | None:
-    """Return the longest run of one reading of the force, if the cap meanwhile came to its deepest and away.
+    """Return the longest run of one reading of the force, if the cap meanwhile lay at its deepest and moved.
 
-    A finger that has left the cap gives equal readings too, but not where it turned.
+    A finger that has left the cap gives equal readings too, but not where it turned, and a cap that bounces
+    there alone does not stay.
     """
     assert facts.force_cN is not None
     ends = np.flatnonzero(np.diff(facts.force_cN)) + 1
@@ -233,7 +234,7 @@ def _standing(facts: PressFacts) -> tuple[int, int] | None:
     at = int(np.argmax(np.diff(bounds)))
     first, last = int(bounds[at]), int(bounds[at + 1])
     way = facts.place_mm[first:last]
-    turned = way.max() > facts.deepest_mm - TURN_mm
-    if (last - first) * facts.tick_s < HELD_s or np.ptp(way) < MOVED_mm or not turned:
+    lay_s = np.count_nonzero(way > facts.deepest_mm - TURN_mm) * facts.tick_s
+    if lay_s < HELD_s or np.ptp(way) < MOVED_mm:
         return None
     return first, last
