@@ -108,7 +108,8 @@ def test_a_rig_at_its_limit_for_much_of_the_strokes_teaches_nothing() -> None:
 
 def test_a_force_sensor_that_tells_one_value_throughout_is_noticed() -> None:
     numb = replace(plain(100.0), sensed_cN=np.full(plain(100.0).t_s.size, 3.0))
-    assert judge_press(numb, 4.0).reason == "the force sensor read 3 cN throughout; check it and its cable"
+    reason = judge_press(numb, 4.0).reason
+    assert reason == "the force sensor reads exactly 3.0 cN, pressed or not: look at its cable and amplifier"
     assert judge_press(numb, 4.0, true_position=True).reason == ""
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fdvv.compensation.parts.rules import silent_fault
 from fdvv.errors import ModelError
-from fdvv.force_text import force_text
 from fdvv.model.press import Press
 from fdvv.units import FloatArray
 
@@ -149,16 +149,14 @@ def judge_press(
         _lifted(x_mm[down], bounds.lifted_mm),
         _paused(t_s[down], x_mm[down], travel_mm, bounds.paused_ratio),
         _saturated(press, (t_s, down, up), bounds.saturated_ratio),
-        "" if true_position else _constant_force(press),
+        "" if true_position else _silent_sensor(press),
     )
     return PressAcceptance(next(filter(None, reasons), ""), speed)
 
 
-def _constant_force(press: Press) -> str:
-    # a broken wire reads one value throughout
-    if press.sensed_cN is None or np.ptp(press.sensed_cN) > 0:
-        return ""
-    return f"the force sensor read {force_text(press.sensed_cN[0])} throughout; check it and its cable"
+def _silent_sensor(press: Press) -> str:
+    found = None if press.sensed_cN is None else silent_fault(press.sensed_cN)
+    return "" if found is None else str(found)
 
 
 def _off_pace(achieved_mm_s: float, requested_mm_s: float, bound: float) -> str:

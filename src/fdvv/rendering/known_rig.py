@@ -7,7 +7,7 @@ from contextlib import suppress
 
 from fdvv.compensation.identification.drift import find_drift
 from fdvv.compensation.identification.rig_model import RigModel
-from fdvv.errors import FitError
+from fdvv.errors import FitError, PartFault
 from fdvv.model.press import Press
 from fdvv.rendering.session_run import PressDone, Progress
 
@@ -28,21 +28,22 @@ class RigCheck:
         self._found: list[str] = []
         self._over = False
 
-    def difference(self, press: Press) -> str:
-        """Return what differs as far as this press shows it, at most once; empty if nothing does.
+    def difference(self, press: Press) -> PartFault | None:
+        """Return what differs as far as this press shows it, at most once; None if nothing does.
 
         An uninformative press leaves the check to the next.
         """
         if self._over:
-            return ""
+            return None
         with suppress(FitError):
             found = find_drift(self._rig, press, self._travel_mm, loop_closed=self._loop_closed)
             self._found.append(found.summary)
             whole = len(self._found) == CHECKED_presses
             differs = found.unexplained or (whole and all(self._found))
             self._over = whole or differs
-            return found.summary if differs else ""
-        return ""
+            seen = f"the rig is not as its file says: {found.summary}"
+            return PartFault(found.part, seen, REMEDY) if differs else None
+        return None
 
 
 def with_rig_check(
@@ -62,7 +63,7 @@ def with_rig_check(
 
     def checked(done: PressDone) -> None:
         if done.press is not None and not done.skipped and (found := check.difference(done.press)):
-            notice(f"warning: the rig is not as its file says: {found}; {REMEDY}")
+            notice(f"warning: {found}")
         progress(done)
 
     return checked

@@ -32,7 +32,7 @@ class Scripted:
     def columns(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return place, command and force of every tick."""
         random = np.random.default_rng(self.seed)
-        t = np.arange(0, 2 * (REST_s + STROKE_s) + DWELL_s, TICK_s)
+        t = np.arange(round((2 * (REST_s + STROKE_s) + DWELL_s) / TICK_s), dtype=np.float64) * TICK_s
         place = self.depth_mm * (_jerk(t - REST_s) - _jerk(t - REST_s - STROKE_s - DWELL_s))
         command = 50 + self.wave_cN * np.sin(2 * np.pi * place / 1.6)
         speed = np.gradient(place, TICK_s)
@@ -52,7 +52,7 @@ class Scripted:
 
     def press(self) -> Press:
         place, command, force = self.columns()
-        t = TICK_s * np.arange(place.size)
+        t = np.arange(place.size, dtype=np.float64) * TICK_s
         every = np.ones(t.size, dtype=np.bool_)
         return Press(t, place, force, 50.0, place, force, command, ~every, every)
 

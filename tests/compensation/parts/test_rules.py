@@ -59,9 +59,7 @@ def test_a_reading_that_a_stroke_does_not_change_is_dead() -> None:
     found = part_at_fault(replace(SOUND, force_cN=np.zeros(STILL.size)))
     assert found is not None
     assert found.part == "force sensor"
-    assert str(found).startswith(
-        "the force sensor reads 0.0 cN and nothing else while the motor pushes up to 65"
-    )
+    assert found.seen == "the force sensor reads 0.0 cN and nothing else while the motor pushes up to 65 cN"
 
 
 def test_a_reading_that_stands_still_from_before_the_deepest_on_is_dead() -> None:

@@ -45,6 +45,18 @@ POSITION_LAG = "position lag"
 ESTIMATED = Sensor(filter_s=0.0, cone_g=0.0)
 """Of the force in the record of a press with the loop closed."""
 LEAST_lag_ms, LEAST_spring_cN_mm = 0.2, 2.0
+PARTS = {
+    "gain": "coil",
+    "drag": "mover",
+    "friction": "mover",
+    "weight": "mover",
+    "spring": "mover",
+    "mass": "mover",
+    "play": "force sensor",
+    POSITION_LAG: "position sensor",
+    "delay": "coil driver",
+}
+"""Part that a change is of."""
 ERRORS = {
     0: "gain",
     VISCOUS: "drag_N_s_m",
@@ -92,12 +104,14 @@ class RigDrift:
 
     Attributes
     ----------
-    summary : in one line; empty if nothing has changed.
+    summary : in one line; empty if nothing has changed. part : of which the likeliest change is; "rig" if
+        none is likely.
     unexplained : the known rig leaves far more of the press than of those it was identified from.
     """
 
     summary: str
     unexplained: bool
+    part: str = "rig"
 
 
 def find_drift(
@@ -133,7 +147,7 @@ def find_drift(
             f"{force_text(left, '.1f')} rms unexplained, {force_number(rig.residual_cN, '.1f')} before; "
             "identify the rig again"
         )
-    return RigDrift(", ".join(messages), outlier)
+    return RigDrift(", ".join(messages), outlier, PARTS[changes[0][0].name] if changes else "rig")
 
 
 def _largest_changes(

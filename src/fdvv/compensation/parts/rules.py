@@ -14,6 +14,7 @@ import numpy as np
 from fdvv.compensation.parts.facts import PressFacts
 from fdvv.errors import PartFault
 from fdvv.force_text import force_text
+from fdvv.units import FloatArray
 
 POSITION, FORCE, COIL = "position sensor", "force sensor", "coil"
 MOVER, LIMITER = "mover", "travel limiter"
@@ -105,12 +106,16 @@ def force_went_still(facts: PressFacts) -> PartFault | None:
 
 
 def force_silent(facts: PressFacts) -> PartFault | None:
-    """A reading without any noise, asked of a record in which a press was due and nothing was felt."""
-    if facts.force_cN is None or np.ptp(facts.force_cN) > EXACT_cN:
+    """Judge a record in which a press was due and nothing was felt."""
+    return None if facts.force_cN is None else silent_fault(facts.force_cN)
+
+
+def silent_fault(force_cN: FloatArray) -> PartFault | None:
+    """Return the force sensor's fault if its readings have no noise: a broken wire reads one value."""
+    if np.ptp(force_cN) > EXACT_cN:
         return None
-    reading = force_text(float(facts.force_cN[0]), ".1f")
-    seen = f"the force sensor reads exactly {reading}, pressed or not"
-    return PartFault(FORCE, seen, "look at its cable and amplifier; press down to the stop")
+    seen = f"the force sensor reads exactly {force_text(float(force_cN[0]), '.1f')}, pressed or not"
+    return PartFault(FORCE, seen, "look at its cable and amplifier")
 
 
 def force_reversed(facts: PressFacts) -> PartFault | None:
