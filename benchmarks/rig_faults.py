@@ -17,6 +17,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import count
 
 from tests.support.rig_faults import PLANTED, PlantedPerson, WatchedBoard
 
@@ -33,7 +34,7 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.rig import Rig
 
 FIRST, RIGS, SOUND = 500, 10, 100
-WITHIN = 2
+WITHIN, SHOWN = 2, 20
 FAMILIES = ("load cell", "force sensor in the cap")
 LATE = 4
 """Mid-session faults begin at this press or up to three later, the check's own counted."""
@@ -109,38 +110,40 @@ def is_right(outcome: Outcome, name: str) -> bool:
     return outcome.part in PLANTED[name].parts and outcome.presses <= WITHIN
 
 
-def sound_sessions(first: int, count: int, family: str) -> dict[int, Outcome]:
-    """Run so many sessions on sound rigs; by seed. Rigs that the firmware refuses are left out."""
-    found: dict[int, Outcome] = {}
-    seed = first
-    while len(found) < count:
+def sound_sessions(first: int, family: str) -> Iterator[tuple[int, Outcome]]:
+    """Run sessions on sound rigs, by seed. Rigs that the firmware refuses are left out."""
+    for seed in count(first):
         with suppress(ModelError):
-            found[seed] = session(seed, family)
-        seed += 1
-    return found
+            yield seed, session(seed, family)
 
 
-def judged(family: str, first: int, count: int, sound: int) -> None:
-    """Print the confusion table of a family, and its false alarms."""
-    sessions = sound_sessions(first, max(count, sound), family)
-    false = [seed for seed, outcome in sessions.items() if outcome.part != "-"]
-    print(f"\n{family}: a part named in {len(false)} of {len(sessions)} sound sessions {false}", flush=True)
-    seeds = [seed for seed, outcome in sessions.items() if outcome.finished][:count]
-    outcomes = [
-        (name, seed, begins, session(seed, family, name, begins))
-        for name in PLANTED
-        for seed in seeds
-        for begins in begins_of(seed, name)
-    ]
-    for name, seed, begins, outcome in outcomes:
-        if not is_right(outcome, name):
-            print(f"  {name}, rig {seed} from press {begins}: {outcome}")
+def judged(family: str, first: int, rigs: int, sound: int) -> None:
+    """Print the confusion table of a family, and its false alarms; failures as they come."""
+    running = sound_sessions(first, family)
+    sessions: dict[int, Outcome] = {}
+    while sum(outcome.finished for outcome in sessions.values()) < rigs:
+        sessions.update([next(running)])
+    seeds = [seed for seed, outcome in sessions.items() if outcome.finished]
+    print(f"\n{family}, rigs {seeds}", flush=True)
+    outcomes: list[tuple[str, int, int, Outcome]] = []
+    for name in PLANTED:
+        for seed in seeds:
+            for begins in begins_of(seed, name):
+                outcome = session(seed, family, name, begins)
+                outcomes.append((name, seed, begins, outcome))
+                if not is_right(outcome, name):
+                    print(f"  {name}, rig {seed} from press {begins}: {outcome}", flush=True)
     print_confusion(outcomes)
     right = sum(is_right(outcome, name) for name, _, _, outcome in outcomes)
     share = 100 * right / len(outcomes)
     print(f"named within {WITHIN} presses on {len(seeds)} rigs: {right} of {len(outcomes)}, {share:.1f} %")
     largest_cN = max(outcome.largest_cN for *_, outcome in outcomes)
     print(f"largest command before the check had passed: {largest_cN:.1f} of {CHECK_cN:.0f} cN", flush=True)
+    while len(sessions) < sound:
+        sessions.update([next(running)])
+        if len(sessions) % SHOWN == 0 or len(sessions) == sound:
+            false = [seed for seed, outcome in sessions.items() if outcome.part != "-"]
+            print(f"a part named in {len(false)} of {len(sessions)} sound sessions {false}", flush=True)
 
 
 def print_confusion(outcomes: list[tuple[str, int, int, Outcome]]) -> None:
@@ -158,11 +161,11 @@ def print_confusion(outcomes: list[tuple[str, int, int, Outcome]]) -> None:
 
 def main() -> None:
     given = [int(text) for text in sys.argv[1:4]]
-    first, count, sound = (*given, *(FIRST, RIGS, SOUND)[len(given) :])
+    first, rigs, sound = (*given, *(FIRST, RIGS, SOUND)[len(given) :])
     for family in FAMILIES:
         if sys.argv[4:] and not family.startswith(sys.argv[4]):
             continue
-        judged(family, first, count, sound)
+        judged(family, first, rigs, sound)
 
 
 if __name__ == "__main__":
