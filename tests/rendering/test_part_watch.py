@@ -161,6 +161,15 @@ def test_a_session_resumed_on_the_same_day_is_not_checked_again(tmp_path: Path) 
     assert not [line for line in bench.notices if "parts are checked" in line]
 
 
+def test_a_check_of_today_in_another_session_on_the_rig_counts(tmp_path: Path) -> None:
+    Bench(folder=tmp_path / "first").learn()
+    second = Bench(seed=5)
+    with LinkedDevice(second.board, second.person) as device:
+        beside = Session(tmp_path / "second", checked_in=(tmp_path / "first", tmp_path / "none"))
+        compensate(device, MODEL, SPEEDS, RigAware(0), session=beside)
+    assert second.person.presses == 4
+
+
 def test_the_twin_has_nothing_that_could_be_wired_wrongly() -> None:
     assert watch_of(TwinDevice(), 4.0) is None
 

@@ -133,7 +133,7 @@ def compensate(
             lambda state: velocity_progress(job, method.count(state), log, method.done(state).curves),
             progress or (lambda _done: None),
             guide or Guide(),
-            parts=watch_of(device, job.travel_mm),
+            parts=watch_of(device, job.travel_mm, session.checked_in),
         )
         if known and not log.used:  # a resumed session has been checked already
             about = known.rig, job.travel_mm, isinstance(method, ForceLoop)

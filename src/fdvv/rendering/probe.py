@@ -210,7 +210,7 @@ def probe(
         progress or (lambda _done: None),
         guide or Guide(),
         partial(upload_vibrating, model=model, playback=playback) if playback else None,
-        watch_of(device, model.travel_mm),
+        watch_of(device, model.travel_mm, session.checked_in),
     )
     with session.open_log(manifest, PressLog) as log:
         if not log.used:

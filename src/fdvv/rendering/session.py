@@ -154,6 +154,7 @@ class Session:
     seed : of a simulated device; None if unknown, or of a real one.
     rig, finger : TOML files of a simulated device; the default ones if None.
     acceptance : bounds within which a press is used. They may differ from run to run.
+    checked_in : folders of other sessions on this rig, whose check of its parts counts on the same day.
 
     Open a simulated device by ``open_device``: opened again with its first seed, it would
     repeat the random numbers of the presses on file.
@@ -164,6 +165,7 @@ class Session:
     rig: Path | None = None
     finger: Path | None = None
     acceptance: AcceptanceLimits = field(default_factory=AcceptanceLimits)
+    checked_in: tuple[Path, ...] = ()
 
     def open_device(self, name: str) -> Device:
         """Open a device by name; a simulated one that resumes a session draws fresh random numbers.

@@ -75,7 +75,8 @@ class Work:
     def session(self, order: RigOrder, folder: Path, seed: int) -> Iterator[tuple[Device, Session]]:
         """Open the device of an order for a session in a folder; it is closed at the end."""
         rig = self.folder.rig if self.folder.rig.exists() else None
-        session = Session(folder, seed, rig, None, AcceptanceLimits(pace_ratio=order.pace_ratio))
+        others = (self.folder.baseline, self.folder.session, self.folder.probe)
+        session = Session(folder, seed, rig, None, AcceptanceLimits(pace_ratio=order.pace_ratio), others)
         device: Any = session.open_device(order.device)
         try:
             yield device, session
