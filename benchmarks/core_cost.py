@@ -52,6 +52,8 @@ FLASH, RAM, RETURN = 0x2000, 0x20000000, 0x1000
 CACHED, NO_WAIT = 1, 2
 CORE_AT, IMAGE_AT, INPUTS_AT = RAM, RAM + 0x2000, RAM + 0x4000
 OUTPUTS_AT, SETTINGS_AT, LIMITS_AT = RAM + 0x4100, RAM + 0x4200, RAM + 0x4300
+TICKS_us = (100, 1000)
+"""What a timer of 16 bits at 48 MHz counts, and the processor has time for."""
 
 
 def board_flags() -> str:
@@ -165,7 +167,7 @@ def random_cycles(
     found = []
     for seed in range(cases):
         rng = np.random.default_rng(seed)
-        settings = random_settings(rng)
+        settings = random_settings(rng, TICKS_us)
         settings = looking_ahead(dearest(settings) if seed % 2 else settings, ahead)
         image, inputs = random_image(rng, settings), random_inputs(rng, ticks, settings)
         found += measure(Machine(*built, settings, image, waits), Core(settings, image), inputs)
@@ -175,7 +177,7 @@ def random_cycles(
 def full_cycles(built: tuple[bytes, dict[str, int]], transitions: int, vibrations: int) -> list[int]:
     """Return the cycles of ticks of a program with so many transitions and vibrations."""
     rng = np.random.default_rng(1)
-    settings = looking_ahead(dearest(random_settings(rng)), True)
+    settings = looking_ahead(dearest(random_settings(rng, TICKS_us)), True)
     image, inputs = full_image(transitions, vibrations, settings), random_inputs(rng, 1000, settings)
     return measure(Machine(*built, settings, image), Core(settings, image), inputs)
 

@@ -23,10 +23,14 @@ RIGS = ROOT / "src" / "fdvv" / "twin" / "rigs"
 
 @dataclass(frozen=True)
 class Board:
-    """A board, the rig it is shipped for, and the shortest tick that its processor has time for."""
+    """A board, the rig it is shipped for, and the shortest tick that its processor has time for.
+
+    The longest is what its timer of 16 bits counts at 48 MHz.
+    """
 
     rig: Path
     tick_low_us: int
+    tick_high_us: int = 1000
 
 
 SHIPPED = {
@@ -37,7 +41,9 @@ SHIPPED = {
 
 def header(name: str, rig: Path) -> str:
     """Return limits.h of a board built for a rig; ModelError as for limits_of."""
-    limits = replace(limits_of(load_rig(rig)), tick_low_us=SHIPPED[name].tick_low_us)
+    board = SHIPPED[name]
+    limits = limits_of(load_rig(rig))
+    limits = replace(limits, tick_low_us=board.tick_low_us, tick_high_us=board.tick_high_us)
     lines = [
         f"/* Made by tools/make_board_limits.py from {rig.name}; do not edit.",
         " * No setting is looser than these. */",

@@ -12,7 +12,7 @@ import hashlib
 import json
 import sys
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -76,9 +76,13 @@ class Field:
         return "; ".join(words)
 
 
-def fields_of(name: str, rows: list[list[Any]]) -> list[Field]:
-    """Read a structure; fail where a field does not lie at a multiple of its size."""
-    fields = [Field.of(row) for row in rows]
+def fields_of(name: str, rows: list[list[Any]], widened: dict[str, list[float]]) -> list[Field]:
+    """Read a structure with its widened ranges; fail where a field does not lie at a multiple of its size."""
+    unwidened = [Field.of(row) for row in rows]
+    fields = [_widen(name, field, *widened.get(field.name, (field.low, field.high))) for field in unwidened]
+    unknown = set(widened) - {field.name for field in fields}
+    if unknown:
+        raise SystemExit(f"{name} has no field {', '.join(sorted(unknown))} to widen")
     offset = 0
     for field in fields:
         if offset % SIZES[field.kind]:
@@ -89,13 +93,20 @@ def fields_of(name: str, rows: list[list[Any]]) -> list[Field]:
     return fields
 
 
+def _widen(name: str, field: Field, low: float, high: float) -> Field:
+    if low > field.low or high < field.high:
+        raise SystemExit(f"{name}.{field.name} is narrowed, which older boards and files would not know")
+    return replace(field, low=low, high=high)
+
+
 def structures(source: dict[str, Any]) -> dict[str, list[Field]]:
     """Return every structure by name: the named ones, and NAME_request and NAME_reply of the messages."""
-    by_name = {name: fields_of(name, body["fields"]) for name, body in source["structs"].items()}
+    wide = source.get("widened", {})
+    by_name = {n: fields_of(n, body["fields"], wide.get(n, {})) for n, body in source["structs"].items()}
     for name, body in source["messages"].items():
         for part, key in (("request", "fields"), ("reply", "reply")):
             if isinstance(body.get(key), list) and body[key]:
-                by_name[f"{name}_{part}"] = fields_of(name, body[key])
+                by_name[f"{name}_{part}"] = fields_of(name, body[key], {})
     return by_name
 
 
@@ -135,10 +146,13 @@ def about(source: dict[str, Any], name: str) -> str:
 
 
 def meaning_hash(source: dict[str, Any]) -> int:
-    """Return 32 bits of the SHA-256 of names, types, order, ranges and numbers; prose does not count."""
+    """Return 32 bits of the SHA-256 of names, types, order, ranges and numbers.
+
+    Neither prose nor widened ranges count: they do not change what bytes mean.
+    """
     if "hash" in source:
         return int(source["hash"])
-    plain = {key: value for key, value in source.items() if key not in ("version", "defaults")}
+    plain = {key: value for key, value in source.items() if key not in ("version", "defaults", "widened")}
 
     def strip(node: Any) -> Any:
         if isinstance(node, dict):

@@ -19,11 +19,13 @@ def size_of(kind: str) -> int:
     return SIZES[base] * int(count.rstrip("]") or 1)
 
 
-def fields(rows: list[list[Any]]) -> list[str]:
-    """Write a structure as a table."""
+def fields(rows: list[list[Any]], widened: dict[str, list[float]] | None = None) -> list[str]:
+    """Write a structure as a table; widened: ranges of later firmware."""
     lines, place = ["| at | field | type | unit | range | meaning |", "|---|---|---|---|---|---|"], 0
     for name, kind, unit, low, high, about, *_default in rows:
         span = "0" if low == high == 0 else f"{low} to {high}"
+        if name in (widened or {}):
+            span = "{} to {}; older firmware {}".format(*(widened or {})[name], span)
         lines.append(f"| {place} | `{name}` | {kind} | {unit} | {span} | {about} |")
         place += size_of(kind)
     return [*lines, "", f"{place} bytes.", ""]
@@ -80,7 +82,13 @@ def tables(place: Path) -> str:
         lines += message(name, body)
     lines += ["## Structures", ""] if source["structs"] else []
     for name, body in source["structs"].items():
-        lines += [f"### {name}", "", sentence(body["about"]), "", *fields(body["fields"])]
+        lines += [
+            f"### {name}",
+            "",
+            sentence(body["about"]),
+            "",
+            *fields(body["fields"], source.get("widened", {}).get(name)),
+        ]
     lines += ["## Numbers", ""]
     for kind in ("enums", "flags"):
         for name, body in source[kind].items():

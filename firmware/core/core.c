@@ -97,7 +97,7 @@ static uint8_t compute_duty(const fdvv_core *core, uint16_t supply_mV, int16_t *
     const fdvv_settings *settings = &core->settings;
     int32_t limit = settings->duty_limit_q15, duty;
     uint32_t supply = (uint32_t)fdvv_clamp(supply_mV, settings->supply_low_mV, settings->supply_high_mV);
-    /* from 64 / 65536 * 3000 / 40000 to 18 Q15 per cN64: shifts from 29 to 11 */
+    /* from 64 / 65536 * 3000 / 57000 to 384 Q15 per cN64: shifts from 30 to 7 */
     duty = fdvv_scale_short(core->command_cN64,
                             fdvv_ratio_product(core->drive, fdvv_ratio_inverse(fdvv_ratio_of(supply))));
     *duty_q15 = (int16_t)fdvv_clamp(duty, -limit, limit);

@@ -3,9 +3,8 @@
 int32_t fdvv_displacement_um16(const fdvv_settings *settings, uint32_t sum)
 {
     int32_t gain = settings->position_gain_q14;
-    uint32_t size = gain < 0 ? 0u - (uint32_t)gain : (uint32_t)gain;
-    int32_t magnitude = (int32_t)((((size * sum) >> 13) + 1u) >> 1);
-    return settings->position_offset_um16 + (gain < 0 ? -magnitude : magnitude);
+    int32_t way_um16 = (int32_t)fdvv_way_um16(gain < 0 ? 0u - (uint32_t)gain : (uint32_t)gain, sum);
+    return settings->position_offset_um16 + (gain < 0 ? -way_um16 : way_um16);
 }
 
 void fdvv_position_init(fdvv_position *position)
@@ -27,7 +26,7 @@ static int32_t divide(int32_t sum, int32_t count)
     return remainder < 0 ? quotient - 1 : remainder >= count ? quotient + 1 : quotient;
 }
 
-/* The sum cannot overflow: 32 * 662,144 is far below 2^31. */
+/* The sum cannot overflow: 32 * 924,287 is far below 2^31. */
 static int32_t sliding_mean(fdvv_position *position, uint8_t ticks, int32_t um16)
 {
     if (position->count == ticks)

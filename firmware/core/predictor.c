@@ -9,12 +9,14 @@ static inline int32_t scaled(int32_t value, fdvv_ratio gain)
     return (top + (int32_t)((uint32_t)1 << gain.shift >> 1)) >> gain.shift;
 }
 
-/* ratio * 2^-right, in the form that scaled() needs. A gain below 2^-30 becomes 0. */
+/* ratio * 2^-right, in the form that scaled() needs. A gain below 2^-30 becomes 0, one of 1 or more 65535 / 65536. */
 static FDVV_COLD fdvv_ratio gain_of(fdvv_ratio ratio, int32_t right)
 {
     ratio.shift = (int16_t)(ratio.shift + right - 16);
     if (ratio.shift > 29)
         ratio.mantissa = ratio.shift = 0;
+    if (ratio.shift < 0)
+        ratio.mantissa = UINT16_MAX, ratio.shift = 0;
     return ratio;
 }
 
@@ -50,7 +52,7 @@ static void compute_gains(fdvv_predictor *predictor, uint32_t q_q16)
 
 FDVV_COLD void fdvv_predictor_init(fdvv_predictor *predictor, const fdvv_settings *settings)
 {
-    uint32_t tick_us = settings->tick_us;
+    uint32_t tick_us = settings->tick_us, limit_us = tick_us < 1000 ? tick_us : 1000;
     fdvv_ratio thousand = ratio_of(1000);
     fdvv_ratio lead = divide(ratio_of(settings->lead_us), tick_us);
     fdvv_ratio brake = divide(ratio_of(settings->brake_lead_us), tick_us);
@@ -60,8 +62,8 @@ FDVV_COLD void fdvv_predictor_init(fdvv_predictor *predictor, const fdvv_setting
     predictor->initialized = 0;
     predictor->friction_cN64 = (int16_t)settings->friction_cN64;
     predictor->position_q10 = predictor->velocity_q10 = predictor->acceleration_q15 = 0;
-    predictor->velocity_limit_q10 = (int32_t)(tick_us << 16);
-    predictor->acceleration_limit_q15 = (int32_t)(tick_us * tick_us << 10);
+    predictor->velocity_limit_q10 = (int32_t)(limit_us << 16);
+    predictor->acceleration_limit_q15 = (int32_t)(limit_us * limit_us << 10);
     compute_gains(predictor, settings->predictor_q16);
     predictor->lead_per_velocity = gain_of(lead, 10);
     predictor->lead_per_acceleration = gain_of(multiply(lead, lead), 16);
@@ -70,7 +72,7 @@ FDVV_COLD void fdvv_predictor_init(fdvv_predictor *predictor, const fdvv_setting
     predictor->friction = gain_of(divide(multiply(friction, thousand), tick_us), 10);
 }
 
-/* Eight steps change the position by at most 2^29.3, from at most 2^29.4. */
+/* Eight steps change the position by at most 2^29.3, from at most 2^29.9. */
 static void predict(fdvv_predictor *predictor)
 {
     int32_t limit_q10 = predictor->velocity_limit_q10, acceleration_q15 = predictor->acceleration_q15;
@@ -93,11 +95,12 @@ static void correct(fdvv_predictor *predictor, int32_t residual_q16)
 
 __attribute__((noinline)) void fdvv_predictor_tick(fdvv_predictor *predictor, int32_t um16, uint16_t elapsed_ticks)
 {
-    int32_t measured_q10 = um16 * 1024, residual_q10 = INT32_MAX;
+    int32_t measured_q10 = um16 * 1024, residual_q10 = INT32_MAX; /* below 2^29.9 */
     if (predictor->initialized && elapsed_ticks <= FDVV_PREDICTED_TICKS) {
         for (; elapsed_ticks; elapsed_ticks--)
             predict(predictor);
-        residual_q10 = measured_q10 - predictor->position_q10;
+        /* below 2^31.3: what wraps around remains far beyond MAX_RESIDUAL_Q10 */
+        residual_q10 = (int32_t)((uint32_t)measured_q10 - (uint32_t)predictor->position_q10);
     }
     if (residual_q10 >= -MAX_RESIDUAL_Q10 && residual_q10 <= MAX_RESIDUAL_Q10) {
         correct(predictor, residual_q10 * 64);

@@ -16,8 +16,8 @@ typedef struct {
     int32_t position_q10;
     int32_t velocity_q10;           /* um16 per tick */
     int32_t acceleration_q15;       /* um16 per tick^2 */
-    int32_t velocity_limit_q10;     /* 4 m/s */
-    int32_t acceleration_limit_q15; /* 1953 m/s^2 */
+    int32_t velocity_limit_q10;     /* 4 m/s; 4 mm per tick if ticks are longer than 1 ms */
+    int32_t acceleration_limit_q15; /* 1953 m/s^2; the same way */
     /* ratios whose shift is reduced by 16, to 0 to 29 */
     fdvv_ratio position_gain, velocity_gain, acceleration_gain; /* of the residual: measured minus predicted, q16 */
     fdvv_ratio lead_per_velocity, lead_per_acceleration;        /* to um16 */
@@ -27,7 +27,7 @@ typedef struct {
 /* Reset the filter. */
 void fdvv_predictor_init(fdvv_predictor *predictor, const fdvv_settings *settings);
 
-/* Process the displacement of this tick, within 662,144 um16, elapsed_ticks (at least 1) after the last one. This and
+/* Process the displacement of this tick, within 924,287 um16, elapsed_ticks (at least 1) after the last one. This and
  * the functions below may be called only if enabled. */
 void fdvv_predictor_tick(fdvv_predictor *predictor, int32_t um16, uint16_t elapsed_ticks);
 

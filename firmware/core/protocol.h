@@ -163,13 +163,13 @@ enum {
 
 /* a rig's calibration and limits; written while idle or in fault, refused as a whole if one field is out of range */
 typedef struct {
-    int32_t position_gain_q14; /* um16 per count of the sum; -65535 to 65535; scale of the summed readings; its size times the largest sum stays below 2^32 */
+    int32_t position_gain_q14; /* um16 per count of the sum; -262143 to 262143; scale of the summed readings; its size times the largest sum stays below 2^33 - 2^14: 32.7 mm */
     int32_t position_offset_um16; /* um16; -400000 to 400000; displacement at a sum of 0 */
-    int32_t duty_gain_q16; /* Q15 duty per cN64; 64 to 65535; force to duty at mid stroke, supply nominal */
+    int32_t duty_gain_q16; /* Q15 duty per cN64; 64 to 1048576; force to duty at mid stroke, supply nominal */
     int32_t force_gain_q14; /* cN64 per count; -262144 to 262144; scale of the keycap force sensor; 0: there is none */
     int32_t force_offset_counts; /* counts; 0 to 65535; its reading at no force */
     uint32_t heat_time_ms; /* ms; 100 to 600000; thermal time constant of the coil */
-    uint16_t tick_us; /* us; 100 to 1000; period of the loop; the paper's is 1000 */
+    uint16_t tick_us; /* us; 50 to 4000; period of the loop; the paper's is 1000 */
     uint16_t window_start_um16; /* um16; 800 to 48000; where the search for velocity begins; the paper's 0.5 mm */
     uint16_t window_end_um16; /* um16; 1600 to 64000; where velocity is decided; the paper's 1.0 mm; beyond the start */
     uint16_t reversal_um16; /* um16; 80 to 16000; way back that turns a press into a release */
@@ -179,9 +179,9 @@ typedef struct {
     int16_t force_limit_cN64; /* cN64; 64 to 32000; largest command, both signs; the paper's coil gives 440 cN */
     int16_t slew_cN64_tick; /* cN64 per tick; 16 to 32000; largest change of the command from tick to tick */
     uint16_t duty_limit_q15; /* Q15; 1024 to 32767; largest duty, both signs */
-    uint16_t nominal_supply_mV; /* mV; 3000 to 36000; supply at which duty_gain_q16 holds */
-    uint16_t supply_low_mV; /* mV; 2000 to 36000; below it the device falls to zero force */
-    uint16_t supply_high_mV; /* mV; 3000 to 40000; above it the device falls to zero force */
+    uint16_t nominal_supply_mV; /* mV; 3000 to 48000; supply at which duty_gain_q16 holds */
+    uint16_t supply_low_mV; /* mV; 2000 to 48000; below it the device falls to zero force */
+    uint16_t supply_high_mV; /* mV; 3000 to 57000; above it the device falls to zero force */
     uint16_t reading_low; /* counts; 0 to 65535; a single reading below it is a broken wire */
     uint16_t reading_high; /* counts; 0 to 65535; a single reading above it is a short */
     uint16_t jump_um16; /* um16 per tick; 160 to 65535; no finger moves the cap further in a tick */
@@ -209,13 +209,13 @@ typedef struct {
 } fdvv_settings;
 typedef char fdvv_settings_has_96_bytes[sizeof(fdvv_settings) == 96 ? 1 : -1];
 #define FDVV_SETTINGS_RANGES(X) \
-    X(position_gain_q14, -65535, 65535) \
+    X(position_gain_q14, -262143, 262143) \
     X(position_offset_um16, -400000, 400000) \
-    X(duty_gain_q16, 64, 65535) \
+    X(duty_gain_q16, 64, 1048576) \
     X(force_gain_q14, -262144, 262144) \
     X(force_offset_counts, 0, 65535) \
     X(heat_time_ms, 100, 600000) \
-    X(tick_us, 100, 1000) \
+    X(tick_us, 50, 4000) \
     X(window_start_um16, 800, 48000) \
     X(window_end_um16, 1600, 64000) \
     X(reversal_um16, 80, 16000) \
@@ -225,9 +225,9 @@ typedef char fdvv_settings_has_96_bytes[sizeof(fdvv_settings) == 96 ? 1 : -1];
     X(force_limit_cN64, 64, 32000) \
     X(slew_cN64_tick, 16, 32000) \
     X(duty_limit_q15, 1024, 32767) \
-    X(nominal_supply_mV, 3000, 36000) \
-    X(supply_low_mV, 2000, 36000) \
-    X(supply_high_mV, 3000, 40000) \
+    X(nominal_supply_mV, 3000, 48000) \
+    X(supply_low_mV, 2000, 48000) \
+    X(supply_high_mV, 3000, 57000) \
     X(jump_um16, 160, 65535) \
     X(stuck_ticks, 20, 65535) \
     X(late_ticks, 1, 1000) \
@@ -301,16 +301,16 @@ enum {
 /* what a board was built for: settings may be tighter, and only another build is looser */
 typedef struct {
     uint32_t heat_time_ms; /* ms; 100 to 600000; thermal time constant of the coil */
-    int32_t duty_gain_q16; /* Q15 duty per cN64; 64 to 65535; largest at the nominal supply, with room for calibration: what a cN of the force limit may be */
-    uint16_t nominal_supply_mV; /* mV; 3000 to 36000; supply at which duty_gain_q16 and full_duty_rise_K hold */
-    uint16_t supply_high_mV; /* mV; 3000 to 40000; largest */
+    int32_t duty_gain_q16; /* Q15 duty per cN64; 64 to 1048576; largest at the nominal supply, with room for calibration: what a cN of the force limit may be */
+    uint16_t nominal_supply_mV; /* mV; 3000 to 48000; supply at which duty_gain_q16 and full_duty_rise_K hold */
+    uint16_t supply_high_mV; /* mV; 3000 to 57000; largest */
     int16_t force_limit_cN64; /* cN64; 64 to 32000; largest */
     uint16_t duty_limit_q15; /* Q15; 1024 to 32767; largest */
     uint16_t full_duty_rise_K; /* K; 1 to 16383; least: rise of the coil at full duty and nominal supply held for ever, copper at the heat limit */
     uint16_t heat_limit_K; /* K; 2 to 600; largest */
     uint16_t host_timeout_ms; /* ms; 20 to 5000; longest */
-    uint16_t tick_low_us; /* us; 100 to 1000; shortest tick */
-    uint16_t tick_high_us; /* us; 100 to 1000; longest tick */
+    uint16_t tick_low_us; /* us; 50 to 4000; shortest tick */
+    uint16_t tick_high_us; /* us; 50 to 4000; longest tick */
     uint16_t thermistor_lag_ms; /* ms; 0 to 60000; longest lag of the thermistor behind the coil, at least 500; 0: none is fitted */
     uint16_t thermistor_share_q8; /* 64 to 256; least rise of the thermistor per rise of the coil, once the lag has passed */
     uint16_t spare; /*  */
@@ -318,16 +318,16 @@ typedef struct {
 typedef char fdvv_board_limits_has_32_bytes[sizeof(fdvv_board_limits) == 32 ? 1 : -1];
 #define FDVV_BOARD_LIMITS_RANGES(X) \
     X(heat_time_ms, 100, 600000) \
-    X(duty_gain_q16, 64, 65535) \
-    X(nominal_supply_mV, 3000, 36000) \
-    X(supply_high_mV, 3000, 40000) \
+    X(duty_gain_q16, 64, 1048576) \
+    X(nominal_supply_mV, 3000, 48000) \
+    X(supply_high_mV, 3000, 57000) \
     X(force_limit_cN64, 64, 32000) \
     X(duty_limit_q15, 1024, 32767) \
     X(full_duty_rise_K, 1, 16383) \
     X(heat_limit_K, 2, 600) \
     X(host_timeout_ms, 20, 5000) \
-    X(tick_low_us, 100, 1000) \
-    X(tick_high_us, 100, 1000) \
+    X(tick_low_us, 50, 4000) \
+    X(tick_high_us, 50, 4000) \
     X(thermistor_lag_ms, 0, 60000) \
     X(thermistor_share_q8, 64, 256) \
     X(spare, 0, 0) \
@@ -337,7 +337,7 @@ typedef char fdvv_board_limits_has_32_bytes[sizeof(fdvv_board_limits) == 32 ? 1 
 typedef struct {
     uint32_t magic; /* 0 to 4294967295; FDVP */
     uint32_t crc32; /* 0 to 4294967295; of all that follows, zlib's polynomial */
-    int32_t travel_um16; /* um16; 1600 to 102400; where the bottom stop is set */
+    int32_t travel_um16; /* um16; 1600 to 320000; where the bottom stop is set */
     uint16_t size_bytes; /* bytes; 32 to 7168; whole image, a multiple of 4 */
     uint8_t version; /* 1 to 1; layout */
     uint8_t start_state; /* 0 to 15; entered on activation and on arming */
@@ -351,7 +351,7 @@ typedef struct {
 } fdvv_image_header;
 typedef char fdvv_image_header_has_32_bytes[sizeof(fdvv_image_header) == 32 ? 1 : -1];
 #define FDVV_IMAGE_HEADER_RANGES(X) \
-    X(travel_um16, 1600, 102400) \
+    X(travel_um16, 1600, 320000) \
     X(size_bytes, 32, 7168) \
     X(version, 1, 1) \
     X(start_state, 0, 15) \
@@ -411,7 +411,7 @@ typedef char fdvv_transition_has_12_bytes[sizeof(fdvv_transition) == 12 ? 1 : -1
 
 /* force on displacement and velocity, bilinear, held beyond its edges */
 typedef struct {
-    int32_t start_um16; /* um16; -32000 to 102400; displacement of the first column */
+    int32_t start_um16; /* um16; -32000 to 320000; displacement of the first column */
     uint16_t step_um16; /* um16; 16 to 16000; between two columns */
     uint8_t columns; /* 2 to 255; displacements */
     uint8_t rows; /* 1 to 16; velocities, rising */
@@ -420,7 +420,7 @@ typedef struct {
 } fdvv_surface;
 typedef char fdvv_surface_has_12_bytes[sizeof(fdvv_surface) == 12 ? 1 : -1];
 #define FDVV_SURFACE_RANGES(X) \
-    X(start_um16, -32000, 102400) \
+    X(start_um16, -32000, 320000) \
     X(step_um16, 16, 16000) \
     X(columns, 2, 255) \
     X(rows, 1, 16) \
@@ -430,7 +430,7 @@ typedef char fdvv_surface_has_12_bytes[sizeof(fdvv_surface) == 12 ? 1 : -1];
 
 /* a waveform started at a displacement, led by the board's latency at the current velocity; once per stroke */
 typedef struct {
-    int32_t at_um16; /* um16; -32000 to 102400; displacement of the onset */
+    int32_t at_um16; /* um16; -32000 to 320000; displacement of the onset */
     uint16_t slowest_mm_s16; /* mm_s16; 0 to 65535; fires only at or above this velocity */
     uint16_t fastest_mm_s16; /* mm_s16; 0 to 65535; and below this one */
     uint16_t states; /* 0 to 65535; a bit for every state in which it fires */
@@ -439,7 +439,7 @@ typedef struct {
 } fdvv_vibration;
 typedef char fdvv_vibration_has_12_bytes[sizeof(fdvv_vibration) == 12 ? 1 : -1];
 #define FDVV_VIBRATION_RANGES(X) \
-    X(at_um16, -32000, 102400) \
+    X(at_um16, -32000, 320000) \
     X(stroke, 0, 2) \
     X(slot, 0, 15) \
 

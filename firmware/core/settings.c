@@ -5,12 +5,14 @@
 #include "ranges.h"
 #include "supervisor.h"
 
-/* The displacement is computed with 32 bits: the largest sum times the gain must not overflow. */
-static uint8_t gain_overflows(const fdvv_settings *settings)
+/* A gain of 0 would hide every displacement, and beyond the longest way they would wrap around. */
+static uint8_t is_gain_invalid(const fdvv_settings *settings)
 {
     uint32_t largest_sum = (uint32_t)settings->reads * settings->reading_high;
     int32_t gain = settings->position_gain_q14;
-    return gain == 0 || (uint32_t)(gain < 0 ? -gain : gain) > UINT32_MAX / largest_sum;
+    /* below 2^33, half a um16 less */
+    uint32_t steepest = (UINT32_MAX - (1u << 13)) / largest_sum * 2u;
+    return gain == 0 || (uint32_t)(gain < 0 ? -gain : gain) > steepest;
 }
 
 static uint8_t find_inconsistent(const fdvv_settings *settings)
@@ -23,7 +25,7 @@ static uint8_t find_inconsistent(const fdvv_settings *settings)
         return 1 + FDVV_SETTINGS_FIELD_reading_high;
     if (settings->heat_limit_K <= settings->derate_start_K)
         return 1 + FDVV_SETTINGS_FIELD_heat_limit_K;
-    if (gain_overflows(settings))
+    if (is_gain_invalid(settings))
         return 1 + FDVV_SETTINGS_FIELD_position_gain_q14;
     return 0;
 }
@@ -67,10 +69,12 @@ static FDVV_COLD const tightened *find_loosened(const fdvv_settings *settings, c
     return 0;
 }
 
-/* The largest duty per force, so that a force gets no more voltage than the board allows for it. */
+/* The largest duty per force, so that a force gets no more voltage than the board allows for it: gain * board / own,
+ * rounded down. The gain is split into q * own + r: q * board stays below 2^25, and r * board below 2^32. */
 static FDVV_COLD int32_t largest_gain_q16(const fdvv_settings *settings, const fdvv_board_limits *limits)
 {
-    return (int32_t)((uint32_t)limits->duty_gain_q16 * limits->nominal_supply_mV / settings->nominal_supply_mV);
+    uint32_t gain = (uint32_t)limits->duty_gain_q16, board = limits->nominal_supply_mV, own = settings->nominal_supply_mV;
+    return (int32_t)(gain / own * board + gain % own * board / own);
 }
 
 FDVV_COLD void fdvv_settings_tighten(fdvv_settings *settings, const fdvv_board_limits *limits)

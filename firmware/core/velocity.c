@@ -176,7 +176,7 @@ static void update_sums(fdvv_velocity *velocity, uint8_t samples, int32_t um16)
 }
 
 /* Least-squares slope of n equidistant samples: 6 / (n (n^2 - 1)) * sum of (2 i - (n - 1)) x_i per tick. The sum is
- * below 512 * 662,144 < 2^29, and below 2^24 if the shift of the scale is below 17 (n < 6). */
+ * below 512 * 924,287 < 2^29, and below 2^24 if the shift of the scale is below 17 (n < 6). */
 static void estimate(fdvv_velocity *velocity)
 {
     uint32_t n = velocity->contiguous;

@@ -43,11 +43,11 @@ def wild_settings(rng: np.random.Generator) -> Settings:
             for name, (low, high) in Settings.LIMITS.items()
         }
         fields["reading_low"] = int(rng.integers(0, 3))
-        fields["supply_low_mV"], fields["supply_high_mV"] = 2000, 40000
+        fields["supply_low_mV"], fields["supply_high_mV"] = 2000, 57000
         fields["jump_um16"], fields["late_ticks"] = 65535, 1000
         fields["window_end_um16"] = max(fields["window_end_um16"], fields["window_start_um16"] + 1)
         fields["heat_limit_K"] = max(fields["heat_limit_K"], fields["derate_start_K"] + 1)
-        largest = (2**32 - 1) // (max(1, abs(fields["position_gain_q14"])) * fields["reads"])
+        largest = (2**33 - 2**16) // (max(1, abs(fields["position_gain_q14"])) * fields["reads"])
         fields["reading_high"] = max(4, min(65535, largest))
         settings = Settings(**fields)
         try:
@@ -71,7 +71,7 @@ def wild_inputs(rng: np.random.Generator, settings: Settings, ticks: int) -> Rec
         [0, 1, 2, 64, 65, 1000, 1001, 65535], ticks, p=[0.02, 0.84, 0.1, 0.01, 0.01, 0.01, 0.005, 0.005]
     )
     inputs["supply_mV"] = rng.choice(
-        [2000, 12000, 40000, 0, 65535], ticks, p=[0.33, 0.33, 0.33, 0.005, 0.005]
+        [2000, 12000, 57000, 0, 65535], ticks, p=[0.33, 0.33, 0.33, 0.005, 0.005]
     )
     at_rest = settings.force_offset_counts
     inputs["force_counts"] = rng.choice([0, 65535, at_rest], ticks, p=[0.005, 0.005, 0.99])

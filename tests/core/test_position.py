@@ -15,18 +15,18 @@ from tests.support.inputs import inputs_at, inputs_like
 
 
 @given(
-    gain=st.integers(-65535, 65535).filter(bool), offset=st.integers(-400000, 400000), part=st.floats(0, 1)
+    gain=st.integers(-262143, 262143).filter(bool), offset=st.integers(-400000, 400000), part=st.floats(0, 1)
 )
 def test_the_displacement_is_the_scaled_sum_to_the_nearest(gain: int, offset: int, part: float) -> None:
     settings = replace(Settings(), position_gain_q14=gain, position_offset_um16=offset, reads=64)
-    total = int(part * min((2**32 - 1) // abs(gain), 64 * 65535))
+    total = int(part * min((2**33 - 2**14) // abs(gain), 64 * 65535))
     found = int(Core(unchecked(settings)).run(inputs_like(settings, [total]))["displacement_um16"][0])
     assert abs(found - offset - gain * total / 2**14) <= 0.5
 
 
 def unchecked(settings: Settings) -> Settings:
-    """Bound single readings so that the largest sum keeps the product below 2^32."""
-    largest = (2**32 - 1) // (abs(settings.position_gain_q14) * settings.reads)
+    """Bound single readings so that the largest sum keeps the product below 2^33."""
+    largest = (2**33 - 2**16) // ((abs(settings.position_gain_q14) + 1) * settings.reads)
     return replace(settings, reading_low=0, reading_high=max(1, min(65535, largest)))
 
 

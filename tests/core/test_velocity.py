@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -52,8 +53,14 @@ def least_squares_mm_s(inputs: RecordArray, settings: Settings) -> float:
     return float(np.polyfit(t_s[used] - t_s[used[0]], x_mm[used], 1)[0])
 
 
-@pytest.mark.parametrize("tick_us", [125, 250, 1000])
-@pytest.mark.parametrize("speed_mm_s", [0.5, 2, 10, 30, 50, 100, 150, 200, 300, 450, 600])
+@pytest.mark.parametrize(
+    ("speed_mm_s", "tick_us"),
+    [
+        *itertools.product([0.5, 2, 10, 30, 50, 100, 150, 200, 300, 450, 600], [125, 250, 1000]),
+        *((speed, 50) for speed in (2, 10, 50, 200, 600)),
+        *((speed, 4000) for speed in (0.5, 10, 50, 100)),
+    ],
+)
 def test_the_decided_velocity_is_that_of_the_press(speed_mm_s: float, tick_us: int) -> None:
     settings = replace(PLAIN, tick_us=tick_us)
     for phase in np.linspace(0, 0.99, 3 if speed_mm_s < 10 else 12):
@@ -124,7 +131,7 @@ def test_a_rest_of_minutes_in_the_window_neither_overflows_nor_lasts() -> None:
 
 
 @pytest.mark.parametrize("samples", [3, 4, 5, 8, 17, 32])
-@pytest.mark.parametrize("tick_us", [100, 250, 1000])
+@pytest.mark.parametrize("tick_us", [50, 100, 250, 1000, 4000])
 def test_the_continuous_velocity_is_the_least_squares_of_the_newest(samples: int, tick_us: int) -> None:
     settings = replace(PLAIN, continuous_samples=samples, tick_us=tick_us)
     rng = np.random.default_rng(samples)

@@ -200,7 +200,7 @@ def test_the_host_program_also_speaks_on_standard_input_and_output() -> None:
         os.close(file)
     frames: list[Frame] = []
     decoder = FrameDecoder()
-    os.write(asked[1], limits_like(Settings()).pack())
+    os.write(asked[1], limits_like(Settings()).pack() + struct.pack("<I", 99_200))
     for tick in range(10):
         inputs = Inputs(250 * tick, 51200 + tick, 2048, 2049)
         os.write(asked[1], inputs.pack() + struct.pack("<II", len(hello), 1))

@@ -124,7 +124,7 @@ def test_equal_tables_are_stored_once() -> None:
     ("program", "place"),
     [
         (one_state(flat("strong", 500.0)), "'strong'"),
-        (one_state(flat("far", 50.0), Surface("wide", (0.0, 7.0), ((1.0, 1.0),))), "'wide'"),
+        (one_state(flat("far", 50.0), Surface("wide", (0.0, 20.1), ((1.0, 1.0),))), "'wide'"),
         (one_state(Surface("close", (0.0, 1.0), ((1.0, 1.0), (2.0, 2.0)), (10.0, 10.01))), "'close'"),
         (one_state(*(flat(f"f{i}", float(i)) for i in range(17))), "states"),
         (one_state(Surface("step", (0.0, 1.001, 1.003, 4.0), ((0.0, 0.0, 90.0, 90.0),))), "'step'"),

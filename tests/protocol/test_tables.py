@@ -56,6 +56,19 @@ def test_prose_does_not_change_the_hash_and_a_range_does() -> None:
     assert make.meaning_hash(prose) != tables.HASH
 
 
+def test_a_range_may_be_widened_for_later_firmware_and_the_hash_stays() -> None:
+    make = generator()
+    more = tomllib.loads((ROOT / "protocol" / "fdvv.toml").read_text())
+    more["widened"]["settings"]["reads"] = [1, 100]
+    assert make.meaning_hash(more) == tables.HASH
+    assert '"reads": (1, 100),' in make.tables(more)
+    assert "X(reads, 1, 100)" in make.header(more)
+    for wrong, says in (({"reads": [2, 100]}, "narrowed"), ({"read": [1, 100]}, "no field read to widen")):
+        more["widened"]["settings"] = wrong
+        with pytest.raises(SystemExit, match=says):
+            make.header(more)
+
+
 def test_a_constant_of_the_loop_is_one_row_and_leaves_the_boards_without_a_loop_as_they_are() -> None:
     make = generator()
     more = tomllib.loads((ROOT / "protocol" / "force_loop.toml").read_text())
@@ -100,7 +113,7 @@ def test_default_settings_pack_and_unpack_to_themselves() -> None:
 
 
 def test_a_number_out_of_range_is_refused_by_name() -> None:
-    with pytest.raises(ModelError, match="tick_us must be 100 to 1000, got 7"):
+    with pytest.raises(ModelError, match="tick_us must be 50 to 4000, got 7"):
         tables.Settings(tick_us=7)
 
 

@@ -20,6 +20,7 @@ BEYOND = (
 """A field, and the one that it must be beyond."""
 AT_MOST = ("force_limit_cN64", "duty_limit_q15", "supply_high_mV", "heat_limit_K", "host_timeout_ms")
 Values = dict[str, int]
+STEEPEST = Settings.LIMITS["position_gain_q14"][1]
 
 
 def wrong(values: Values, limits: BoardLimits) -> str:
@@ -30,13 +31,17 @@ def wrong(values: Values, limits: BoardLimits) -> str:
     for name, start in BEYOND:
         if values[name] <= values[start]:
             return name
-    gain = abs(values["position_gain_q14"])
-    if not 0 < gain <= (2**32 - 1) // (values["reads"] * values["reading_high"]):
+    if not 0 < abs(values["position_gain_q14"]) <= steepest_gain(values["reads"] * values["reading_high"]):
         return "position_gain_q14"
     if values["duty_gain_q16"] > largest_gain(values, limits):
         return "duty_gain_q16"
     looser = [name for name in ("tick_us", *AT_MOST, "full_duty_rise_K") if loosened(name, values, limits)]
     return min(looser, key=order, default="")
+
+
+def steepest_gain(largest_sum: int) -> int:
+    """Return the largest position gain, either sign: a way of 19 bits, by a division of 32."""
+    return 2 * ((2**32 - 1 - 2**13) // largest_sum)
 
 
 def order(name: str) -> int:
@@ -101,17 +106,20 @@ def _by_chance(usual: Values, rng: random.Random) -> Iterator[tuple[Values, Boar
         limits = dataclasses.replace(
             limits_like(Settings()),
             **{n: rng.choice([low, high]) for n, (low, high) in BoardLimits.LIMITS.items() if n in AT_MOST},
-            nominal_supply_mV=rng.choice([3000, 11_999, 12_000, 36_000]),
+            nominal_supply_mV=rng.choice([3000, 11_999, 12_000, 48_000]),
+            duty_gain_q16=rng.choice([25_992, 70_001, 2**20]),
             full_duty_rise_K=rng.choice([1, 596, 16_383]),
         )
         reads, high = rng.randint(1, 64), rng.randint(100, 65_535)
-        edge = min(65_535, (2**32 - 1) // (reads * high))
-        gain = rng.choice([0, 1, -1, edge, -edge, min(65_535, edge + 1), max(-65_535, -edge - 1)])
-        values = usual | {"reads": reads, "reading_high": high, "position_gain_q14": gain}
-        values["nominal_supply_mV"] = rng.choice([3000, 12_001, 36_000])
-        values["supply_low_mV"] = rng.choice([2000, 9000, 36_000])
-        most = min(65_535, largest_gain(values, limits))
-        values["duty_gain_q16"] = max(64, min(65_535, most + rng.choice([-1, 0, 1])))
+        values = usual | {"reads": reads, "reading_high": high}
+        values["position_offset_um16"] = rng.choice([-400_000, -101_600, 0, 400_000])
+        edge = min(STEEPEST, steepest_gain(reads * high))
+        gain = rng.choice([0, 1, -1, edge, -edge, min(STEEPEST, edge + 1), max(-STEEPEST, -edge - 1)])
+        values["position_gain_q14"] = gain
+        values["nominal_supply_mV"] = rng.choice([3000, 12_001, 48_000])
+        values["supply_low_mV"] = rng.choice([2000, 9000, 48_000])
+        most = min(2**20, largest_gain(values, limits))
+        values["duty_gain_q16"] = max(64, min(2**20, most + rng.choice([-1, 0, 1])))
         yield values, limits
 
 

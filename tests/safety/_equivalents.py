@@ -61,10 +61,10 @@ THERMISTOR = {
     "me->is_known = 1;: 1 -> 2 at 20": "only compared with zero",
 }
 SETTINGS = {
-    "return gain == 0 || (uint32_t)(gain < 0 ? -gain : gain) > UINT32_MAX / largest_sum;: < -> <= at 41": (
+    "return gain == 0 || (uint32_t)(gain < 0 ? -gain : gain) > steepest;: < -> <= at 41": (
         "a gain of zero was refused before"
     ),
-    "return gain == 0 || (uint32_t)(gain < 0 ? -gain : gain) > UINT32_MAX / largest_sum;: 0 -> 1 at 43": (
+    "return gain == 0 || (uint32_t)(gain < 0 ? -gain : gain) > steepest;: 0 -> 1 at 43": (
         "a gain of zero was refused before"
     ),
     "return 1 + FDVV_SETTINGS_FIELD_position_gain_q14;: + -> - at 18": "the number of this field is zero",

@@ -163,7 +163,7 @@ def _transition(rng: random.Random, counts: dict[str, int]) -> Transition:
 
 def _vibration(rng: random.Random, counts: dict[str, int]) -> Vibration:
     return Vibration(
-        at_um16=rng.randint(-32000, 102400),
+        at_um16=rng.randint(-32000, 320000),
         slowest_mm_s16=rng.randint(0, 65535),
         fastest_mm_s16=rng.randint(0, 65535),
         states=rng.randrange(1 << counts["states"]),

@@ -60,7 +60,9 @@ def c_settings_check(packed: bytes, limits: BoardLimits | None = None) -> int:
     """Ask the C code: 0, or 1 + the number of the first wrong field. None: limits of the default rig."""
     board = (limits or limits_like(Settings())).pack()
     pair = (ctypes.create_string_buffer(data, len(data)) for data in (packed, board))
-    return int(safety_library().fdvv_settings_check(*pair))
+    check = safety_library().fdvv_settings_check
+    check.restype = ctypes.c_uint8
+    return int(check(*pair))
 
 
 class Script:

@@ -12,6 +12,7 @@ import pytest
 from fdvv.firmware.limits import limits_like, refused_because
 from fdvv.protocol.tables import BoardLimits, Settings
 from tests.safety._build import safety_library
+from tests.safety._checks import STEEPEST, steepest_gain
 from tests.safety._script import c_settings_check
 
 NAMES = [field.name for field in dataclasses.fields(Settings)]
@@ -74,16 +75,35 @@ def test_an_end_must_lie_beyond_its_start(name: str, lower: str, value: int) -> 
     assert refused(**{lower: value, name: value + 1}) == ""
 
 
-def test_the_largest_displacement_must_fit_32_bits() -> None:
+def test_the_largest_displacement_must_fit_19_bits() -> None:
     rng = random.Random(1)
     for _ in range(300):
         reads, high = rng.randint(1, 64), rng.randint(100, 65535)
-        edge = min(65535, (2**32 - 1) // (reads * high))
-        for gain in (edge, -edge, edge + 1, -edge - 1, rng.randint(-65535, 65535)):
-            if abs(gain) <= 65535:
-                fits = 0 < abs(gain) * reads * high < 2**32
+        edge = steepest_gain(reads * high)
+        assert edge * reads * high < (2**19 - 0.5) * 2**14
+        assert (edge + 2) * reads * high > 2**33 - 2**14 - 2
+        for gain in (edge, -edge, edge + 1, -edge - 1, rng.randint(-STEEPEST, STEEPEST)):
+            if 0 < abs(gain) <= STEEPEST:
                 found = refused(reads=reads, reading_high=high, position_gain_q14=gain)
-                assert found == ("" if fits else "position_gain_q14")
+                assert found == ("" if abs(gain) <= edge else "position_gain_q14")
+
+
+def test_settings_that_older_firmware_took_are_taken() -> None:
+    """Its displacements were a product of 32 bits, shifted by 14, from an offset of 400000 at most."""
+    rng = random.Random(5)
+    for _ in range(300):
+        reads, high = rng.randint(1, 64), rng.randint(100, 65535)
+        edge = min(65535, (2**32 - 1) // (reads * high))
+        for gain in (edge, -edge):
+            for offset in (-400_000, 400_000):
+                rest = {"reads": reads, "reading_high": high, "position_offset_um16": offset}
+                assert refused(**rest, position_gain_q14=gain) == ""
+
+
+def test_a_sensor_of_25_mm_is_taken() -> None:
+    gain = round(25 * 16_000 * 2**14 / (25 * 4095))
+    assert gain * 25 * 4095 > 2**32
+    assert refused(position_gain_q14=gain, position_offset_um16=-40_000) == ""
 
 
 def test_a_gain_of_zero_would_hide_every_displacement() -> None:
@@ -122,11 +142,19 @@ def test_any_other_setting_may_have_any_value_of_its_range() -> None:
 
 def test_a_higher_nominal_supply_leaves_less_duty_per_force() -> None:
     at_most = DEFAULT.duty_gain_q16 * DEFAULT.nominal_supply_mV
-    for nominal_mV in (3000, 11_999, 12_001, 24_000, 36_000):
-        gain = min(65_535, at_most // nominal_mV)
+    for nominal_mV in (3000, 11_999, 12_001, 24_000, 48_000):
+        gain = at_most // nominal_mV
         assert refused(DEFAULT, nominal_supply_mV=nominal_mV, duty_gain_q16=gain) == ""
-        if gain < 65_535:
-            assert refused(DEFAULT, nominal_supply_mV=nominal_mV, duty_gain_q16=gain + 1) == "duty_gain_q16"
+        assert refused(DEFAULT, nominal_supply_mV=nominal_mV, duty_gain_q16=gain + 1) == "duty_gain_q16"
+
+
+def test_the_largest_duty_per_force_at_the_highest_supply_does_not_overflow() -> None:
+    board = dataclasses.replace(LOOSEST, nominal_supply_mV=48_000)
+    assert refused(board, duty_gain_q16=2**20, nominal_supply_mV=48_000) == ""
+    weak = dataclasses.replace(LOOSEST, nominal_supply_mV=3000)
+    most = 2**20 * 3000 // 48_000
+    assert refused(weak, duty_gain_q16=most, nominal_supply_mV=48_000) == ""
+    assert refused(weak, duty_gain_q16=most + 1, nominal_supply_mV=48_000) == "duty_gain_q16"
 
 
 def tightened(settings: Settings, limits: BoardLimits) -> Settings:
@@ -145,9 +173,9 @@ def test_a_board_starts_with_settings_no_looser_than_itself() -> None:
                 for name, (low, high) in BoardLimits.LIMITS.items()
                 if name not in ("tick_low_us", "supply_high_mV", "duty_gain_q16")
             },
-            tick_low_us=100,
-            supply_high_mV=rng.randint(3000, 40_000),
-            duty_gain_q16=rng.randint(5000, 65_535),
+            tick_low_us=50,
+            supply_high_mV=rng.randint(3000, 57_000),
+            duty_gain_q16=rng.randint(5000, 2**20),
         )
         started = tightened(Settings(), limits)
         assert c_settings_check(started.pack(), limits) == 0

@@ -27,7 +27,7 @@ def sometimes(rng: Generator, chance: float, value: int, otherwise: int) -> int:
     return value if rng.random() < chance else otherwise
 
 
-def random_settings(rng: Generator) -> Settings:
+def random_settings(rng: Generator, ticks_us: tuple[int, int] = (50, 4000)) -> Settings:
     """Draw a rig of 1 to 64 readings of 12 bits over some 2 to 12 mm, either way round, never hot."""
     reads, span_um16 = integer(rng, 1, 64), integer(rng, 40000, 195000)
     gain_q14 = span_um16 * 2**14 // (4095 * reads)
@@ -38,10 +38,10 @@ def random_settings(rng: Generator) -> Settings:
     plain = Settings(
         position_gain_q14=-gain_q14 if turned else gain_q14,
         position_offset_um16=top if turned else -integer(rng, 2000, 20000),
-        duty_gain_q16=integer(rng, 64, 65535),
+        duty_gain_q16=integer(rng, 64, 2**20),
         force_gain_q14=sometimes(rng, 0.7, integer(rng, -65536, 65536), 0),
         force_offset_counts=integer(rng, 0, 4095),
-        tick_us=sometimes(rng, 0.5, 250, integer(rng, 100, 1000)),
+        tick_us=sometimes(rng, 0.5, 250, integer(rng, *ticks_us)),
         window_start_um16=start,
         window_end_um16=start + integer(rng, 800, 40000),
         reversal_um16=integer(rng, 80, 6000),
@@ -76,7 +76,9 @@ def random_tuning(rng: Generator, settings: Settings) -> Settings:
     bandwidth_Hz = float(np.exp(rng.uniform(np.log(20.0), np.log(2000.0))))
     return replace(
         settings,
-        predictor_q16=round((1 - np.exp(-2e-6 * np.pi * bandwidth_Hz * settings.tick_us)) * 2**16),
+        predictor_q16=min(
+            65535, round((1 - np.exp(-2e-6 * np.pi * bandwidth_Hz * settings.tick_us)) * 2**16)
+        ),
         lead_us=sometimes(rng, 0.5, integer(rng, 0, 5000), integer(rng, 0, 20000)),
         brake_lead_us=integer(rng, 0, 20000),
         drag_q13=sometimes(rng, 0.3, 0, integer(rng, 0, 49152)),

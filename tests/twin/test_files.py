@@ -179,7 +179,7 @@ def test_a_file_that_is_absent_or_no_text_is_refused(tmp_path: Path) -> None:
 
 
 def test_values_out_of_bounds_are_refused_in_code_too() -> None:
-    with pytest.raises(ModelError, match=r"Controller: tick_s must be 0\.0001 to 0\.001 s, got 1"):
+    with pytest.raises(ModelError, match=r"Controller: tick_s must be 5e-05 to 0\.004 s, got 1"):
         Controller(tick_s=1.0)
 
 

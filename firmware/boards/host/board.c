@@ -4,8 +4,6 @@
 
 #include "link_state.h"
 
-#define TRAVEL_LIMIT_UM16 99200 /* 6.2 mm, the paper's coil */
-
 struct fdvv_host {
     fdvv_board_limits limits;
     fdvv_core core;
@@ -51,7 +49,7 @@ static uint8_t selftest(fdvv_selftest_reply *reply)
     return 1;
 }
 
-static void describe(fdvv_board *board, fdvv_read_counters_reply *counters)
+static void describe(fdvv_board *board, fdvv_read_counters_reply *counters, uint32_t travel_um16)
 {
     static const char name[] = "host";
     uint8_t i;
@@ -59,7 +57,7 @@ static void describe(fdvv_board *board, fdvv_read_counters_reply *counters)
 #ifdef FDVV_FORCE_LOOP
     board->flags |= FDVV_BOARD_FLAG_FORCE_LOOP;
 #endif
-    board->travel_limit_um16_256 = (TRAVEL_LIMIT_UM16 + 255) / 256;
+    board->travel_limit_um16_256 = (uint16_t)((travel_um16 + 255) / 256);
     for (i = 0; i < sizeof name; i++)
         board->name[i] = name[i];
     board->selftest = selftest;
@@ -68,14 +66,14 @@ static void describe(fdvv_board *board, fdvv_read_counters_reply *counters)
     board->counters = counters;
 }
 
-fdvv_host *fdvv_host_new(const fdvv_board_limits *limits)
+fdvv_host *fdvv_host_new(const fdvv_board_limits *limits, uint32_t travel_um16)
 {
     fdvv_settings settings = FDVV_SETTINGS_DEFAULTS;
     fdvv_host *host = (fdvv_host *)calloc(1, sizeof *host);
     if (!host)
         return 0;
     current = host;
-    describe(&host->board, &host->counters);
+    describe(&host->board, &host->counters, travel_um16);
     host->slot = FDVV_NONE;
     host->limits = *limits;
     fdvv_settings_tighten(&settings, &host->limits);

@@ -10,7 +10,7 @@ typedef struct fdvv_host fdvv_host;
 
 /* The limits are copied, and settings start as tight. Boards must not run concurrently: the firmware's callbacks refer to
  * the last one that was called. */
-fdvv_host *fdvv_host_new(const fdvv_board_limits *limits);
+fdvv_host *fdvv_host_new(const fdvv_board_limits *limits, uint32_t travel_um16);
 void fdvv_host_free(fdvv_host *host);
 
 /* Run one tick and the link work after it. */

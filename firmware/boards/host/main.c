@@ -149,6 +149,7 @@ int main(int count, char **arguments)
 {
     static connection link;
     fdvv_board_limits limits;
+    uint32_t travel_um16;
     tick_request request;
     tick_reply reply = {{0, 0, 0, 0, 0, 0, {0, 0, 0, 0, 0, 0}}, 0};
     fdvv_host *host;
@@ -165,7 +166,8 @@ int main(int count, char **arguments)
         perror(arguments[3]);
         return 1;
     }
-    if (!read_whole(in, &limits, sizeof limits) || !(host = fdvv_host_new(&limits)))
+    if (!read_whole(in, &limits, sizeof limits) || !read_whole(in, &travel_um16, sizeof travel_um16) ||
+        !(host = fdvv_host_new(&limits, travel_um16)))
         return 1;
     while (read_whole(in, &request, sizeof request)) {
         tick(host, &link, &request, &reply);

@@ -14,11 +14,14 @@ from fdvv import _native
 from fdvv.device.plant import OUTPUTS_BYTES, Inputs, Outputs
 from fdvv.errors import BuildError, DeviceError
 from fdvv.firmware.limits import limits_like
+from fdvv.protocol.messages import UM16_PER_mm
 from fdvv.protocol.tables import BoardLimits, ImageHeader, Settings
 
 TAIL = struct.Struct("<II")
 SENT = struct.Struct("<I")
 ANSWER_BYTES = OUTPUTS_BYTES + SENT.size
+PAPER_TRAVEL_mm = 6.2
+"""The deepest stop of a board that is built for no other rig."""
 PATIENCE_s = 10.0
 """Real time for one tick of the host program; it takes some 20 us."""
 
@@ -41,10 +44,11 @@ class LibraryBoard:
         self._waiting = b""
         self._plugged = True
 
-    def build(self, limits: BoardLimits) -> None:
+    def build(self, limits: BoardLimits, travel_mm: float = PAPER_TRAVEL_mm) -> None:
         """Start as a build for another rig."""
+        travel_um16 = ctypes.c_uint32(round(UM16_PER_mm * travel_mm))
         self._library.fdvv_host_free(self._handle)
-        self._handle = ctypes.c_void_p(self._library.fdvv_host_new(limits.pack()))
+        self._handle = ctypes.c_void_p(self._library.fdvv_host_new(limits.pack(), travel_um16))
 
     def tick(self, inputs: Inputs) -> Outputs:
         if not self._handle.value:
@@ -124,14 +128,14 @@ class HostBoard:
         self._written = self._heard = 0
         self._waiting = self._arrived = self._answer = b""
         self._plugged, self._open, self._owed = True, True, False
-        self._limits = limits_like(Settings())
+        self._limits, self._travel_mm = limits_like(Settings()), PAPER_TRAVEL_mm
         self._built = False
 
-    def build(self, limits: BoardLimits) -> None:
+    def build(self, limits: BoardLimits, travel_mm: float = PAPER_TRAVEL_mm) -> None:
         """Be a build for this rig; DeviceError after the first tick."""
         if self._built:
             raise DeviceError("host: it runs already; open another board for this rig")
-        self._limits = limits
+        self._limits, self._travel_mm = limits, travel_mm
 
     @property
     def pid(self) -> int:
@@ -140,7 +144,8 @@ class HostBoard:
     def tick(self, inputs: Inputs) -> Outputs:
         try:
             if not self._built:
-                os.write(self._requests, self._limits.pack())
+                travel_um16 = round(UM16_PER_mm * self._travel_mm)
+                os.write(self._requests, self._limits.pack() + SENT.pack(travel_um16))
                 self._built = True
             if self._owed:
                 self._take()  # Ctrl-C came between question and answer

@@ -8,9 +8,10 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from fdvv.device.boards import PAPER_TRAVEL_mm
 from fdvv.device.client import Client
 from fdvv.device.contract import DeviceInfo
-from fdvv.device.plant import CellPerson, Inputs, Outputs, Person, Plant, RigPerson, Truth
+from fdvv.device.plant import CellPerson, DeepPerson, Inputs, Outputs, Person, Plant, RigPerson, Truth
 from fdvv.device.remote import Remote
 from fdvv.device.telemetry import IntArray, TickColumns
 from fdvv.errors import DeviceError
@@ -54,8 +55,8 @@ class Board(Protocol):
 class BuiltBoard(Board, Protocol):
     """A board that is a build for the rig it is connected to, as one without hardware can be."""
 
-    def build(self, limits: BoardLimits) -> None:
-        """Be built for this rig, before the first tick."""
+    def build(self, limits: BoardLimits, travel_mm: float) -> None:
+        """Be built for this rig, whose deepest stop is at travel_mm, before the first tick."""
 
 
 class LockstepPort:
@@ -132,13 +133,20 @@ class LockstepPort:
             raise DeviceError(f"{self.name}: the line is closed; open the device again")
 
 
+def build_for(board: BuiltBoard, person: Person, settings: Settings) -> None:
+    """Make a board a build for the rig that a person presses, under these settings of it."""
+    limits = person.limits if isinstance(person, RigPerson) else limits_like(settings)
+    deepest_mm = person.travel_limit_mm if isinstance(person, DeepPerson) else PAPER_TRAVEL_mm
+    board.build(limits, deepest_mm)
+
+
 class LinkedDevice(Remote):
     """A board in lockstep; the person presses when asked, on plants whose settings the board gets."""
 
     def __init__(self, board: Board, person: Person) -> None:
         self._person = person
         if isinstance(board, BuiltBoard):
-            board.build(person.limits if isinstance(person, RigPerson) else limits_like(person.settings))
+            build_for(board, person, person.settings)
         self.port = LockstepPort(board, person.rest(person.settings), person.settings.tick_us)
         try:
             super().__init__(Client(self.port))

@@ -101,6 +101,15 @@ class RigPerson(Person, Protocol):
 
 
 @runtime_checkable
+class DeepPerson(Person, Protocol):
+    """A person at a rig that says how deep its stop can be set."""
+
+    @property
+    def travel_limit_mm(self) -> float:
+        """The deepest stop."""
+
+
+@runtime_checkable
 class CellPerson(Person, Protocol):
     """A person at a rig that may have a load cell.
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.client import Client
 from fdvv.device.linked import LockstepPort
-from fdvv.device.plant import Person
+from fdvv.device.plant import DeepPerson, Person
 from fdvv.errors import BuildError
 from fdvv.firmware.limits import limits_like
 from fdvv.protocol.tables import Fault
@@ -56,7 +56,8 @@ class RigServer(threading.Thread):
         os.set_blocking(self.line, False)
         self.path = os.ttyname(self.slave)
         self.board = LibraryBoard()
-        self.board.build(limits_like(self.settings))
+        deepest = {"travel_mm": person.travel_limit_mm} if isinstance(person, DeepPerson) else {}
+        self.board.build(limits_like(self.settings), **deepest)
         self.port = LockstepPort(self.board, person.rest(self.settings), self.settings.tick_us)
         self._prepare()
         for wire in (self.board.unplug, self.board.plug):

@@ -205,6 +205,10 @@ class SimulatedPerson:
         return replace(limits_like(self.settings), **thermistor_limits(self._plant.rig))
 
     @property
+    def travel_limit_mm(self) -> float:
+        return float(mm_from_m(self._plant.rig.stops.travel_limit_m))
+
+    @property
     def ticks(self) -> int:
         return self._ticks
 

@@ -9,7 +9,7 @@ from fdvv.protocol.tables import BoardLimits, Settings
 CALIBRATION_RATIO = 1.25
 """Settings may ask so much more duty per force than the rig's own: coils and magnets differ, and age."""
 SHORTEST_us, LONGEST_us = 250, 1000
-"""Ticks that a board may be set to; a rig with a shorter one moves the lower limit."""
+"""Ticks that a board may be set to; a rig with a shorter or a longer one moves that limit."""
 
 
 def limits_like(settings: Settings) -> BoardLimits:
@@ -26,7 +26,7 @@ def limits_like(settings: Settings) -> BoardLimits:
         heat_limit_K=settings.heat_limit_K,
         host_timeout_ms=settings.host_timeout_ms,
         tick_low_us=min(SHORTEST_us, settings.tick_us),
-        tick_high_us=LONGEST_us,
+        tick_high_us=max(LONGEST_us, settings.tick_us),
     )
 
 

@@ -131,7 +131,7 @@ def _check_surface(program: Program, surface: Surface, limits: Limits) -> None:
         raise _refuse(program, place, reason, "weaken it")
     ends = (16_000 * surface.displacement_mm[0], 16_000 * surface.displacement_mm[-1])
     if not START_um16[0] <= ends[0] <= ends[1] <= START_um16[1]:
-        raise _refuse(program, place, "reaches outside -2 to 6.4 mm", "shorten it")
+        raise _refuse(program, place, "reaches outside -2 to 20 mm", "shorten it")
 
 
 def _check_bias(program: Program, state: State, limits: Limits) -> None:

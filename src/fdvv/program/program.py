@@ -18,7 +18,7 @@ from fdvv.program.surface import Surface, check_name
 from fdvv.protocol.tables import Stroke as Direction
 from fdvv.protocol.tables import VelocitySource
 
-TRAVEL_mm = (0.2, 6.4)
+TRAVEL_mm = (0.2, 20.0)
 LARGEST = {"key": 255, "repeat_ms": 65_535, "fade_ms": 2000, "bias_ms": 65_535}
 """Of the whole numbers of a state."""
 LISTED = 16

@@ -14,13 +14,14 @@ from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.messages import CN64_PER_cN, MM_S16_PER_mm_s, UM16_PER_mm
 from fdvv.protocol.tables import SURFACE_DISPLACEMENTS, Settings
+from fdvv.protocol.tables import Surface as ImageSurface
 from fdvv.units import FloatArray
 
 DIGITS_cN = 4
 STEP_mm = 0.02
 COARSEST_um16 = 16_000
 FINEST_um16 = 16
-START_um16 = (-32_000, 102_400)
+START_um16 = ImageSurface.LIMITS["start_um16"]
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,9 @@ from fdvv.errors import ModelError
 from fdvv.twin.quantity import Section, choice, quantity, setting
 from fdvv.twin.rig_moves import Coil, Exciter, Mover, Servo, Stops
 
+PAPER_TRAVEL_m = 0.0064
+LONGEST_PULSE_us = 2600.0
+
 
 @dataclass(frozen=True)
 class PositionSensor(Section):
@@ -24,7 +27,7 @@ class PositionSensor(Section):
     linearity_ratio: float = quantity(
         0.0025, "largest bend of the scale, of half the range", "", (0.0, 0.0025), (0.0, 0.1), "class"
     )
-    range_m: float = setting(0.0127, "full range", "m", (0.0127, 0.0127), (0.001, 0.016), "class")
+    range_m: float = setting(0.0127, "full range", "m", (0.0127, 0.0127), (0.001, 0.03), "class")
     converter_bits: int = setting(12, "bits over the range", "", (10, 12), (8, 16), "rule")
     converter_noise_ratio: float = quantity(
         0.5, "noise per read, rms, of one step of the converter", "", (0.3, 2.0), (0.0, 20.0)
@@ -130,7 +133,7 @@ class Thermistor(Section):
 class Controller(Section):
     """The loop: average, direction, speed, table, command. Run by the firmware's own core (_settings.py)."""
 
-    tick_s: float = setting(0.001, "period of the loop", "s", (0.0001, 0.001), (1e-4, 0.001), "paper")
+    tick_s: float = setting(0.001, "period of the loop", "s", (0.0001, 0.001), (5e-5, 0.004), "paper")
     compute_s: float = setting(
         3e-4, "from the sample to the new drive", "s", (1e-5, 3e-4), (0.0, 0.02), "paper"
     )
@@ -202,6 +205,12 @@ class Rig:
             raise ModelError(
                 f"Rig: the exciter is part of the mover of {self.mover.mass_kg:g} kg, "
                 f"its magnet cannot weigh {self.exciter.mass_kg:g}"
+            )
+        deepest_us = self.servo.pulse_zero_us + 1e3 * self.servo.pulse_us_mm * self.stops.travel_limit_m
+        if self.stops.travel_limit_m > PAPER_TRAVEL_m and deepest_us > LONGEST_PULSE_us:
+            raise ModelError(
+                f"Rig: a servo's longest pulse is {LONGEST_PULSE_us:g} us, a stop at "
+                f"{self.stops.travel_limit_m:g} m needs {deepest_us:g}: lower pulse_us_mm"
             )
 
     @property

@@ -49,7 +49,7 @@ class Coil(Section):
     )
     heat_K_W: float = quantity(12.0, "coil to air, warming per power", "K/W", (8.0, 20.0), (0.1, 200.0))
     heat_s: float = quantity(60.0, "its time constant", "s", (30.0, 120.0), (0.1, 600.0))
-    supply_V: float = setting(12.0, "largest voltage, both signs", "V", (5.0, 24.0), (3.0, 36.0))
+    supply_V: float = setting(12.0, "largest voltage, both signs", "V", (5.0, 24.0), (3.0, 48.0))
     bipolar: str = choice("yes", "whether the bridge can pull", ("yes", "no"))
     current_loop_s: float = quantity(
         1e-4, "time constant of the current loop, if drive is current", "s", (5e-5, 5e-4), (3e-5, 0.1)
@@ -97,7 +97,7 @@ class Stops(Section):
     )
     top_stiffness_N_m: float = quantity(2e4, "stiffness of the top stop", "N/m", (1e4, 3e4), (100.0, 5e5))
     top_loss_s_m: float = quantity(5.0, "alpha of the top stop, felted", "s/m", (0.3, 10.0), (0.0, 50.0))
-    travel_limit_m: float = setting(0.0062, "deepest stop", "m", (0.0062, 0.0064), (0.0005, 0.0064), "paper")
+    travel_limit_m: float = setting(0.0062, "deepest stop", "m", (0.0062, 0.0064), (0.0005, 0.02), "paper")
 
 
 @dataclass(frozen=True)

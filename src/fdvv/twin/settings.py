@@ -20,6 +20,7 @@ FASTEST_m_s = 4.0
 HOTTEST_K = 65_000
 """The firmware's thermal model holds 16 bits of a kelvin."""
 RISE_K = BoardLimits.LIMITS["full_duty_rise_K"][1]
+SUPPLY_mV = Settings.LIMITS["supply_high_mV"][1]
 STUCK_s = 10.0
 """Equal readings for so long are a dead sensor; without noise a resting cap gives equal readings for long."""
 
@@ -122,7 +123,7 @@ def _output(rig: Rig) -> dict[str, int]:
         "slew_cN64_tick": round(CN64_N * loop.slew_N),
         "nominal_supply_mV": round(1000 * coil.supply_V),
         "supply_low_mV": round(750 * coil.supply_V),
-        "supply_high_mV": min(40000, round(1167 * coil.supply_V)),
+        "supply_high_mV": min(SUPPLY_mV, round(1167 * coil.supply_V)),
         "heat_time_ms": min(600000, max(100, round(1000 * coil.heat_s))),
         "full_duty_rise_K": min(RISE_K, math.ceil(hot * coil.heat_K_W * coil.resistance_ohm * full_A**2)),
         "over_force_cN64": 32000,

@@ -24,7 +24,9 @@ class Position:
 
     def tick(self, sum_counts: int) -> None:
         s = self.settings
-        way = (abs(s.position_gain_q14) * sum_counts % 2**32 + 2**13) >> 14
+        high, low = divmod(sum_counts, 256)  # products of 32 bits
+        product = abs(s.position_gain_q14) * high + (abs(s.position_gain_q14) * low >> 8)
+        way = (product + 32 >> 6) % 2**19
         raw = s.position_offset_um16 + (way if s.position_gain_q14 >= 0 else -way)
         self.recent.append(raw)
         while len(self.recent) > s.sliding_ticks:

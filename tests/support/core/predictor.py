@@ -25,7 +25,8 @@ def scaled(value: int, ratio: Ratio | None, right: int) -> int:
     if ratio is None or ratio.shift + right > 45:
         return 0
     top, shift = value * ratio.mantissa >> 16, ratio.shift + right - 16
-    assert shift >= 0
+    if shift < 0:  # a gain of 1 or more is kept just below it
+        return value * 65535 >> 16
     return (2 * top + 2**shift) >> (shift + 1) if shift else top
 
 
@@ -56,7 +57,8 @@ class Predictor:
             times(drag, brake),
             times(slope, 1000, tick),
         )
-        self.fastest, self.strongest = s.tick_us * 2**16, s.tick_us**2 * 2**10
+        limit_us = min(s.tick_us, 1000)  # beyond, 4 mm and 2 mm more in each tick
+        self.fastest, self.strongest = limit_us * 2**16, limit_us**2 * 2**10
 
     def tick(self, um16: int, elapsed: int) -> None:
         if not self.on:
