@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -57,9 +59,24 @@ def test_every_second_speed_is_pressed_on_a_higher_level_and_the_next_turn_excha
     np.testing.assert_allclose(second - second[1], [24.0, 0.0, 24.0])
 
 
-def test_a_limit_below_the_hold_and_ripples_below_none_are_refused() -> None:
+def test_no_limit_and_ripples_below_none_are_refused() -> None:
     target = TARGETS["mx-red"]
     with pytest.raises(ModelError, match="got -1"):
         identification_surface(target, ripple_cN=-1.0)
-    with pytest.raises(ModelError, match="a limit above 80 cN"):
-        identification_surface(target, limit_cN=40.0)
+    with pytest.raises(ModelError, match="a limit above 0 cN"):
+        identification_surface(target, limit_cN=0.0)
+
+
+def test_a_weak_rig_gets_the_same_shape_with_less_of_everything() -> None:
+    target = TARGETS["mx-red"]
+    weaker = replace(target, press_cN=0.1 * target.press_cN, release_cN=0.1 * target.release_cN)
+    usual, weak = (identification_surface(t, limit_cN=n) for t, n in ((target, 200.0), (weaker, 20.0)))
+    below = target.displacement_mm > 0.5
+    np.testing.assert_allclose(weak.press_cN[:, below], 0.1 * usual.press_cN[:, below], atol=1e-9)
+    np.testing.assert_allclose(weak.release_cN[:, below], 0.1 * usual.release_cN[:, below], atol=1e-9)
+    assert weak.press_cN.max() <= 20.0
+
+
+def test_a_heavy_mover_is_held_up_by_half_more_than_its_weight() -> None:
+    heavy = identification_surface(TARGETS["mx-red"], weight_cN=90.0)
+    assert heavy.press_cN[:, 0].min() == heavy.release_cN[:, 0].min() == pytest.approx(135.0)

@@ -9,9 +9,11 @@ import pytest
 
 from fdvv.compensation.presses import split_strokes
 from fdvv.device.boards import LibraryBoard
+from fdvv.device.lacking import NO_FORCE_SENSOR, NO_LIMITER, NO_VIBRATION, lacking
 from fdvv.device.linked import LinkedDevice
 from fdvv.device.open import open_device
 from fdvv.device.own_rig import OwnRigPerson, RigNumbers, find_rig
+from fdvv.device.twin import TwinDevice
 from fdvv.errors import BuildError, InputError, ModelError
 from fdvv.testing.conformance import ProgramConformance, plain_surface
 from tests.support.plain_rig import PlainRig
@@ -48,12 +50,65 @@ def test_the_hand_finds_the_speed_that_is_asked_for() -> None:
 
 
 @pytest.mark.parametrize(
-    ("field", "value"), [("full_duty_N", 0.5), ("supply_V", 60.0), ("tick_us", 50), ("force_sensor_N", 20.0)]
+    ("field", "value"),
+    [
+        ("full_duty_N", 0.4),
+        ("supply_V", 60.0),
+        ("tick_us", 40),
+        ("force_sensor_N", 20.0),
+        ("travel_mm", 25.0),
+    ],
 )
 def test_numbers_that_the_firmware_cannot_hold_are_refused_by_name(field: str, value: float) -> None:
     numbers = {"name": "mine", "full_duty_N": 6.0, "force_limit_N": 4.0, field: value}
     with pytest.raises(ModelError, match=f"mine: {field} is {value:g}, the firmware takes"):
         RigNumbers(**numbers)  # type: ignore[arg-type]
+
+
+def test_no_more_force_than_the_motor_has_may_be_commanded() -> None:
+    with pytest.raises(ModelError, match=r"weak: force_limit_N is 4\.4, at full duty the motor gives 0\.5"):
+        RigNumbers("weak", 0.5, 4.4)
+
+
+def test_a_sensor_that_is_too_wide_for_the_firmware_is_refused() -> None:
+    with pytest.raises(ModelError, match=r"wide: sensor_mm is \(0.0, 40.0\), the firmware takes 25 mm"):
+        RigNumbers("wide", 6.0, 4.4, sensor_mm=(0.0, 40.0))
+
+
+def smallest() -> PlainRig:
+    """A rig like a small voice coil at 20 kHz, without stop and vibration board."""
+    rig = PlainRig()
+    rig.numbers = RigNumbers("small", 0.5, 0.45, supply_V=3.0, tick_us=50, travel_limiter=False)
+    return rig
+
+
+def deepest() -> PlainRig:
+    """A strong rig at 250 Hz, whose stop goes to 20 mm."""
+    rig = PlainRig()
+    rig.numbers = RigNumbers(
+        "deep", 50.0, 5.0, supply_V=48.0, tick_us=4000, sensor_mm=(-2.0, 28.0), travel_mm=20.0
+    )
+    return rig
+
+
+def test_a_rig_of_any_size_is_built_pressed_and_reads_true() -> None:
+    for make, travel_mm, force_cN in ((smallest, 4.0, 8.0), (deepest, 18.0, 60.0)):
+        device = LinkedDevice(LibraryBoard(), OwnRigPerson(make, 1))
+        assert device.info().travel_limit_mm == pytest.approx(make().numbers.travel_mm, abs=0.02)
+        device.upload(plain_surface(force_cN, travel_mm), travel_mm)
+        press = device.press(100.0)
+        assert press.sensed_mm is not None
+        assert press.displacement_mm.max() > 0.95 * travel_mm
+        # one tick of a hand that moves at 0.3 m/s
+        assert np.abs(press.sensed_mm - press.displacement_mm).max() < 0.05
+
+
+def test_what_a_rig_lacks_is_said_with_what_still_works() -> None:
+    small = LinkedDevice(LibraryBoard(), OwnRigPerson(smallest))
+    assert lacking(small) == (NO_FORCE_SENSOR, NO_LIMITER, NO_VIBRATION)
+    assert lacking(small, vibrating=False) == (NO_FORCE_SENSOR, NO_LIMITER)
+    assert lacking(LinkedDevice(LibraryBoard(), OwnRigPerson(PlainRig))) == (NO_VIBRATION,)
+    assert lacking(TwinDevice()) == ()
 
 
 def test_full_duty_is_the_force_that_the_rig_says() -> None:

@@ -6,7 +6,7 @@ import functools
 import math
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -107,6 +107,10 @@ RIG_AWARE, PAPER = "rig-aware", "paper"
 ROUNDS = {RIG_AWARE: 3, PAPER: 4}
 PRESSES = 12
 
+sensor_option = ui.option(
+    "--sensor", type=ui.FILE, help="TOML file of the force sensor's data sheet, where it is not ours."
+)
+
 method_options = ui.options(
     ui.option("--method", type=click.Choice(list(ROUNDS)), default=RIG_AWARE, help="How to learn."),
     ui.option(
@@ -120,6 +124,8 @@ method_options = ui.options(
     ),
     ui.option("--literal", is_flag=True, help="The paper's law exactly as printed."),
     ui.option("--rig-known", type=ui.FILE, help="The *.rig.json that was learned from this rig before."),
+    ui.option("--prior", type=ui.FILE, help="TOML file of what is known of the rig before any press."),
+    sensor_option,
     ui.option("--save-rig", type=ui.PATH, help="The *.rig.json to write of what is learned from the rig."),
 )  # fmt: skip
 
@@ -131,6 +137,8 @@ def law_of(
     literal: bool,
     rig_known: Path | None,
     save_rig: Path | None,
+    prior: Path | None = None,
+    sensor: Path | None = None,
 ) -> PaperLaw | RigAware:
     """Make the method that was asked for. InputError on an option of the other one, or on a file."""
     from fdvv.compensation.identification.rig_file import load_learned_rig
@@ -140,10 +148,27 @@ def law_of(
     rounds = ROUNDS[method] if rounds is None else rounds
     if method == RIG_AWARE:
         _refuse({"--presses": presses, "--literal": literal}, PAPER)
-        return RigAware(rounds, load_learned_rig(rig_known) if rig_known else None)
-    _refuse({"--rig-known": rig_known, "--save-rig": save_rig, "--rounds 0": rounds == 0}, RIG_AWARE)
+        if prior and rig_known:
+            remedy = "leave one of them out"
+            raise InputError("--prior", "option", "says what --rig-known FILE holds already", remedy)
+        law = RigAware(rounds, load_learned_rig(rig_known) if rig_known else None)
+        return _with_knowledge(law, prior, sensor)
+    own = {"--rig-known": rig_known, "--save-rig": save_rig, "--prior": prior, "--sensor": sensor}
+    _refuse({**own, "--rounds 0": rounds == 0}, RIG_AWARE)
     make = PaperLaw.literal if literal else PaperLaw
     return make(rounds=rounds, presses_per_round=presses or PRESSES)
+
+
+def _with_knowledge(law: RigAware, prior: Path | None, sensor: Path | None) -> RigAware:
+    """Return a method with what files say of the rig and of its force sensor."""
+    from fdvv.compensation.identification.prior_file import load_prior, load_sensor
+
+    if prior:
+        law = replace(law, prior=load_prior(prior))
+    if sensor:
+        sheet = load_sensor(sensor)
+        law = replace(law, sensor=sheet.sensor, cell=sheet.cell)
+    return law
 
 
 def _refuse(options: dict[str, object], other: str) -> None:

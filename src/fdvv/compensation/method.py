@@ -70,6 +70,10 @@ UNTUNED = Tuning()
 S = TypeVar("S")
 
 
+LIFT_ratio = 0.25
+"""Of the force limit, the most that holds up a cap at rest: the rest is the button's."""
+
+
 @dataclass(frozen=True, eq=False)
 class CompensationJob:
     """What a method is to learn.
@@ -79,11 +83,17 @@ class CompensationJob:
     target : intended force; its rows are the velocities, its grid the bins of the command tables.
     travel_mm : position of the bottom stop.
     force_limit_cN : largest command of either sign.
+    full_duty_N : force of the motor at full duty; None if it is not known.
     """
 
     target: ForceSurface
     travel_mm: float
     force_limit_cN: float
+    full_duty_N: float | None = None
+
+    def at_most_cN(self, force_cN: float) -> float:
+        """Return an auxiliary force (a lift, a hold), less on a rig whose limit is low."""
+        return min(force_cN, LIFT_ratio * self.force_limit_cN)
 
 
 @dataclass(frozen=True, eq=False)

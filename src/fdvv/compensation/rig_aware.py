@@ -33,6 +33,7 @@ from fdvv.errors import FitError, ModelError
 from fdvv.force_text import force_number, force_text, force_unit
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import CellSpec
 
 WEAK_ratio = 0.5
 """An estimate is weak if its standard error exceeds this part of it."""
@@ -97,11 +98,20 @@ MAX_SPEED_DEVIATION_ratio = 0.5
 """A press further from its requested speed informs the rig model, but not the tables of that speed."""
 
 
-def identification_trial(job: CompensationJob, made: int) -> Trial:
-    """Return the next press of an identification after so many, at the job's speeds in turn."""
+GUESSED_cN = 20.0
+"""Weight of a mover of which nothing is known."""
+
+
+def identification_trial(job: CompensationJob, made: int, known: Prior | None = None) -> Trial:
+    """Return the next press of an identification after so many, at the job's speeds in turn.
+
+    known : of the rig; a heavy mover must be lifted before it is identified.
+    """
+    weight = (known or Prior()).ranges.get("weight_cN")
+    guess_cN = GUESSED_cN if weight is None else max(GUESSED_cN, weight.mean + weight.spread)
     speeds = job.target.velocity_mm_s
     turn, at = divmod(made, speeds.size)
-    surface = identification_surface(job.target, limit_cN=job.force_limit_cN, turn=turn)
+    surface = identification_surface(job.target, guess_cN, limit_cN=job.force_limit_cN, turn=turn)
     # the announced speed chooses the row, and with it the level
     speed_mm_s = float(speeds[at])
     return Trial(surface, speed_mm_s, Tuning(paced=True), ANY_SPEED_ratio)
@@ -123,6 +133,11 @@ def try_identification(
         if len(presses) >= most:
             raise ModelError(f"the rig cannot be identified: {error}") from error
         return f"one more press is needed: {error}"
+
+
+def prior_of(known: Prior | None, job: CompensationJob, sensor: Sensor) -> Prior:
+    """Return the prior of a job's rig under this sensor, with what is known of it."""
+    return replace(known or Prior(), sensor=sensor, full_duty_N=job.full_duty_N)
 
 
 def least_pressed(presses: Sequence[Sequence[object]]) -> int:
@@ -180,10 +195,12 @@ class RigAware:
     learned_rig : from an earlier job on this rig: then nothing is identified.
     identification_presses : at the job's speeds in turn; more, up to max_identification_presses, if they
         are not informative enough.
-    sensor : of the finger.
+    sensor : of the finger. prior : what is known of the rig before any press; None: what its force at
+        full duty says.
     bandwidth_Hz : of the controller's look-ahead.
     friction_mm_s : speed above which friction is compensated in full.
     learning : settings of learning. bin_mm : step of the tables.
+    cell : the load cell in the cap, from its data sheet; None: as the device says.
 
     Sessions on file know some fields by an older name, the "key" of their metadata.
     """
@@ -197,6 +214,8 @@ class RigAware:
     friction_mm_s: float = 10.0
     learning: Learning = field(default_factory=Learning)
     bin_mm: float = 0.05
+    prior: Prior | None = None
+    cell: CellSpec | None = None
 
     def __post_init__(self) -> None:
         if self.rounds < 0 or not 1 <= self.identification_presses <= self.max_identification_presses:
@@ -229,7 +248,7 @@ class RigAware:
     def trial(self, state: RigState) -> Trial | None:
         """Return the next press: first identification, then the speed with the fewest; None when finished."""
         if state.rig is None:
-            return identification_trial(state.job, len(state.identification))
+            return identification_trial(state.job, len(state.identification), self.prior)
         at = least_pressed(state.errors)
         if len(state.errors[at]) >= self.rounds:
             return None
@@ -282,7 +301,8 @@ class RigAware:
         """Collect identification presses; once they suffice, identify the rig and learn from them all."""
         presses = (*state.identification, press)
         limits = self.identification_presses, self.max_identification_presses
-        rig = try_identification(presses, state.job.travel_mm, limits)
+        prior = prior_of(self.prior, state.job, self.sensor)
+        rig = try_identification(presses, state.job.travel_mm, limits, prior)
         if isinstance(rig, str):
             return replace(state, identification=presses, message=rig)
         table = prior_table(state.job, rig, self.learning)

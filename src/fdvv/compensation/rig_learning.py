@@ -290,7 +290,7 @@ def command_surface(job: CompensationJob, rig: RigModel, tables: Pair, friction_
     target, limit = job.target, job.force_limit_cN
     grid = target.displacement_mm
     gain = rig.gain_at(grid)
-    lift = (LIFT_cN - rig.own_at(grid)) / gain
+    lift = (job.at_most_cN(LIFT_cN) - rig.own_at(grid)) / gain
     least = least_command_cN(rig, grid, limit)
     slow = np.clip(1.0 - target.velocity_mm_s / friction_mm_s, 0.0, 1.0)[:, np.newaxis]
     rub = slow * rig.friction_cN / gain
@@ -318,7 +318,7 @@ def minimum_lift_surface(job: CompensationJob) -> ForceSurface:
     """Return the target with a minimum command that holds up a cap of unknown weight, as PaperLaw starts."""
     target, limit = job.target, job.force_limit_cN
     press, release = (
-        np.clip(np.maximum(rows, PaperLaw.hold_cN), -limit, limit)
+        np.clip(np.maximum(rows, job.at_most_cN(PaperLaw.hold_cN)), -limit, limit)
         for rows in (target.press_cN, target.release_cN)
     )
     return ForceSurface(target.displacement_mm, target.velocity_mm_s, press, release)

@@ -11,13 +11,23 @@ import numpy as np
 from fdvv.device.boards import PAPER_TRAVEL_mm
 from fdvv.device.client import Client
 from fdvv.device.contract import DeviceInfo
-from fdvv.device.plant import CellPerson, DeepPerson, Inputs, Outputs, Person, Plant, RigPerson, Truth
+from fdvv.device.plant import (
+    CellPerson,
+    DeepPerson,
+    FittedPerson,
+    Inputs,
+    Outputs,
+    Person,
+    Plant,
+    RigPerson,
+    Truth,
+)
 from fdvv.device.remote import Remote
 from fdvv.device.telemetry import IntArray, TickColumns
 from fdvv.errors import DeviceError
 from fdvv.firmware.limits import limits_like
 from fdvv.model.press import Press
-from fdvv.protocol.tables import BoardLimits, CellSpec, Fault, Settings, TickFlag
+from fdvv.protocol.tables import BoardFlag, BoardLimits, CellSpec, Fault, Settings, TickFlag
 
 
 @runtime_checkable
@@ -170,6 +180,12 @@ class LinkedDevice(Remote):
     def info(self) -> DeviceInfo:
         """Return who this is; an emulated board does not know that nothing about it is real."""
         return replace(super().info(), name=self.board_name, simulated=True)
+
+    @property
+    def parts(self) -> BoardFlag:
+        """What the board has, of vibration board and stop only what the rig has too."""
+        found, both = super().parts, BoardFlag.VIBRATION | BoardFlag.SERVO
+        return found & (self._person.fitted | ~both) if isinstance(self._person, FittedPerson) else found
 
     def upload_program(self, image: bytes) -> None:
         super().upload_program(image)

@@ -17,7 +17,7 @@ from fdvv.device.plant import Inputs
 from fdvv.errors import BuildError, InputError, ModelError
 from fdvv.model.press import Press
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm, travel_mm_of
-from fdvv.protocol.tables import Settings
+from fdvv.protocol.tables import BoardFlag, Settings
 
 CONVERTER_counts, READS = 4095, 25
 """A converter of 12 bits, read so often in a tick."""
@@ -25,15 +25,20 @@ STEP_s = 25e-6
 """Longest step of the physics: stops and skin are stiff."""
 SETTLE_s = 0.3
 RANGES = {
-    "full_duty_N": (5.12, 5000.0),
+    "full_duty_N": (0.5, 5000.0),
     "force_limit_N": (0.01, 5.0),
-    "supply_V": (4.0, 34.0),
-    "tick_us": (100, 1000),
+    "supply_V": (3.0, 48.0),
+    "tick_us": (50, 4000),
     "force_sensor_N": (0.0, 5.1),
+    "travel_mm": (1.0, 20.0),
     "rise_K": (1.0, 16383.0),
     "heat_s": (0.1, 600.0),
 }
 """What the firmware's numbers can hold (protocol/fdvv.toml)."""
+FASTEST_mm_s, STUCK_s = 2000.0, 0.5
+"""No cap moves faster, and no sensor reads the same for so long; beyond it a reading is a fault."""
+USUAL_us_mm, LONGEST_PULSE_us = 150.0, 1600.0
+"""Servo pulse per travel, and the longest beyond that at travel 0."""
 MIDDLE = (0.1, 0.9)
 """Parts of the travel between which a hand feels its pace."""
 SWITCHED_OFF_mm = -1.0
@@ -50,10 +55,13 @@ class RigNumbers:
     full_duty_N : force of the motor in the middle of the stroke at full duty and nominal supply.
     force_limit_N : largest force that may be commanded.
     supply_V : nominal.
-    tick_us : period of the control loop, 100 to 1000.
+    tick_us : period of the control loop, 50 to 4000.
     sensor_mm : displacement of the cap where the position sensor reads 0, and where it reads full scale;
         the first may be the larger one.
     force_sensor_N : range, both signs, of a force sensor under the finger; 0 if there is none.
+    travel_mm : the deepest place that the bottom stop can be set to.
+    travel_limiter : whether there is a stop that can be set; else the one of the mechanism.
+    vibration_board : whether one is connected.
     rise_K, heat_s : how much warmer the coil would end at full duty held for ever, and its time constant.
     """
 
@@ -66,8 +74,13 @@ class RigNumbers:
     force_sensor_N: float = 0.0
     rise_K: float = 600.0
     heat_s: float = 60.0
+    travel_mm: float = 6.2
+    travel_limiter: bool = True
+    vibration_board: bool = False
 
     LEAST_RANGE_mm: ClassVar[float] = 1.0
+    SENSOR_mm: ClassVar[tuple[float, float]] = (25.0, 32.7)
+    """Largest displacement at a reading of 0, both signs, and widest range."""
 
     def __post_init__(self) -> None:
         for name, (low, high) in RANGES.items():
@@ -75,8 +88,20 @@ class RigNumbers:
                 raise ModelError(
                     f"{self.name}: {name} is {getattr(self, name):g}, the firmware takes {low:g} to {high:g}"
                 )
-        if abs(self.sensor_mm[1] - self.sensor_mm[0]) < self.LEAST_RANGE_mm:
+        if self.force_limit_N > self.full_duty_N:
+            raise ModelError(
+                f"{self.name}: force_limit_N is {self.force_limit_N:g}, at full duty the motor gives "
+                f"{self.full_duty_N:g}: write what may be commanded, a little less than that"
+            )
+        zero_mm, range_mm = abs(self.sensor_mm[0]), abs(self.sensor_mm[1] - self.sensor_mm[0])
+        if range_mm < self.LEAST_RANGE_mm:
             raise ModelError(f"{self.name}: sensor_mm spans {self.sensor_mm}, less than the cap travels")
+        furthest_mm, widest_mm = self.SENSOR_mm
+        if zero_mm > furthest_mm or range_mm > widest_mm:
+            raise ModelError(
+                f"{self.name}: sensor_mm is {self.sensor_mm}, the firmware takes {furthest_mm:g} mm at a "
+                f"reading of 0 and a range of {widest_mm:g}"
+            )
 
     def settings(self) -> Settings:
         """Return the settings of a board for this rig."""
@@ -98,7 +123,18 @@ class RigNumbers:
             full_duty_rise_K=math.ceil(self.rise_K),
             heat_time_ms=round(1000 * self.heat_s),
             reads=READS,
+            jump_um16=min(65_535, round(UM16_PER_mm * FASTEST_mm_s * 1e-6 * self.tick_us)),
+            stuck_ticks=round(STUCK_s / (1e-6 * self.tick_us)),
+            window_start_um16=round(UM16_PER_mm * min(0.5, 0.2 * self.travel_mm)),
+            window_end_um16=round(UM16_PER_mm * min(1.0, 0.5 * self.travel_mm)),
+            stop_us_mm=math.floor(min(USUAL_us_mm, LONGEST_PULSE_us / self.travel_mm)),
         )
+
+    @property
+    def fitted(self) -> BoardFlag:
+        """Return the parts beside motor and sensors."""
+        limiter = BoardFlag.SERVO if self.travel_limiter else BoardFlag(0)
+        return limiter | (BoardFlag.VIBRATION if self.vibration_board else BoardFlag(0))
 
 
 class OwnRig(Protocol):
@@ -201,6 +237,14 @@ class OwnRigPerson:
     @property
     def ticks(self) -> int:
         return self._ticks
+
+    @property
+    def travel_limit_mm(self) -> float:
+        return self.rig.numbers.travel_mm
+
+    @property
+    def fitted(self) -> BoardFlag:
+        return self.rig.numbers.fitted
 
     def press(self, image: bytes, velocity_mm_s: float, settings: Settings) -> OwnRigPerson:
         self._notice_pace()

@@ -6,7 +6,7 @@ import struct
 from typing import NamedTuple, Protocol, runtime_checkable
 
 from fdvv.model.press import Press
-from fdvv.protocol.tables import NONE, BoardLimits, CellSpec, ForceLoopGains, Settings
+from fdvv.protocol.tables import NONE, BoardFlag, BoardLimits, CellSpec, ForceLoopGains, Settings
 from fdvv.twin.trace import Trace
 
 _INPUTS = struct.Struct("<IIHHHHHHBxxx")
@@ -107,6 +107,15 @@ class DeepPerson(Person, Protocol):
     @property
     def travel_limit_mm(self) -> float:
         """The deepest stop."""
+
+
+@runtime_checkable
+class FittedPerson(Person, Protocol):
+    """A person at a rig that says which of a board's parts it has."""
+
+    @property
+    def fitted(self) -> BoardFlag:
+        """VIBRATION and SERVO, each if there is one."""
 
 
 @runtime_checkable

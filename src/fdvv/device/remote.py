@@ -87,7 +87,12 @@ class Remote:
     @property
     def has_exciter(self) -> bool:
         """Whether a vibration board answers; nothing says whether an exciter hangs on it."""
-        return bool(self.client.hello.board_flags & BoardFlag.VIBRATION)
+        return bool(self.parts & BoardFlag.VIBRATION)
+
+    @property
+    def parts(self) -> BoardFlag:
+        """What the board has, or says it has."""
+        return BoardFlag(self.client.hello.board_flags)
 
     def settings(self) -> Settings:
         return self._settings

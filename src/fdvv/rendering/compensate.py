@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from fdvv.compensation.feasibility.limits import full_duty_cN
 from fdvv.compensation.force_loop.method import ForceLoop
 from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.identification.rig_model import RigModel
@@ -16,16 +17,21 @@ from fdvv.compensation.per_curve import PerCurve
 from fdvv.compensation.presses import judge_press
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.contract import Device, ForceLoopDevice
+from fdvv.device.lacking import lacking
 from fdvv.device.remote import Remote
 from fdvv.errors import DeviceError, InputError
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
+from fdvv.protocol.tables import CellSpec, ForceLoopGains
 from fdvv.rendering.known_rig import with_rig_check
 from fdvv.rendering.part_watch import watch_of
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
 from fdvv.rendering.session import Session
 from fdvv.rendering.session_log import PressLog
 from fdvv.rendering.session_run import Guide, Progress, SessionPlan, VelocityProgress, run
+
+SLOWEST_LOOP_s = ForceLoopGains.REALS["tick_s"][1]
+"""A slower loop renders by tables: the cap would move on between two readings of the cell."""
 
 
 def _known_rig(method: Method[Any]) -> LearnedRig | None:
@@ -116,11 +122,17 @@ def compensate(
     Raises DeviceError if the device fails or too many presses in a row cannot be used, InputError on speeds
     that cannot be used and on a folder that is no session of this job, KeyboardInterrupt on Ctrl-C.
     """
+    if isinstance(law, RigAware):
+        fit_cell(device, law.cell)
     method, session = _method(law, device), session or Session()
     job = _job(device, model, velocities_mm_s, method)
     start, known = method.init(job), _known_rig(method)
     if method.trial(start) is not None:
         check_force_sensor(device)
+    guide = guide or Guide()
+    for line in (*lacking(device, vibrating=False), _too_slow(device) if isinstance(law, RigAware) else ""):
+        if line:
+            guide.notice(line)
     speeds = job.target.velocity_mm_s.tolist()
     manifest = session.manifest("compensate", device, model, speeds, method.name, method)
     with session.open_log(manifest, PressLog) as log:
@@ -132,7 +144,7 @@ def compensate(
             session.acceptance.patience,
             lambda state: velocity_progress(job, method.count(state), log, method.done(state).curves),
             progress or (lambda _done: None),
-            guide or Guide(),
+            guide,
             parts=watch_of(device, job.travel_mm, session.checked_in),
         )
         if known and not log.used:  # a resumed session has been checked already
@@ -179,16 +191,41 @@ def uncompensated(
 
 
 def _method(law: PaperLaw | Method[Any] | None, device: Device) -> Method[Any]:
-    if isinstance(law, RigAware) and isinstance(device, ForceLoopDevice) and device.load_cell:
-        return ForceLoop(device.load_cell, device.info().tick_s, law.rounds, law.learned_rig)
+    if isinstance(law, RigAware) and (cell := loop_cell(law, device)):
+        return ForceLoop(cell, device.info().tick_s, law.rounds, law.learned_rig, prior=law.prior)
     return PerCurve(law or PaperLaw()) if law is None or isinstance(law, PaperLaw) else law
+
+
+def loop_cell(law: RigAware, device: Device) -> CellSpec | None:
+    """Return the load cell by which the force loop of a device is closed; None where none is."""
+    if not isinstance(device, ForceLoopDevice) or device.info().tick_s > SLOWEST_LOOP_s:
+        return None
+    return device.load_cell and (law.cell or device.load_cell)
+
+
+def _too_slow(device: Device) -> str:
+    """Say that a rig with a load cell renders by tables because its loop is slow; empty if it is not so."""
+    tick_s = device.info().tick_s
+    if not (isinstance(device, ForceLoopDevice) and device.load_cell) or tick_s <= SLOWEST_LOOP_s:
+        return ""
+    return (
+        f"a loop of {1 / tick_s:.0f} Hz is too slow to hold the force by the load cell (it takes "
+        f"{1 / SLOWEST_LOOP_s:.0f}): tables are learned instead"
+    )
+
+
+def fit_cell(device: Device, cell: CellSpec | None) -> None:
+    """Write the load cell of a data sheet to a board that has a force loop; others have no place for it."""
+    if cell and isinstance(device, Remote) and device.force_loop.exists and device.load_cell != cell:
+        device.fit_cell(cell)
 
 
 def _job(
     device: Device, model: FDVVModel, velocities_mm_s: Sequence[float], method: Method[Any]
 ) -> CompensationJob:
     target = ForceSurface.of_model(model, check_speeds(velocities_mm_s), method.bin_mm)
-    return CompensationJob(target, model.travel_mm, device.info().force_limit_cN)
+    full_duty_N = full_duty_cN(device.settings()) / 100
+    return CompensationJob(target, model.travel_mm, device.info().force_limit_cN, full_duty_N)
 
 
 def check_force_sensor(device: Device, truth_counts: bool = False) -> None:

@@ -11,6 +11,7 @@ from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.compensation.method import UNTUNED, PressCount, Trial, Tuning
 from fdvv.compensation.presses import FROM_mm, STOP_GUARD_mm, judge_press
 from fdvv.device.contract import Device
+from fdvv.device.lacking import NO_FORCE_SENSOR, lacking
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke, reading_order
 from fdvv.model.model import FDVVModel
@@ -186,6 +187,10 @@ def probe(
     """
     session = session or Session()
     check_force_sensor(device, truth_counts=True)
+    guide = guide or Guide()
+    for line in lacking(device, vibrating=bool(playback and model.vibrations)):
+        if line != NO_FORCE_SENSOR:  # a simulated rig's truth is judged without one
+            guide.notice(line)
     if playback and not (model.vibrations and has_exciter(device) and not _begun_without(session)):
         playback = None
     if playback and playback.exciter:
@@ -208,7 +213,7 @@ def probe(
         bounds.patience,
         lambda found: _standings(model, plan, found),
         progress or (lambda _done: None),
-        guide or Guide(),
+        guide,
         partial(upload_vibrating, model=model, playback=playback) if playback else None,
         watch_of(device, model.travel_mm, session.checked_in),
     )

@@ -15,6 +15,7 @@ from fdvv import extras
 from fdvv.cli import ui
 from fdvv.cli.options import device_option, opened, remote
 from fdvv.device.client import Client
+from fdvv.device.lacking import lacking
 from fdvv.device.open import KINDS
 from fdvv.device.remote import Remote, watch
 from fdvv.device.serial import serial_ports
@@ -120,13 +121,17 @@ def info(spec: str, as_json: bool) -> None:
         document: dict[str, Any] = asdict(found.info())
         if isinstance(found, Remote):
             document |= _firmware(found)
+        document["lacks"] = list(lacking(found))
     if as_json:
         ui.print_json(document)
         return
     flat = {k: v for k, v in document.items() if v is not None and not isinstance(v, dict)}
     flat |= document.get("load_cell") or {}
     flat |= document.get("counters", {})
+    lacks = flat.pop("lacks")
     ui.print_table(["what", "value"], [_fact(*one) for one in flat.items()], left=2)
+    for line in lacks:
+        ui.print_wrapped(line)
 
 
 def _fact(name: str, value: Any) -> list[object]:

@@ -10,14 +10,15 @@ import click
 
 from fdvv.button.open import open_button
 from fdvv.cli import ui
-from fdvv.cli.options import exciter_option, law_of, method_options, opened_exciter
+from fdvv.cli.options import exciter_option, law_of, method_options, opened_exciter, sensor_option
 from fdvv.cli.rendering.session import Pressing, beside, session_options
+from fdvv.compensation.identification.prior_file import check_range
 from fdvv.compensation.identification.rig_file import save_rig as keep
 from fdvv.compensation.method import Tuning
 from fdvv.force_text import ForceTitle, force_text
 from fdvv.rendering.actuation_file import load_actuation, save_actuation
 from fdvv.rendering.compensate import compensate as learn
-from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.compensate import fit_cell, uncompensated
 from fdvv.rendering.evaluation.verdict import headline
 from fdvv.rendering.evaluation.vibration_presses import Playback
 from fdvv.rendering.probe import ProbeResult
@@ -50,6 +51,8 @@ def compensate(
     ui.check_output(save_rig, ".rig.json")
     law = law_of(**options, save_rig=save_rig)
     model, pressing = open_button(button), pressing.on_recommended_rig()
+    if options["sensor"]:
+        check_range(options["sensor"], model, pressing.velocities_mm_s)
     session = pressing.session(beside(output, button, "session"))
     with pressing.guided(session, as_json) as (found, view, guide):
         result = learn(found, model, pressing.velocities_mm_s, law, view.done, session, guide)
@@ -74,6 +77,7 @@ def compensate(
     help="Per velocity with the model's vibrations, where there is an exciter; by default as many.",
 )
 @exciter_option
+@sensor_option
 @ui.option(
     "--figure", type=ui.PATH, help="Draw force and what is noticed of it into this .svg, .png or .pdf."
 )
@@ -92,6 +96,7 @@ def probe(
     presses: int,
     vibrating: int | None,
     exciter: Path | None,
+    sensor: Path | None,
     figure: Path | None,
     report: Path | None,
     bound_cN: float | None,
@@ -111,12 +116,14 @@ def probe(
     ui.check_output(report, ".html")
     playback = Playback(presses if vibrating is None else vibrating, opened_exciter(exciter))
     model, pressing = open_button(button), pressing.on_recommended_rig()
+    sheet = check_range(sensor, model, pressing.velocities_mm_s) if sensor else None
     learned = load_actuation(actuation) if actuation else None
     method = learned.method if learned else "not compensated"
     if learned and learned.model_name != model.name:
         ui.print_warnings([f"{actuation} was learned for {learned.model_name}, not for {model.name}"])
     session, speeds = pressing.session(beside(actuation, button, "probe-session")), pressing.velocities_mm_s
     with pressing.guided(session, as_json) as (found, view, guide):
+        fit_cell(found, sheet.cell if sheet else None)
         surface = learned.surface if learned else uncompensated(found, model, speeds)
         tuning = learned.outcome.tuning if learned else Tuning()
         about = (method, session, guide, tuning, playback if playback.presses else None)

@@ -18,6 +18,11 @@ from fdvv.protocol.tables import Settings
 from fdvv.units import FloatArray
 
 
+def full_duty_cN(settings: Settings) -> float:
+    """Return the force of the motor at full duty and nominal supply, as the settings say."""
+    return 32768 * 65536 / settings.duty_gain_q16 / CN64_PER_cN
+
+
 @dataclass(frozen=True)
 class RigLimits:
     """The settings of a rig that limit what it can render.
@@ -57,7 +62,7 @@ class RigLimits:
         The firmware turns a force into duty without regard to speed, so both limits bound the command; what
         the coil's braking takes or adds at speed is part of the rig's own force (``needed_cN``).
         """
-        full_cN = 32768 * 65536 / settings.duty_gain_q16 / CN64_PER_cN
+        full_cN = full_duty_cN(settings)
         duty_cN = full_cN * settings.duty_limit_q15 / 32768
         return cls(
             tick_s=1e-6 * settings.tick_us,
@@ -65,7 +70,7 @@ class RigLimits:
             slew_cN_tick=settings.slew_cN64_tick / CN64_PER_cN,
             full_duty_cN=full_cN,
             reversal_mm=settings.reversal_um16 / UM16_PER_mm,
-            grain_mm=settings.reads * settings.position_gain_q14 / 2**14 / UM16_PER_mm,
+            grain_mm=settings.reads * abs(settings.position_gain_q14) / 2**14 / UM16_PER_mm,
             heat_s=1e-3 * settings.heat_time_ms,
             full_duty_rise_K=settings.full_duty_rise_K,
             derate_start_K=settings.derate_start_K,

@@ -33,6 +33,7 @@ from fdvv.compensation.rig_aware import (
     explain_rig,
     identification_trial,
     press_count,
+    prior_of,
     try_identification,
 )
 from fdvv.compensation.rig_learning import (
@@ -96,6 +97,7 @@ class ForceLoop:
     identification_presses : with the loop open, at the job's speeds in turn; more, up to
         max_identification_presses, if they are not informative enough.
     bin_mm : step of the tables.
+    prior : what is known of the rig before any press; None: what its force at full duty says.
     """
 
     cell: CellSpec
@@ -105,6 +107,7 @@ class ForceLoop:
     identification_presses: int = 4
     max_identification_presses: int = 8
     bin_mm: float = 0.05
+    prior: Prior | None = None
 
     def __post_init__(self) -> None:
         if self.rounds < 0 or not 1 <= self.identification_presses <= self.max_identification_presses:
@@ -129,7 +132,7 @@ class ForceLoop:
     def trial(self, state: LoopState) -> Trial | None:
         """Return the next press: first identification, then the speed with the fewest; None when finished."""
         if state.gains is None:
-            return identification_trial(state.job, len(state.identification))
+            return identification_trial(state.job, len(state.identification), self.prior)
         if (at := self._at(state)) is None:
             return None
         surface = _surface(state.job, state.corrections)
@@ -199,7 +202,8 @@ class ForceLoop:
         # the plate lies before the cell, which reads what is left behind it: a cone lies behind its sensor
         sensor = Sensor(filter_s=self.cell.filter_s, cone_g=-1e3 * self.cell.plate_kg)
         limits = self.identification_presses, self.max_identification_presses
-        found = try_identification(presses, state.job.travel_mm, limits, Prior(sensor=sensor))
+        prior = prior_of(self.prior, state.job, sensor)
+        found = try_identification(presses, state.job.travel_mm, limits, prior)
         after = replace(state, identification=presses)
         return replace(after, message=found) if isinstance(found, str) else self._closed(after, found)
 
@@ -228,16 +232,18 @@ def _surface(job: CompensationJob, corrections: Rows) -> ForceSurface:
     target, limit = job.target, job.force_limit_cN
     x = target.displacement_mm
     rows = [
-        np.clip(lifted_target_cN(x, force) + correction, -limit, limit)
+        np.clip(lifted_target_cN(x, force, job.at_most_cN(LIFT_cN)) + correction, -limit, limit)
         for force, correction in zip((target.press_cN, target.release_cN), corrections, strict=True)
     ]
     return ForceSurface(x, target.velocity_mm_s, *rows)
 
 
-def lifted_target_cN(displacement_mm: FloatArray, force_cN: FloatArray) -> FloatArray:
-    """Return a target, (..., n), that rises to LIFT_cN just under the top stop."""
+def lifted_target_cN(
+    displacement_mm: FloatArray, force_cN: FloatArray, lift_cN: float = LIFT_cN
+) -> FloatArray:
+    """Return a target, (..., n), that rises to lift_cN just under the top stop."""
     near = np.clip((LIFT_mm - displacement_mm) / (LIFT_mm - LIFTED_mm), 0.0, 1.0)
-    return np.asarray(force_cN + np.maximum(LIFT_cN - force_cN, 0.0) * near)
+    return np.asarray(force_cN + np.maximum(lift_cN - force_cN, 0.0) * near)
 
 
 def _strokes(

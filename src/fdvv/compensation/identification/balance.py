@@ -157,10 +157,12 @@ class Sensor:
     ----------
     filter_s : time constant of its filter.
     cone_g : mass that moves with the cap between sensor and cap; negative between finger and sensor.
+    noise_cN : rms, of the data sheet; None: what the presses show.
     """
 
     filter_s: float = 3.33e-4
     cone_g: float = 2.0
+    noise_cN: float | None = None
 
 
 def usable_windows(ticks: Ticks, lag_s: float, travel_mm: float) -> BoolArray:

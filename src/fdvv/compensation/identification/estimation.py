@@ -99,13 +99,15 @@ class RigEstimation:
         self.own_step_mm = max(LEAST_TRAVEL_mm, min(travel_mm, deepest_mm)) / (NODES - 1)
         mean, self.spread, low, high = prior.vectors(self.tick_s)
         self.nodes, nodes = NODES, np.zeros(NODES)
-        self.mean = np.concatenate([mean, nodes])
+        # 1 N/m is 0.1 cN/mm
+        spring_cN_mm, self.spring_spread_cN_mm = (0.1 * number for number in prior.spring_N_m)
+        self.mean = np.concatenate([mean, spring_cN_mm * self.own_step_mm * np.arange(NODES)])
         self.low, self.high = np.concatenate([low, nodes - np.inf]), np.concatenate([high, nodes + np.inf])
         self.rendered = [rendered_cN(t, self.sensor) for t in ticks]
         self.stretches = [play_stretch(t) for t in ticks]
         self.position_noise_mm = noise([t.sensed_mm for t in ticks])
         self.force_noise_cN = noise([t.force_cN for t in ticks])
-        self.quiet_cN = max(self.force_noise_cN, LEAST_NOISE_cN)
+        self.quiet_cN = max(self.force_noise_cN, self.sensor.noise_cN or 0.0, LEAST_NOISE_cN)
         self.stride = max(1, round(SPACING_s / self.tick_s))
         self.expect(Unknown())
 
@@ -119,7 +121,9 @@ class RigEstimation:
         """Return a root of the prior's covariance, (COUNT, COUNT)."""
         root = np.zeros((COUNT, COUNT))
         root[: self.spread.size, : self.spread.size] = np.diag(self.spread)
-        root[OWN, OWN] = prior_root(self.own_step_mm, unknown.long_cN, unknown.short_cN)
+        root[OWN, OWN] = prior_root(
+            self.own_step_mm, unknown.long_cN, unknown.short_cN, self.spring_spread_cN_mm
+        )
         return root
 
     def spans(self, numbers: FloatArray) -> Spans:

@@ -23,12 +23,17 @@ def hats(displacement_mm: FloatArray, step_mm: float) -> FloatArray:
 
 
 @lru_cache(maxsize=64)
-def prior_root(step_mm: float, long_cN: float, short_cN: float) -> FloatArray:
-    """Return a root of the prior covariance of the values, (NODES, NODES): two Gaussian processes."""
+def prior_root(step_mm: float, long_cN: float, short_cN: float, spring_cN_mm: float = 0.0) -> FloatArray:
+    """Return a root of the prior covariance of the values, (NODES, NODES): two Gaussian processes.
+
+    spring_cN_mm : spread of a spring's stiffness beside them.
+    """
     apart = step_mm * np.subtract.outer(np.arange(NODES), np.arange(NODES))
     covariance = sum(
         spread**2 * np.exp(-0.5 * (apart / length) ** 2)
         for spread, length in ((long_cN, LONG_mm), (short_cN, SHORT_mm))
     )
+    places = step_mm * np.arange(NODES)
+    covariance = covariance + spring_cN_mm**2 * np.outer(places, places)
     size, axes = np.linalg.eigh(covariance)
     return np.asarray(axes * np.sqrt(np.maximum(size, 1e-6)))

@@ -192,7 +192,31 @@ RANGES: Mapping[str, Plausible] = {
     "position_lag_s": Plausible(9e-4, 4e-4, 5e-5, 4e-3),
     "electric_lag_s": Plausible(5e-4, 4e-4, 2e-5, 4e-3),
 }
-"""Priors for voice coils of a few newtons with their transformers and bushings."""
+"""Priors for voice coils of CLASS_N at full duty with their transformers and bushings."""
+CLASS_N = (5.0, 35.0)
+SIZED = ("viscous_N_s_m", "back_emf_N_s_m", "friction_cN", "weight_cN", "mass_g", "stick_cN")
+
+
+def size_of(full_duty_N: float) -> float:
+    """Return how much weaker (below 1) or stronger a rig is than the class of RANGES; 1 within it."""
+    weakest, strongest = CLASS_N
+    return min(1.0, full_duty_N / weakest) * max(1.0, full_duty_N / strongest)
+
+
+def ranges_of(full_duty_N: float | None) -> Mapping[str, Plausible]:
+    """Return the priors of a rig of this force at full duty; None: of the class.
+
+    Movers, friction and drag go with the force. How well is less known beyond the class: the spread of a
+    weaker rig falls with the square root only, and that of a stronger one grows as its mean does.
+    """
+    size = 1.0 if full_duty_N is None else size_of(full_duty_N)
+    spread = max(size, size**0.5)
+    sized = {
+        name: Plausible(size * known.mean, spread * known.spread, min(1.0, size) * known.low, known.high)
+        for name, known in RANGES.items()
+        if name in SIZED
+    }
+    return {**RANGES, **sized}
 
 
 @dataclass(frozen=True)
@@ -204,7 +228,9 @@ class Prior:
     tick_s : period of its loop; from the record if None.
     sensor : the finger's force sensor.
     compute_ratio, compute_spread_ratio : from sample to drive, in ticks, without the half tick of holding.
-    ranges : of the other parameters, by their names in RANGES, which supplies the missing ones.
+    ranges : of the other parameters, by their names in RANGES; ranges_of supplies the missing ones.
+    full_duty_N : force of the motor at full duty; None: within CLASS_N.
+    spring_N_m : of the mover, its mean and spread; (0, 0): what the presses show.
     """
 
     tick_s: float | None = None
@@ -212,6 +238,8 @@ class Prior:
     compute_ratio: float = 0.4
     compute_spread_ratio: float = 0.2
     ranges: Mapping[str, Plausible] = field(default_factory=dict)
+    full_duty_N: float | None = None
+    spring_N_m: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         unknown = set(self.ranges) - set(RANGES)
@@ -226,6 +254,6 @@ class Prior:
         """Return means, spreads, lower and upper bounds, in the order of PARAMETERS."""
         mean_s, spread_s = (0.5 + self.compute_ratio) * tick_s, self.compute_spread_ratio * tick_s
         delay = Plausible(mean_s, spread_s, 0.5 * tick_s, 1.5 * tick_s)
-        ranges = {**RANGES, **self.ranges, "command_delay_s": delay}
+        ranges = {**ranges_of(self.full_duty_N), **self.ranges, "command_delay_s": delay}
         rows = np.array([astuple(ranges[name]) for name in PARAMETERS])
         return rows[:, 0], rows[:, 1], rows[:, 2], rows[:, 3]
