@@ -205,7 +205,7 @@ def test_a_fault_and_a_rig_that_goes_are_events_and_what_follows_is_refused(
     rig.port.connect(dark)
     fault = _event(client, "device.fault")
     assert (fault["gone"], "supply" in fault["fault"]) == (False, True)
-    with pytest.raises(RefusedCall, match="latched|fault"):
+    with pytest.raises(RefusedCall, match=r"latched|fault"):
         client.call("device.arm")
     dark.fails = False
     _until(lambda: _cleared(client))
