@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from fdvv.protocol.tables import Fault
 from fdvv.rendering.compensate import check_force_sensor
 from fdvv.testing.conformance import plain_surface
 from fdvv_drives.device import DriveDevice
-from fdvv_drives.stage import Coil
+from fdvv_drives.stage import Coil, Limits, Mechanics, Stage
 from fdvv_drives.testing.direct import DirectDrive, VirtualClock, direct_device, direct_stage
 
 
@@ -235,3 +236,18 @@ def test_a_closed_device_has_stopped_its_drive_and_presses_no_more() -> None:
     assert drive.calls[-2:] == ["stop", "close"]
     with pytest.raises(DeviceError, match="is closed"):
         device.press(100.0)
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_without_a_zero_the_cap_is_at_the_top_as_the_device_is_opened(direction: Literal[1, -1]) -> None:
+    mechanics = Mechanics(travel_mm=6.0, lead_mm_rev=10.0, force_N_Nm=500.0, direction=direction)
+    stage = Stage(mechanics, Limits(3.0))
+    clock = VirtualClock()
+    drive = DirectDrive(clock, stage)
+    drive.moved_mm = 1234.5  # an encoder that was switched on somewhere
+    device = DriveDevice(stage, drive, armed=drive.plant.press, clock=clock)
+    device.upload(plain_surface(), 4.0)
+    press = device.press(100.0)
+    assert press.displacement_mm.max() == pytest.approx(drive.plant.travel_mm, abs=0.2)
+    # against the finger, which is down in the drive's direction
+    assert np.sign(np.median(drive.commanded)) == -direction

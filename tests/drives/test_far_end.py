@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from fdvv.device.open import open_device
 from fdvv.errors import DeviceError
 from fdvv.testing.conformance import plain_surface
 from fdvv_drives.device import DriveDevice
 from fdvv_drives.testing.far_end import FaultKind
 from fdvv_drives.testing.process import FarProcess
-from tests.drives.conftest import OPEN, opened
+from tests.drives.conftest import GENEROUS, OPEN, opened
 
 Start = Callable[..., FarProcess]
 DRIVES = ("moteus", "odrive", "simplefoc")
@@ -182,3 +185,24 @@ def test_a_board_without_a_watchdog_keeps_its_torque_when_the_line_breaks(start:
         assert device.info().name.endswith("no watchdog")
         fails_in_press(far, device, "unplug")
     assert not is_zero_soon(far)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", DRIVES)
+def test_the_command_presses_a_button_and_records_it(start: Start, kind: str, tmp_path: Path) -> None:
+    far = start(kind, *GENEROUS, "--press-every", "1.5")
+    command = [sys.executable, "-m", "fdvv", "device", "press", "mx-clear", "--presses", "2"]
+    session = tmp_path / "session.jsonl"
+    ran = subprocess.run(
+        [*command, "--device", f"{kind}:{far.stage}", "--record", str(session), "--json"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (ran.returncode, ran.stderr) == (0, "")
+    found = json.loads(ran.stdout)
+    assert found["simulated"]
+    assert [press["deepest_mm"] > 3.9 for press in found["presses"]] == [True, True]
+    replay = open_device(f"replay:{session}")
+    assert replay.info().name == found["device"]
+    assert far.force_N() == 0.0

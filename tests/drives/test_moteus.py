@@ -81,8 +81,8 @@ def test_a_load_cell_at_an_analog_input_is_asked_for_and_read() -> None:
     [{"force_input": "aux3.1"}, {"force_input": "aux1.6"}, {"force_input": "aux1.1", "force_span_N": 0.0}],
 )
 def test_a_load_cell_that_is_not_described_is_refused(wrong: dict[str, Any]) -> None:
-    with pytest.raises(DeviceError, match=r"needs force_input aux1.1 to aux2.5, force_span_N"):
-        MoteusDrive(MoteusPart("nowhere", **{"force_span_N": 20.0, **wrong}), 0.5, 0.1)
+    with pytest.raises(ValueError, match=r"needs force_input aux1.1 to aux2.5, force_span_N"):
+        MoteusPart("nowhere", **{"force_span_N": 20.0, **wrong})
 
 
 def test_the_far_end_reads_the_manuals_command_and_writes_its_reply() -> None:

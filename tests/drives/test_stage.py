@@ -9,6 +9,8 @@ import pytest
 
 from fdvv.errors import InputError
 from fdvv_drives.moteus_drive import MoteusPart
+from fdvv_drives.odrive_drive import ODrivePart
+from fdvv_drives.simplefoc_drive import SimpleFOCPart
 from fdvv_drives.stage import Limits, Mechanics, Stage, read_tables, stage_of
 
 FILE = """[moteus]
@@ -105,6 +107,14 @@ def test_the_core_reads_displacements_to_a_sixteenth_of_a_micrometre() -> None:
         ("force_N = 3.0", "force_N = 3.0\n[loop]\nrate_Hz = 50", "loop.rate_Hz: is 50; write 100 to 5000"),
         ("port = ", "prt = ", "moteus: object contains unknown field `prt`"),
         ("[moteus]", "[moteus", "not valid TOML"),
+        ("port = ", "id = 0\nport = ", "moteus: id is 0, write 1 to 126"),
+        ("port = ", "watchdog_ms = 0\nport = ", "moteus: watchdog_ms is 0, write 10 to 1000"),
+        ("port = ", "watchdog_ms = nan\nport = ", "moteus: watchdog_ms is nan, write 10 to 1000"),
+        (
+            "port = ",
+            'force_input = "aux3.1"\nport = ',
+            "moteus: a load cell needs force_input aux1.1 to aux2.5",
+        ),
     ],
 )
 def test_a_mistake_is_named_with_its_place(before: str, after: str, text: str, tmp_path: Path) -> None:
@@ -120,3 +130,25 @@ def test_a_slow_loop_counts_several_ticks_of_the_core(tmp_path: Path) -> None:
     assert (slow.ticks, slow.tick_us, slow.period_s) == (4, 1000, 0.004)
     quick = read(FILE + "[loop]\nrate_Hz = 2000", tmp_path)
     assert (quick.ticks, quick.tick_us, quick.period_s) == (1, 500, 0.0005)
+
+
+@pytest.mark.parametrize(
+    ("part", "other", "reason"),
+    [
+        (
+            ODrivePart,
+            {"channel": "can0", "watchdog_ms": 5},
+            "watchdog_ms is 5, write 10 to 1000, or 0 for none",
+        ),
+        (ODrivePart, {"channel": "can0", "watchdog_ms": 50, "node": 64}, "node is 64, write 0 to 63"),
+        (
+            SimpleFOCPart,
+            {"port": "x", "watchdog_ms": -1},
+            "watchdog_ms is -1, write 10 to 1000, or 0 for none",
+        ),
+        (SimpleFOCPart, {"port": "x", "watchdog_ms": 50, "letter": "MM"}, "letter is 'MM'"),
+    ],
+)
+def test_a_table_of_another_drive_is_checked_too(part: type, other: dict[str, object], reason: str) -> None:
+    with pytest.raises(ValueError, match=reason):
+        part(**other)

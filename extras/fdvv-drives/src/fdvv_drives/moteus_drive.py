@@ -16,6 +16,7 @@ import msgspec
 
 from fdvv.errors import BuildError, DeviceError
 from fdvv_drives.drive import LostAnswerError, Reading, SerialLine
+from fdvv_drives.stage import check_watchdog
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -52,6 +53,7 @@ FAULTS = {
 """Of the register 0x00f, from mjbots' reference manual."""
 
 
+INPUT = re.compile(r"aux([12])\.([1-5])")
 ANALOG_INPUTS = {"1": 0x060, "2": 0x068}
 """Registers of the first analog input of each auxiliary port; they read from 0 to 1."""
 
@@ -71,17 +73,19 @@ class MoteusPart(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     force_zero: float = 0.5
     force_span_N: float = 0.0
 
+    def __post_init__(self) -> None:
+        check_watchdog(self.watchdog_ms, may_be_off=False)
+        if not 1 <= self.id <= 126:
+            raise ValueError(f"id is {self.id}, write 1 to 126")
+        has_scale = self.force_span_N and 0.0 <= self.force_zero <= 1.0
+        if self.force_input and not (INPUT.fullmatch(self.force_input) and has_scale):
+            needed = "force_input aux1.1 to aux2.5, force_span_N and a force_zero from 0 to 1"
+            raise ValueError(f"a load cell needs {needed}")
+
     def force_register(self) -> int | None:
-        """Return the register of the analog input; None without one. DeviceError if there is none such."""
-        if not self.force_input:
-            return None
-        found = re.fullmatch(r"aux([12])\.([1-5])", self.force_input)
-        if found is None or not self.force_span_N or not 0.0 <= self.force_zero <= 1.0:
-            raise DeviceError(
-                f"moteus {self.id}: a load cell needs force_input aux1.1 to aux2.5, force_span_N and a "
-                "force_zero from 0 to 1"
-            )
-        return ANALOG_INPUTS[found[1]] + int(found[2]) - 1
+        """Return the register of the analog input; None without one."""
+        found = INPUT.fullmatch(self.force_input)
+        return None if found is None else ANALOG_INPUTS[found[1]] + int(found[2]) - 1
 
 
 class Answer(NamedTuple):

@@ -16,6 +16,7 @@ import msgspec
 
 from fdvv.errors import BuildError, DeviceError
 from fdvv_drives.drive import LostAnswerError, Reading, line_errors
+from fdvv_drives.stage import check_watchdog
 
 if TYPE_CHECKING:
     import can
@@ -82,6 +83,11 @@ class ODrivePart(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     interface: str = "socketcan"
     bitrate: int = 1_000_000
     node: int = 0
+
+    def __post_init__(self) -> None:
+        check_watchdog(self.watchdog_ms, may_be_off=True)
+        if not 0 <= self.node <= 63:
+            raise ValueError(f"node is {self.node}, write 0 to 63")
 
 
 class ODriveDrive:

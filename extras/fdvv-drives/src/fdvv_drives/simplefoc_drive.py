@@ -15,7 +15,7 @@ import msgspec
 
 from fdvv.errors import DeviceError
 from fdvv_drives.drive import LostAnswerError, Reading, SerialLine
-from fdvv_drives.stage import TorqueUnit
+from fdvv_drives.stage import TorqueUnit, check_watchdog
 
 BOOT_s = 4.0
 """Many boards reset when their port is opened, and align their motor then."""
@@ -39,6 +39,11 @@ class SimpleFOCPart(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     baud: int = 115200
     letter: str = "M"
     torque: Literal["voltage", "dc_current", "foc_current"] = "foc_current"
+
+    def __post_init__(self) -> None:
+        check_watchdog(self.watchdog_ms, may_be_off=True)
+        if not (len(self.letter) == 1 and "A" <= self.letter <= "z"):
+            raise ValueError(f"letter is {self.letter!r}, write the one of command.add")
 
     @property
     def torque_unit(self) -> TorqueUnit:

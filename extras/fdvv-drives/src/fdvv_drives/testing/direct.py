@@ -57,7 +57,8 @@ class DirectDrive:
         self.torque, self.heard_s = torque, self._clock.time_s
         self.commanded.append(torque)
         self.moved_mm += self.drift_mm
-        position = (self.plant.x_mm + self.moved_mm) / self._stage.mm_unit
+        moved_mm = self.plant.x_mm + self.moved_mm
+        position = self._stage.mechanics.direction * moved_mm / self._stage.mm_unit
         self._clock.sleep(self.held_s)
         self.held_s = 0.0
         if self.lose:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from fdvv.device.own_rig import Hand, RigNumbers, SWITCHED_OFF_mm
+from fdvv.device.own_rig import Hand, RigNumbers
 
 STEP_s = 1e-4
 LONGEST_s = 0.25
@@ -43,13 +43,15 @@ class LivePlant:
 
     Attributes
     ----------
-    motor_N : against the finger, as the drive makes it at the moment. finger_N : between finger and cap.
+    travel_mm : of the cap. motor_N : against the finger, as the drive makes it now.
+    finger_N : between finger and cap.
     """
 
     LAG_s = 3e-4
     """Of the drive's current loop."""
 
     def __init__(self, travel_mm: float, seed: int = 0) -> None:
+        self.travel_mm = travel_mm
         self.cap, self.hand = CapOnGuide(travel_mm), Hand(np.random.default_rng(seed))
         self.motor_N = self.finger_N = 0.0
         self.x_mm = 0.0
@@ -67,9 +69,8 @@ class LivePlant:
         self.hand.press(travel_mm, velocity_mm_s)
 
     def release(self) -> None:
-        """Take the finger off, at once."""
-        self.hand.x_mm, self.hand.v_mm_s = SWITCHED_OFF_mm, 0.0
-        self.hand.duration_s, self.hand._reach_mm = 0.0, 0.0  # its path ends where it waits
+        """Take the finger off, at once; whose it was is forgotten."""
+        self.hand, self._press_s = Hand(np.random.default_rng(0)), (0.0, 0.0, 0.0)
 
     def advance(self, now_s: float, command_N: float) -> None:
         """Move on to now with this force commanded all the while."""
