@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from fdvv.errors import DeviceError
+from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import Fault
 from fdvv.rendering.compensate import check_force_sensor
 from fdvv.testing.conformance import plain_surface
 from fdvv_drives.device import DriveDevice
-from fdvv_drives.stage import Coil, Limits, Mechanics, Stage
+from fdvv_drives.stage import Coil, Limits, Loop, Mechanics, Stage
 from fdvv_drives.testing.direct import DirectDrive, VirtualClock, direct_device, direct_stage
 
 
@@ -251,3 +252,23 @@ def test_without_a_zero_the_cap_is_at_the_top_as_the_device_is_opened(direction:
     assert press.displacement_mm.max() == pytest.approx(drive.plant.travel_mm, abs=0.2)
     # against the finger, which is down in the drive's direction
     assert np.sign(np.median(drive.commanded)) == -direction
+
+
+@pytest.mark.parametrize("rate_Hz", [1000.0, 250.0])
+def test_the_row_of_the_table_is_that_of_the_speed_decided_in_the_press(rate_Hz: float) -> None:
+    mechanics = Mechanics(travel_mm=6.0, lead_mm_rev=10.0, force_N_Nm=500.0, zero_rev=0.0)
+    device, _drive, _clock = direct_device(Stage(mechanics, Limits(3.0), loop=Loop(rate_Hz=rate_Hz)))
+    x_mm = np.linspace(0.0, 4.0, 41)
+    rows = np.array([[40.0] * 41, [120.0] * 41])  # at 50 and 250 mm/s
+    device.upload(ForceSurface(x_mm, np.array([50.0, 250.0]), rows, rows), 4.0)
+    device.press(100.0)
+    log = device.log
+    position_mm, times_s = np.array(log.displacement_mm), log.times_s()
+    down = slice(0, int(np.argmax(position_mm)))
+    crossed_s = np.interp([0.5, 1.0], position_mm[down][-400:], times_s[down][-400:])
+    # the mean speed of a stroke is 1.2 of that between 0.5 and 1 mm (velocity_scale_q12)
+    velocity_mm_s = 1.2 * 0.5 / np.diff(crossed_s)[0]
+    decided = (position_mm[down] > 1.5) & (position_mm[down] < 3.9)
+    expected_cN = 40.0 + 0.4 * (velocity_mm_s - 50.0)
+    assert np.median(np.array(log.commanded_cN)[down][decided]) == pytest.approx(expected_cN, abs=8.0)
+    assert 50.0 < expected_cN < 110.0

@@ -9,8 +9,19 @@ from typing import NamedTuple, Protocol
 
 from fdvv.errors import BuildError, DeviceError
 
+WATCHDOG_ms = (10.0, 1000.0)
 STEP_s = 0.002
 """Longest wait inside one reading of a serial line."""
+
+
+def check_watchdog(watchdog_ms: float, may_be_off: bool) -> None:
+    """Refuse a time that guards nothing; msgspec makes a ValidationError of the ValueError."""
+    if may_be_off and watchdog_ms == 0:
+        return
+    low_ms, high_ms = WATCHDOG_ms
+    if not low_ms <= watchdog_ms <= high_ms:
+        off = ", or 0 for none" if may_be_off else ""
+        raise ValueError(f"watchdog_ms is {watchdog_ms:g}, write {low_ms:g} to {high_ms:g}{off}")
 
 
 class LostAnswerError(DeviceError):

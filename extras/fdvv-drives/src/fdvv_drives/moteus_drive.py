@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from fdvv.errors import BuildError, DeviceError
-from fdvv_drives.drive import LostAnswerError, Reading, SerialLine
-from fdvv_drives.stage import check_watchdog
+from fdvv_drives.drive import LostAnswerError, Reading, SerialLine, check_watchdog
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

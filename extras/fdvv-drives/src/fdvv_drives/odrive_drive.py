@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from fdvv.errors import BuildError, DeviceError
-from fdvv_drives.drive import LostAnswerError, Reading, line_errors
-from fdvv_drives.stage import check_watchdog
+from fdvv_drives.drive import LostAnswerError, Reading, check_watchdog, line_errors
 
 if TYPE_CHECKING:
     import can
@@ -96,8 +95,8 @@ class ODriveDrive:
     senses_force = False
 
     def __init__(self, part: ODrivePart, answer_s: float) -> None:
-        self.name = f"odrive {part.node}"
         self.watchdog_s = part.watchdog_ms / 1000 or None
+        self.name = f"odrive {part.node}" + ("" if self.watchdog_s else ", no watchdog")
         self._part, self._answer_s = part, answer_s
         self._error, self._state, self._heartbeats = AxisError(0), 0, 0
         self._is_behind = False

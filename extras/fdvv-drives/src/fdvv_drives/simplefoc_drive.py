@@ -14,8 +14,8 @@ from typing import Literal
 import msgspec
 
 from fdvv.errors import DeviceError
-from fdvv_drives.drive import LostAnswerError, Reading, SerialLine
-from fdvv_drives.stage import TorqueUnit, check_watchdog
+from fdvv_drives.drive import LostAnswerError, Reading, SerialLine, check_watchdog
+from fdvv_drives.stage import TorqueUnit
 
 BOOT_s = 4.0
 """Many boards reset when their port is opened, and align their motor then."""

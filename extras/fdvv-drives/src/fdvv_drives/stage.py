@@ -25,7 +25,6 @@ SPAN_mm = 16.0
 """The core's arithmetic holds no longer range of positions."""
 COUNTS_READING = 4
 """Positions are handed to the core in 1/16 µm, as the sum of this many readings."""
-WATCHDOG_ms = (10.0, 1000.0)
 LONGEST_TICK_us, SHORTEST_TICK_us = 1000, 100
 """Of the core; a slower loop counts several of its ticks per cycle."""
 
@@ -258,16 +257,6 @@ class Stage:
 
     def _wrong(self, place: str, reason: str, remedy: str) -> InputError:
         return InputError(self.source, place, reason, f"{remedy}; {REMEDY}")
-
-
-def check_watchdog(watchdog_ms: float, may_be_off: bool) -> None:
-    """Refuse a time that guards nothing; msgspec makes a ValidationError of the ValueError."""
-    if may_be_off and watchdog_ms == 0:
-        return
-    low_ms, high_ms = WATCHDOG_ms
-    if not low_ms <= watchdog_ms <= high_ms:
-        off = ", or 0 for none" if may_be_off else ""
-        raise ValueError(f"watchdog_ms is {watchdog_ms:g}, write {low_ms:g} to {high_ms:g}{off}")
 
 
 def read_tables(path: Path, kind: str, part: type[Part]) -> tuple[Part, dict[str, Any]]:
