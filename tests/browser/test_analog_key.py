@@ -182,7 +182,7 @@ def test_without_webhid_one_sentence_says_which_browsers_have_it_and_recordings_
     own.get_by_role("button", name="Play a simulated key").click()
     expect(own.locator(".tag.simulated")).to_be_visible()
     expect(own.get_by_role("status")).to_contain_text("drawn hand")
-    page.wait_for_selector(DOWN)
+    pressed(page, 1)
     expect(own.get_by_role("status")).to_contain_text("No key is read.")
     assert count(own) == 3
 
@@ -214,6 +214,6 @@ def test_nothing_is_cut_and_axe_finds_nothing_serious(page: Page, scheme: Any, s
     own = opened(page)
     own.get_by_label("Rapid trigger").check()
     own.get_by_role("button", name="Play a simulated key").click()
-    page.wait_for_selector(DOWN)
+    pressed(page, 1)
     assert faults(page) == []
     assert audit(page) == []
