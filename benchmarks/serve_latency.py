@@ -20,6 +20,18 @@ from tests.serve.running import Client, RunningServer
 
 OWN = {"parameters": [{"name": "a", "low": 0.0, "high": 1.0}, {"name": "b", "low": 0.0, "high": 1.0}]}
 PRESSES = 20
+ASKS = """
+import sys
+from types import SimpleNamespace
+from benchmarks.serve_latency import OWN
+from tests.serve.running import Client
+client = Client(SimpleNamespace(address=sys.argv[1], token=sys.argv[2]))
+client.call("optimize.begin", run="other", budget=10_000, **OWN)
+while True:
+    trial = client.call("optimize.ask", run="other")
+    client.call("optimize.tell", run="other", trial=trial["trial"], score=trial["design"]["a"])
+"""
+"""A client that lets `gp` think all the time."""
 
 
 def timed_ms(client: Client, call: str, **fields: Any) -> tuple[float, Any]:
@@ -82,6 +94,9 @@ def main() -> None:
             again = [timed_ms(client, "optimize.ask", run="sobol")[0] for _ in range(200)]
             shown("ask, nothing left", again)
             shown("key of a rig to event in the client, simulated", pressed(client, device))
+            with subprocess.Popen([sys.executable, "-c", ASKS, server.address, server.token]) as other:
+                shown("the same, while gp suggests for another client", pressed(client, device))
+                other.kill()
         finally:
             server.stop()
             rig.terminate()

@@ -10,6 +10,7 @@ import pytest
 from fdvv.errors import InputError, ModelError
 from fdvv.optimize.problem import Objective, Score
 from fdvv.optimize.run.belief import best_design
+from fdvv.optimize.run.report import optimize_html
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup
 from fdvv.optimize.space import Parameter
@@ -84,6 +85,16 @@ def test_a_log_scale_puts_the_middle_at_the_geometric_mean(tmp_path: Path) -> No
             run.model({"size_px": 100.0})
     with pytest.raises(ModelError, match="above 0"):
         Parameter("size_px", 0.0, 1.0, "log")
+
+
+def test_a_run_of_own_numbers_has_a_report(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    with run_of(tmp_path / "run") as run:
+        for trial in run.ask(3):
+            run.done(trial.number, {"score": Score(trial.design["size_px"])})
+        page = optimize_html(run)
+    assert "size (px)" in page
+    assert "recommended" in page
 
 
 def test_a_run_of_own_numbers_is_the_same_when_it_is_opened_again(tmp_path: Path) -> None:

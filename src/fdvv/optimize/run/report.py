@@ -181,18 +181,24 @@ def _found(session: Optimization, report: dict[str, Any]) -> Section:
     best, start = report["best"], session.start
     if best is None or start is None:
         return Section("Design found", ("Nothing is scored yet, or there are several objectives.",))
-    panels = [
-        DesignPanel(name, session.model(design, name), control_points(design))
-        for name, design in ((session.setup.start_name, start), ("recommended", best))
-    ]
-    svg = figure_svg(plot_designs(panels, simulated=session.setup.simulated), "First and recommended design")
+    # another program's own numbers are no buttons to draw
+    figures = () if session.setup.space.kind == "own" else (_designs_svg(session, start, best),)
     limits = {one.name: (f"{one.low:.2f}", f"{one.high:.2f}") for one in session.space.parameters}
     rows = tuple((name, f"{start[name]:.2f}", f"{best[name]:.2f}", *limits[name]) for name in limits)
     text = ["The recommendation is by what the engine believes of all trials, not by the luckiest score."]
     for name, which in report["at_bound"].items():
         text.append(f"{name} is the {which} allowed: a better design may lie beyond.")
     columns = ("parameter", "start", "recommended", "least", "most")
-    return Section("Design found", tuple(text), (svg,), (Table(columns, rows),))
+    return Section("Design found", tuple(text), figures, (Table(columns, rows),))
+
+
+def _designs_svg(session: Optimization, start: dict[str, float], best: dict[str, float]) -> str:
+    panels = [
+        DesignPanel(name, session.model(design, name), control_points(design))
+        for name, design in ((session.setup.start_name, start), ("recommended", best))
+    ]
+    axes = plot_designs(panels, simulated=session.setup.simulated)
+    return figure_svg(axes, "First and recommended design")
 
 
 def _scores(session: Optimization) -> Section | None:
