@@ -24,6 +24,8 @@ static class Check
         }
         using (var fdvv = new FdvvClient(address, token))
         {
+            fdvv.OnError += error => Console.WriteLine("handler " + error.Message);
+            fdvv.OnConnection += connected => { if (connected) throw new ArgumentException("failed"); };
             fdvv.OnEvent += found => {
                 if ((string)found["event"] == "device.press") lock (events) events.Add((string)found["kind"]);
             };

@@ -8,7 +8,7 @@ namespace UnityEngine
     public class RectTransform : Transform { public Vector2 sizeDelta, anchoredPosition; }
     public class GameObject { public void SetActive(bool active) { } }
     public class MonoBehaviour { public Transform transform; public GameObject gameObject; }
-    public static class Debug { public static void Log(object o) { } public static void LogError(object o) { } }
+    public static class Debug { public static void Log(object o) { } public static void LogError(object o) { } public static void LogException(Exception e) { } }
     public static class Random { public static float Range(float low, float high) => low; }
     public static class Time { public static double realtimeSinceStartupAsDouble => 0.0; }
 }

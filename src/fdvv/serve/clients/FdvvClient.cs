@@ -63,6 +63,8 @@ namespace Fdvv
     {
         public event Action<Dictionary<string, object>> OnEvent;
         public event Action<bool> OnConnection;
+        /// <summary>What a handler of the two above threw; else it goes to standard error.</summary>
+        public event Action<Exception> OnError;
 
         const int AgainMilliseconds = 500;
         static readonly HashSet<string> Repeatable = new HashSet<string> {
@@ -220,7 +222,7 @@ namespace Fdvv
                     || gone is System.Net.Sockets.SocketException || gone is InvalidOperationException) { }
                 var connected = Welcome != null;
                 Welcome = null;
-                if (connected) OnConnection?.Invoke(false);
+                if (connected) Raise(() => OnConnection?.Invoke(false));
                 lock (waiting) foreach (var one in waiting.Values) one.Sent = one.Sent && !one.Repeat;
                 Fail(one => one.Sent);
                 try { await Task.Delay(AgainMilliseconds, over.Token); } catch (OperationCanceledException) { }
@@ -240,7 +242,7 @@ namespace Fdvv
                 {
                     var message = await ReceiveAsync();
                     if (message == null) return;
-                    if (message.ContainsKey("event")) OnEvent?.Invoke(message);
+                    if (message.ContainsKey("event")) Raise(() => OnEvent?.Invoke(message));
                     else if (message["id"] is double id && id == 0) await WelcomedAsync(Result(message), first);
                     else Answered(message);
                 }
@@ -250,9 +252,19 @@ namespace Fdvv
         async Task WelcomedAsync(Dictionary<string, object> welcome, TaskCompletionSource<Dictionary<string, object>> first)
         {
             Welcome = welcome;
-            OnConnection?.Invoke(true);
+            Raise(() => OnConnection?.Invoke(true));
             first.TrySetResult(welcome);
             await SendWaitingAsync();
+        }
+
+        void Raise(Action handlers)
+        {
+            try { handlers(); }
+            catch (Exception error)
+            {
+                if (OnError == null) Console.Error.WriteLine(error);
+                else OnError(error);
+            }
         }
 
         void Answered(Dictionary<string, object> message)

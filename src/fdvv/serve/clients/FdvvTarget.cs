@@ -26,6 +26,7 @@ public class FdvvTarget : MonoBehaviour
         target.onClick.AddListener(() => pressed?.TrySetResult(true));
         fdvv = new FdvvClient(address, token);
         fdvv.OnConnection += connected => Debug.Log(connected ? "fdvv is connected" : "fdvv is gone; trying again");
+        fdvv.OnError += Debug.LogException;
         try
         {
             await fdvv.ConnectAsync();
