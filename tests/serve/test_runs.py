@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,10 @@ import pytest
 from fdvv.model.file import model_from_json
 from fdvv.optimize.problem import TrialState
 from fdvv.optimize.run.ledger import read_ledger
+from fdvv.optimize.space import Parameter
+from fdvv.serve import messages
+from fdvv.serve.runs import Runs
+from fdvv.studio.studio import Studio
 from tests.serve.conftest import folder_of
 from tests.serve.running import Client, RefusedCall, RunningServer
 
@@ -143,6 +148,26 @@ def test_a_name_that_could_be_a_path_is_refused(client: Client, name: str) -> No
     for call in ("optimize.begin", "optimize.resume", "optimize.ask"):
         with pytest.raises(RefusedCall):
             client.call(call, run=name, **(OWN if call == "optimize.begin" else {}))
+
+
+def test_a_score_is_forced_to_the_disk_before_it_is_answered(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runs, synced, fsync = Runs(Studio(tmp_path)), list[int](), os.fsync
+    parameters = (Parameter("a", 0.0, 1.0),)
+    runs.answer(messages.BeginRun(id=1, run="a", parameters=parameters, engine="sobol"))
+    asked = runs.answer(messages.AskDesign(id=2, run="a"))
+    assert isinstance(asked, messages.Suggestion)
+    assert asked.trial is not None
+
+    def noted(file: int) -> None:
+        fsync(file)
+        synced.append(os.fstat(file).st_size)
+
+    monkeypatch.setattr("os.fsync", noted)
+    runs.answer(messages.TellOutcome(id=3, run="a", trial=asked.trial, score=1.0))
+    assert synced == [(tmp_path / "serve" / "a" / "trials.jsonl").stat().st_size]
+    runs.close()
 
 
 def test_a_killed_server_has_every_score_that_it_answered(tmp_path: Path, run: str) -> None:
