@@ -8,6 +8,7 @@ from typing import get_args
 import msgspec
 import pytest
 
+from fdvv.serve import answers as a
 from fdvv.serve import messages as m
 from fdvv.serve.runs import ANSWERS
 from tests.conftest import REPOSITORY
@@ -15,13 +16,13 @@ from tests.conftest import REPOSITORY
 PAGE = (REPOSITORY / "docs" / "reference" / "serve-messages.md").read_text(encoding="utf-8")
 RUN, DEVICE = "a run", "a device"
 RESULTS: dict[str, tuple[type[msgspec.Struct], str]] = {
-    "hello": (m.Welcome, ""),
-    "clock": (m.HostClock, ""),
-    "optimize.ask": (m.Suggestion, ""),
-    "optimize.best": (m.Best, ""),
-    "optimize.compare": (m.Pair, ""),
-    "device.info": (m.DeviceInformation, DEVICE),
-    **{f"optimize.{name}": (m.RunStatus, RUN) for name in ("begin", "resume", "tell", "prefer")},
+    "hello": (a.Welcome, ""),
+    "clock": (a.HostClock, ""),
+    "optimize.ask": (a.Suggestion, ""),
+    "optimize.best": (a.Best, ""),
+    "optimize.compare": (a.Pair, ""),
+    "device.info": (a.DeviceInformation, DEVICE),
+    **{f"optimize.{name}": (a.RunStatus, RUN) for name in ("begin", "resume", "tell", "prefer")},
 }
 """What a call answers, and the words that stand for a part of it; the others answer a device."""
 
@@ -50,8 +51,8 @@ def test_a_call_is_described_with_its_fields_and_result(kind: type[m.Request]) -
     assert _names(asked) - values == {*kind.__struct_fields__} - {"id"}
     required = {f.name for f in msgspec.structs.fields(kind) if f.required} - {"id"}
     assert required <= _names(re.sub(r"\[.*?\]", "", asked))
-    found, words = RESULTS.get(_tag(kind), (m.DeviceIs, DEVICE))
-    common = {RUN: m.RunStatus, DEVICE: m.DeviceIs}.get(words)
+    found, words = RESULTS.get(_tag(kind), (a.DeviceIs, DEVICE))
+    common = {RUN: a.RunStatus, DEVICE: a.DeviceIs}.get(words)
     left = {*found.__struct_fields__} - ({*common.__struct_fields__} if common else set())
     assert left <= _names(answered)
     assert _names(answered) <= left
@@ -66,22 +67,22 @@ def test_no_call_is_described_that_is_none() -> None:
 def test_runs_and_devices_are_described() -> None:
     text = PAGE.split("A **run** has")[1].split("\n\n")[0]
     run, device = text.split("A **device** has")
-    assert _names(run) == {*m.RunStatus.__struct_fields__}
-    assert _names(device) == {*m.DeviceIs.__struct_fields__}
+    assert _names(run) == {*a.RunStatus.__struct_fields__}
+    assert _names(device) == {*a.DeviceIs.__struct_fields__}
     retest = next(line for line in PAGE.splitlines() if line.startswith("| `retest`"))
-    assert {*m.RetestFound.__struct_fields__} <= _names(retest)
+    assert {*a.RetestFound.__struct_fields__} <= _names(retest)
 
 
-@pytest.mark.parametrize("kind", m.EVENTS, ids=_tag)
+@pytest.mark.parametrize("kind", a.EVENTS, ids=_tag)
 def test_an_event_is_described_with_its_fields(kind: type[msgspec.Struct]) -> None:
     (fields,) = _rows("Events")[_tag(kind)]
-    if kind is m.StatusEvent:
+    if kind is a.StatusEvent:
         assert fields.startswith(DEVICE)
         return
-    kinds = set(get_args(m.PressKind)) if kind is m.PressEvent else set()
+    kinds = set(get_args(a.PressKind)) if kind is a.PressEvent else set()
     assert {*kind.__struct_fields__} <= _names(fields)
     assert _names(fields) <= {*kind.__struct_fields__} | kinds
 
 
 def test_no_event_is_described_that_is_none() -> None:
-    assert {*_rows("Events")} == {_tag(kind) for kind in m.EVENTS}
+    assert {*_rows("Events")} == {_tag(kind) for kind in a.EVENTS}

@@ -15,7 +15,7 @@ from fdvv.model.file import model_from_json
 from fdvv.optimize.problem import TrialState
 from fdvv.optimize.run.ledger import read_ledger
 from fdvv.optimize.space import Parameter
-from fdvv.serve import messages
+from fdvv.serve import answers, messages
 from fdvv.serve.runs import Runs
 from fdvv.studio.studio import Studio
 from tests.serve.conftest import folder_of
@@ -143,7 +143,9 @@ def test_a_run_that_cannot_be_is_refused_and_leaves_nothing(
     assert not folder_of(server, run).exists()
 
 
-@pytest.mark.parametrize("name", ["", ".", "..", "../x", "a/b", "a\\b", "/x", "-x", "x" * 61, "é", "a\n"])
+@pytest.mark.parametrize(
+    "name", ["", ".", "..", "../x", "a/b", "a\\b", "/x", "-x", "x" * 61, "é", "a\n", "nul", "COM1"]
+)
 def test_a_name_that_could_be_a_path_is_refused(client: Client, name: str) -> None:
     for call in ("optimize.begin", "optimize.resume", "optimize.ask"):
         with pytest.raises(RefusedCall):
@@ -157,7 +159,7 @@ def test_a_score_is_forced_to_the_disk_before_it_is_answered(
     parameters = (Parameter("a", 0.0, 1.0),)
     runs.answer(messages.BeginRun(id=1, run="a", parameters=parameters, engine="sobol"))
     asked = runs.answer(messages.AskDesign(id=2, run="a"))
-    assert isinstance(asked, messages.Suggestion)
+    assert isinstance(asked, answers.Suggestion)
     assert asked.trial is not None
 
     def noted(file: int) -> None:
@@ -174,7 +176,7 @@ def test_a_killed_server_has_every_score_that_it_answered(tmp_path: Path, run: s
     answered: dict[int, float] = {}
     server = RunningServer(tmp_path / "project")
     port, token = server.port, server.token
-    for life in range(3):
+    for life in range(2):
         client = Client(server)
         if life:
             state = client.call("optimize.resume", run=run)

@@ -27,6 +27,7 @@ from fdvv.errors import FdvvError, InputError
 from fdvv.model.file import builtin_names
 from fdvv.optimize.engines.registry import engine_names, pair_engine_names
 from fdvv.program.library import MAKERS
+from fdvv.serve import answers as a
 from fdvv.serve import messages as m
 from fdvv.serve.rig import RigClient, RigOwnership
 from fdvv.serve.runs import Runs
@@ -121,7 +122,7 @@ class Connection:
             if isinstance(ask, m.Hello):
                 self._fail(ask.id, InputError("hello", "call", "was said before", "say it once"))
             elif isinstance(ask, m.Clock):
-                self._answer(ask.id, m.HostClock(time.monotonic()))
+                self._answer(ask.id, a.HostClock(time.monotonic()))
             elif isinstance(ask, m.Stop):
                 self._start(self._run(self._rig.answer, ask))
             else:
@@ -169,9 +170,9 @@ class Connection:
             log.exception("a call failed")
             self._fail(ask.id, RuntimeError(f"{type(error).__name__}; the server's terminal says more"))
 
-    def _welcome(self) -> m.Welcome:
+    def _welcome(self) -> a.Welcome:
         served = self._served
-        return m.Welcome(
+        return a.Welcome(
             m.PROTOCOL,
             __version__,
             time.monotonic(),
@@ -187,10 +188,10 @@ class Connection:
     # -- out -----------------------------------------------------------------------------------------------
 
     def _answer(self, number: int, result: object) -> None:
-        self._put(msgspec.json.encode(m.Result(number, result)))
+        self._put(msgspec.json.encode(a.Result(number, result)))
 
     def _fail(self, number: int | None, error: Exception) -> None:
-        self._put(msgspec.json.encode(m.Failure(number, refusal_of(error))))
+        self._put(msgspec.json.encode(a.Failure(number, refusal_of(error))))
 
     def _send(self, event: msgspec.Struct) -> None:
         """Send an event; any thread may call."""
@@ -225,10 +226,10 @@ class Connection:
         task.add_done_callback(self._tasks.discard)
 
 
-def refusal_of(error: Exception) -> m.Refusal:
+def refusal_of(error: Exception) -> a.Refusal:
     """Return an error as its four parts, without paths of this machine."""
     if isinstance(error, InputError):
-        return m.Refusal(PurePath(error.source).name, error.place, error.reason, error.remedy)
+        return a.Refusal(PurePath(error.source).name, error.place, error.reason, error.remedy)
     line = error_line(error) if isinstance(error, FdvvError | OSError) else str(error)
     reason, _, remedy = line.partition("; ")
-    return m.Refusal(type(error).__name__, "", reason, remedy)
+    return a.Refusal(type(error).__name__, "", reason, remedy)

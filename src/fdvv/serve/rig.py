@@ -17,6 +17,7 @@ from fdvv.program.library import MAKERS, load_shipped
 from fdvv.program.program import Program
 from fdvv.project.programs import read_program
 from fdvv.rendering.actuation_file import load_actuation
+from fdvv.serve import answers as a
 from fdvv.serve import messages as m
 from fdvv.serve.runs import model_of
 from fdvv.studio.api.device import scope_frame
@@ -92,7 +93,7 @@ class RigClient:
             raise InputError(_call(ask), "device", reason, "open it, once it is free")
         return self._answer(ask)
 
-    def _open(self, ask: m.OpenDevice) -> m.DeviceIs:
+    def _open(self, ask: m.OpenDevice) -> a.DeviceIs:
         with self._rig.lock:
             if self._rig.owner or self._gone:
                 reason = (
@@ -112,7 +113,7 @@ class RigClient:
             case m.DeviceFacts():
                 info = session.held().device.info()
                 limits = {key: asdict(info)[key] for key in ("force_limit_cN", "travel_limit_mm")}
-                return message_of(m.DeviceInformation, session.refresh(), **limits)
+                return message_of(a.DeviceInformation, session.refresh(), **limits)
             case m.Upload():
                 return device_is(self._upload(ask))
             case m.Arm():
@@ -130,7 +131,7 @@ class RigClient:
                 self._release()
                 return device_is(DeviceStatus())
 
-    def _stop(self) -> m.DeviceIs:
+    def _stop(self) -> a.DeviceIs:
         session = self._rig.session
         if session.held().remote is None:
             return device_is(session.refresh())  # it makes whole presses: between them there is no force
@@ -153,26 +154,26 @@ class RigClient:
 
     def _key(self, change: KeyChange) -> None:
         before, self._level = self._level, change.level
-        kind: m.PressKind = "reset" if not change.level else "level" if before else "actuation"
-        self._send(m.PressEvent(kind, change.t_s, change.host_s, change.level, self._simulated))
+        kind: a.PressKind = "reset" if not change.level else "level" if before else "actuation"
+        self._send(a.PressEvent(kind, change.t_s, change.host_s, change.level, self._simulated))
 
     def _ticks(self, piece: TickPiece) -> None:
         for kind, t_s, x_mm in self._touch.changes(piece):
             host_s = self._rig.session.held().host_s(t_s)
-            self._send(m.PressEvent(kind, t_s, host_s, self._level, self._simulated, x_mm))
+            self._send(a.PressEvent(kind, t_s, host_s, self._level, self._simulated, x_mm))
         binner = self._binner
         if binner and (found := binner.add(piece)).number.size:
             frame = scope_frame(found, binner.bin_s)
-            self._send(message_of(m.TelemetryEvent, frame))
+            self._send(message_of(a.TelemetryEvent, frame))
 
     def _tell(self, status: Struct) -> None:
         if not isinstance(status, DeviceStatus):
             return
         before, self._last = self._last, status
         if status.fault and status.fault != before.fault:
-            self._send(m.FaultEvent(status.fault, not status.device))
+            self._send(a.FaultEvent(status.fault, not status.device))
         if device_is(status) != device_is(before):
-            self._send(message_of(m.StatusEvent, status))
+            self._send(message_of(a.StatusEvent, status))
 
 
 class Touch:
@@ -181,12 +182,12 @@ class Touch:
     def __init__(self) -> None:
         self._down: bool | None = None
 
-    def changes(self, piece: TickPiece) -> list[tuple[m.PressKind, float, float]]:
+    def changes(self, piece: TickPiece) -> list[tuple[a.PressKind, float, float]]:
         """Return each kind, time (s) and displacement (mm); nothing while nothing is rendered.
 
         A cap that is deep at first has sunk: it counts once it was up.
         """
-        x, found = piece.displacement_mm, list[tuple[m.PressKind, float, float]]()
+        x, found = piece.displacement_mm, list[tuple[a.PressKind, float, float]]()
         deep = np.where(x > TOP_mm, DOWN, np.where(x < UP_mm, UP, BETWEEN))
         for row in np.flatnonzero((deep != BETWEEN) | ~piece.rendered).tolist():
             down = bool(deep[row] == DOWN)
@@ -200,8 +201,8 @@ class Touch:
         return found
 
 
-def device_is(status: DeviceStatus) -> m.DeviceIs:
-    return message_of(m.DeviceIs, status)
+def device_is(status: DeviceStatus) -> a.DeviceIs:
+    return message_of(a.DeviceIs, status)
 
 
 def _program(studio: Studio, program: m.Button) -> Program:

@@ -22,6 +22,7 @@ from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import SETUP_FILE, OptimizeSetup, SpaceSetup, model_space_setup
 from fdvv.optimize.run.verdict import retest_of
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS
+from fdvv.serve import answers as a
 from fdvv.serve import messages as m
 from fdvv.studio.studio import Studio
 
@@ -65,7 +66,7 @@ class Runs:
                 run.close()
             self._open.clear()
 
-    def _begin(self, ask: m.BeginRun) -> m.RunStatus:
+    def _begin(self, ask: m.BeginRun) -> a.RunStatus:
         setup = setup_of(ask, self._studio)
         folder = self._folder / ask.run
         with self._lock:
@@ -127,10 +128,10 @@ def _space(ask: m.BeginRun, studio: Studio) -> tuple[SpaceSetup, dict[str, float
     return setup, ask.start or neutral
 
 
-def status_of(run: Optimization, _ask: object = None) -> m.RunStatus:
+def status_of(run: Optimization, _ask: object = None) -> a.RunStatus:
     setup, objective = run.setup, run.problem.objectives[0]
     scored = sum(one.state is TrialState.DONE for one in run.trials)
-    return m.RunStatus(
+    return a.RunStatus(
         run.folder.name,
         setup.engine,
         run.pair_engine is not None,
@@ -152,16 +153,16 @@ def _model(run: Optimization, design: dict[str, float] | None) -> dict[str, Any]
     return found
 
 
-def _ask(run: Optimization, _ask: m.AskDesign) -> m.Suggestion:
+def _ask(run: Optimization, _ask: m.AskDesign) -> a.Suggestion:
     """Return the trial that is open, else the next one of the search, else of the retest."""
     open_ = (one for one in (*run.trials, *run.retests) if one.state in OPEN)
     trial = next(open_, None) or next(iter(run.ask()), None) or run.retest()
     if trial is None:
-        return m.Suggestion(None, {}, None, run.left, run.finished)
-    return m.Suggestion(trial.number, trial.design, _model(run, trial.design), run.left, False)
+        return a.Suggestion(None, {}, None, run.left, run.finished)
+    return a.Suggestion(trial.number, trial.design, _model(run, trial.design), run.left, False)
 
 
-def _tell(run: Optimization, ask: m.TellOutcome) -> m.RunStatus:
+def _tell(run: Optimization, ask: m.TellOutcome) -> a.RunStatus:
     """Record an outcome; the same one again, from a client that missed the answer, changes nothing."""
     scored = ask.outcome == "done"
     if scored != (ask.score is not None):
@@ -188,24 +189,24 @@ def _is(trial: Trial, run: Optimization, ask: m.TellOutcome) -> bool:
     return ask.score is None or trial.scores == {run.problem.objectives[0].name: _score(run, ask)}
 
 
-def _best(run: Optimization, _ask: m.BestOfRun) -> m.Best:
+def _best(run: Optimization, _ask: m.BestOfRun) -> a.Best:
     found, retest = best_design(run), retest_of(run)
-    return m.Best(
+    return a.Best(
         **vars(found),
         model=_model(run, found.design),
-        retest=None if retest is None else m.RetestFound(**to_builtins(retest)),
+        retest=None if retest is None else a.RetestFound(**to_builtins(retest)),
     )
 
 
-def _compare(run: Optimization, _ask: m.AskPair) -> m.Pair:
+def _compare(run: Optimization, _ask: m.AskPair) -> a.Pair:
     pair = run.compare()
     if pair is None:
-        return m.Pair(None, {}, {}, None, None, run.left, run.finished)
+        return a.Pair(None, {}, {}, None, None, run.left, run.finished)
     models = _model(run, pair.first), _model(run, pair.second)
-    return m.Pair(pair.number, pair.first, pair.second, *models, run.left, False)
+    return a.Pair(pair.number, pair.first, pair.second, *models, run.left, False)
 
 
-def _prefer(run: Optimization, ask: m.TellAnswer) -> m.RunStatus:
+def _prefer(run: Optimization, ask: m.TellAnswer) -> a.RunStatus:
     known = (*run.comparisons, *run.retest_comparisons)
     if not any(one.number == ask.pair and one.answer is ask.answer for one in known):
         run.answer(ask.pair, ask.answer)

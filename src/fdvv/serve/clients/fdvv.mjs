@@ -111,7 +111,8 @@ export class Fdvv {
     return this.call("optimize.best", { run });
   }
 
-  _open(done = (_) => {}, failed = (_) => {}) {
+  /** @param {(welcome: any) => void} [done] @param {(error: Error) => void} [failed] */
+  _open(done = () => {}, failed = () => {}) {
     const socket = new WebSocket(this.address);
     this._socket = socket;
     let refused = false;
