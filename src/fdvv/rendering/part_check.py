@@ -74,7 +74,7 @@ def check_parts(
     ramp = _Ramp.of(device, guard.travel_mm)
     if fault := ramp.fault(guard.travel_mm):
         raise PartFaultError(fault)
-    device.upload(check_surface(guard.travel_mm), guard.travel_mm)
+    device.upload(check_surface(guard.travel_mm, _most_cN(device)), guard.travel_mm)
     for _ in range(TRIES):
         ask(CHECK_mm_s, guard.travel_mm)
         facts = _pressed(device, guard)
@@ -89,12 +89,17 @@ def check_parts(
     )
 
 
-def check_surface(travel_mm: float) -> ForceSurface:
-    """Return a table of 29 cN, which lifts the cap, and varies down to 11 cN over the middle of the press."""
+def _most_cN(device: Remote) -> float:
+    return min(PUSH_cN, device.info().force_limit_cN)
+
+
+def check_surface(travel_mm: float, most_cN: float = PUSH_cN) -> ForceSurface:
+    """Return a table of most_cN, which lifts the cap, and varies down to 11/29 of it amid the press."""
     x = np.linspace(0.0, travel_mm, max(2, round(travel_mm / STEP_mm) + 1))
     within = np.clip((np.minimum(x, travel_mm - x) - END_mm) / FADE_mm, 0.0, 1.0)
-    press = PUSH_cN - within * WAVE_cN * (1 - np.cos(2 * np.pi * (x - END_mm) / WAVE_mm))
-    tables = [np.array([row], dtype=np.float64) for row in (press, np.full(x.size, PUSH_cN))]
+    wave = WAVE_cN * (1 - np.cos(2 * np.pi * (x - END_mm) / WAVE_mm))
+    rows = (PUSH_cN - within * wave, np.full(x.size, PUSH_cN))
+    tables = [np.array([row], dtype=np.float64) * most_cN / PUSH_cN for row in rows]
     return ForceSurface(x, np.array([CHECK_mm_s]), tables[0], tables[1])
 
 
@@ -157,10 +162,11 @@ class _Ramp:
 
     @classmethod
     def of(cls, device: Remote, travel_mm: float) -> _Ramp:
-        _load(device, travel_mm, PUSH_cN)
+        most_cN = _most_cN(device)
+        _load(device, travel_mm, most_cN)
         rest = _watched(device, REST_s)
         up, after = _armed(device), _watched(device, REST_s)
-        _load(device, travel_mm, -PUSH_cN)
+        _load(device, travel_mm, -most_cN)
         down = _armed(device)
         up_mm, down_mm = (_last_mm(device, columns) for columns in (up, down))
         whole = [np.concatenate([getattr(c, name) for c in (rest, up, after, down)]) for name in COLUMNS]

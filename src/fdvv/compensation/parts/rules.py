@@ -147,7 +147,7 @@ def cap_down(facts: PressFacts) -> PartFault | None:
         return None
     asked = force_text(float(pushed.mean()), ".0f")
     seen = f"the coil does not lift the cap, which lies at {place.mean():.2f} mm, by a command of {asked}"
-    remedy = "look whether its wires are exchanged or off, then at driver, supply and the settings' gain"
+    remedy = "look whether its wires are exchanged or off, at driver, supply and gain, or for a heavier mover"
     return PartFault(COIL, seen, remedy)
 
 
