@@ -16,9 +16,11 @@ import pytest
 
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LockstepPort
+from fdvv.device.plant import Inputs
 from fdvv.device.remote import PressedDevice
 from fdvv.errors import DeviceError
 from fdvv.model.press import Press
+from fdvv.protocol.messages import CN64_PER_cN
 from fdvv.protocol.tables import Settings
 from fdvv.rendering.session_log import PRESSES, PressLog
 from fdvv.testing.scripted import ScriptedDevice
@@ -252,8 +254,8 @@ def test_the_board_as_a_program_goes_on_where_it_stopped(fdvv: Run, tmp_path: Pa
     assert (whole.status, whole.err) == (0, "")
     path = tmp_path / "s" / PRESSES
     lines = path.read_bytes().splitlines(keepends=True)
-    # as if it had been killed in its sixth press
-    path.write_bytes(b"".join(lines[:6]) + lines[6][:100])
+    # as if it had been killed in its sixth press; the first records are the run's begin and the rig's check
+    path.write_bytes(b"".join(lines[:7]) + lines[7][:100])
     gone_on = fdvv(*learn, "--json")
     assert gone_on.status == 0
     warning = "the last record is not whole and is left out; presses kept: 5"
@@ -265,7 +267,8 @@ def test_the_board_as_a_program_goes_on_where_it_stopped(fdvv: Run, tmp_path: Pa
     assert "device." in other.err
 
 
-FELT = Settings(force_gain_q14=2000, force_offset_counts=2048)
+FELT = Settings(force_gain_q14=80_000, force_offset_counts=2048)
+STOP_cN = 80.0
 
 
 def pressed_again_and_again() -> PressedDevice:
@@ -273,10 +276,14 @@ def pressed_again_and_again() -> PressedDevice:
     corners_s = np.cumsum([0.0, 0.3, 0.04, 0.02, 0.04])
     t_s = np.arange(round(corners_s[-1] / (FELT.tick_us * 1e-6))) * FELT.tick_us * 1e-6
     path = np.tile(np.interp(t_s, corners_s, [0.0, 0.0, 4.0, 4.0, 0.0]), 60)
-    plant = ScriptedPlant(
-        path, 100.0, FELT, np.random.default_rng(0),
-        meddle=lambda tick, inputs: inputs._replace(force_counts=2048 + tick % 64),
-    )  # fmt: skip
+
+    def felt(tick: int, inputs: Inputs) -> Inputs:
+        depth_mm = path[min(tick, path.size - 1)]
+        force_cN = plant._rendered_cN[-1] + STOP_cN * (depth_mm > 3.99) if depth_mm > 0.02 else 0.0
+        counts = max(0.0, force_cN) * CN64_PER_cN / (FELT.force_gain_q14 / 2**14)
+        return inputs._replace(force_counts=round(2048 + counts + tick % 3))
+
+    plant = ScriptedPlant(path, 100.0, FELT, np.random.default_rng(0), meddle=felt)
     device = PressedDevice(LockstepPort(LibraryBoard(), plant, FELT.tick_us))
     device.configure(FELT)
     return device
@@ -295,13 +302,14 @@ def test_a_person_is_asked_and_answered_press_by_press_and_nothing_of_it_is_lost
     ask = ("compensate", "mx-clear", "--velocity", "100", "--rounds", "1", *SERIAL)
     ran = fdvv(*ask, "--presses", "3", "--json")
     assert ran.status == 0
-    lines = ran.err.splitlines()
+    check, *lines = ran.err.splitlines()
+    assert check == "press 1 of 1: 50 mm/s, 4.0 mm in 80 ms, down to the stop and let go"
     assert len(lines) == 6
     assert lines[0] == "press 1 of 3: 100 mm/s, 4.0 mm in 40 ms, down to the stop and let go"
     assert re.match(r"1 of 3, 100 mm/s: achieved (9\d|10\d) mm/s; moved the press by up to", lines[1])
     # without a name the presses are kept beside
     assert len(PressLog.read(tmp_path / "mx-clear.session" / PRESSES)[1]) == 3
-    assert ran.json["receipt"]["device"]["settings"]["force_gain_q14"] == 2000
+    assert ran.json["receipt"]["device"]["settings"]["force_gain_q14"] == FELT.force_gain_q14
     # another speed than the cap's is not used, ten times, and the session says how to go on
     slow = fdvv(*ask[:3], "40", *ask[4:], "--session", "slow")
     assert slow.status == 1

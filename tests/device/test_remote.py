@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
+from fdvv.device.contract import PressError
 from fdvv.device.plant import Inputs
 from fdvv.device.remote import PressedDevice, find_press
 from fdvv.device.serial import SerialPort
@@ -54,8 +55,11 @@ def test_a_person_s_press_is_found_in_the_telemetry_of_a_serial_line(rig: Callab
 def test_without_a_press_an_error_is_raised_after_the_patience(rig: Callable[..., Rig]) -> None:
     device = opened(rig(presses=0), 0.2)
     device.upload(plain_surface(), 4.0)
-    with pytest.raises(DeviceError, match=r"nobody pressed within 0\.2 s"):
+    with pytest.raises(PressError, match=r"nobody pressed within 0\.2 s") as caught:
         device.press(100.0)
+    seen = caught.value.press
+    assert seen is not None, "what was recorded meanwhile says whether that is the person's doing"
+    assert seen.displacement_mm.max() < 0.15, "the cap lay at the top all the while"
     assert device.fault().fault is Fault.NONE
     device.close()
 

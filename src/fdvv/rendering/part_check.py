@@ -154,10 +154,14 @@ def _unseen(guard: PartGuard, ramp: _Ramp) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class _Ramp:
-    """Where the cap lay under a force up and under one down; all ticks of both, and of the rests before."""
+    """Where the cap lay under a force up and under one down; all ticks of both, and of the rests before.
+
+    free : it lay still while there was no force, so nobody moved it.
+    """
 
     up_mm: float
     down_mm: float
+    free: bool
     facts: PressFacts
 
     @classmethod
@@ -173,16 +177,16 @@ class _Ramp:
         tick_s = device.settings().tick_us * 1e-6
         felt = whole[2] if device.settings().force_gain_q14 else None
         facts = PressFacts(tick_s, whole[0], whole[1], felt, travel_mm)
-        return cls(up_mm, down_mm, facts)
+        return cls(up_mm, down_mm, _lies(rest) and _lies(after), facts)
 
     @property
     def lifted(self) -> bool:
-        return self.down_mm - self.up_mm > MOVED_mm
+        return self.free and self.down_mm - self.up_mm > MOVED_mm
 
     def fault(self, travel_mm: float) -> PartFault | None:
         if fault := part_at_fault(self.facts, PLACE_RULES):
             return fault
-        if self.up_mm - self.down_mm > MOVED_mm:
+        if self.free and self.up_mm - self.down_mm > MOVED_mm:
             seen = f"the coil pushes the other way: {PUSH_cN:.0f} cN up took the cap down"
             return PartFault(COIL, seen, "exchange its two wires")
         # a cap that came down again lies on the stop
@@ -216,6 +220,12 @@ def _armed(device: Remote) -> TickColumns:
         raise
     finally:
         device.stop()
+
+
+def _lies(columns: TickColumns) -> bool:
+    """Return whether the cap stayed where it was in the later half of a rest, after it fell."""
+    later = columns.displacement_mm[columns.displacement_mm.size // 2 :]
+    return bool(later.size and np.ptp(later) < MOVED_mm / 2)
 
 
 def _last_mm(device: Remote, columns: TickColumns) -> float:
