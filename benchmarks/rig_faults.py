@@ -100,7 +100,7 @@ class _Watched:
 
 
 def begins_of(seed: int, name: str) -> Iterator[int]:
-    """Give the presses at which a fault begins: at once, and in mid-session."""
+    """Yield the presses at which a fault begins: at once, and in mid-session."""
     if not PLANTED[name].begins_late:
         yield 0
     yield LATE + seed % 4

@@ -66,7 +66,7 @@ def test_one_press_that_differs_is_chance_unless_the_board_says_that_something_i
     assert found.presses == 1
 
 
-def test_a_zero_that_wanders_is_told_from_the_coil_by_the_lowest_reading() -> None:
+def test_the_lowest_reading_distinguishes_a_zero_that_wanders_from_a_weak_coil() -> None:
     first, second = looked(taught(), Scripted(zero_cN=20, seed=8), Scripted(zero_cN=40, seed=9))
     assert first is None
     assert second is not None
