@@ -9,7 +9,7 @@ import pytest
 
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.own_rig import OwnRigPerson
+from fdvv.device.own_rig import OwnRigPerson, RigNumbers
 from fdvv.device.plant import Inputs, Outputs
 from fdvv.device.twin import SimulatedPerson
 from fdvv.protocol.frame import Frame, crc16, encode, stuff, unstuff
@@ -206,9 +206,20 @@ def own_rig(board: LibraryBoard | None = None) -> LinkedDevice:
     return LinkedDevice(board or LibraryBoard(), OwnRigPerson(PlainRig, 1))
 
 
-@pytest.mark.parametrize("rig", ["own", "twin", "recommended twin"])
+def weak_rig() -> PlainRig:
+    """A rig of 0.5 N and 2 mm at 20 kHz."""
+    rig = PlainRig()
+    few = {"supply_V": 3.0, "tick_us": 50, "travel_mm": 2.0, "force_sensor_N": 0.6}
+    rig.numbers = RigNumbers("weak", 0.5, 0.45, **few)  # type: ignore[arg-type]
+    return rig
+
+
+@pytest.mark.parametrize("rig", ["own", "twin", "recommended twin", "weak"])
 def test_the_firmware_keeps_every_rule(rig: str) -> None:
-    device = own_rig() if rig == "own" else LinkedDevice(LibraryBoard(), SimulatedPerson(Rig()))
+    person = (
+        SimulatedPerson(Rig()) if "twin" in rig else OwnRigPerson({"own": PlainRig, "weak": weak_rig}[rig], 1)
+    )
+    device = LinkedDevice(LibraryBoard(), person)
     before = device.settings()
     results = list(check_link(device))
     assert [result for result in results if not result.passed] == []

@@ -305,6 +305,10 @@ class RigAware:
         rig = try_identification(presses, state.job.travel_mm, limits, prior)
         if isinstance(rig, str):
             return replace(state, identification=presses, message=rig)
+        return self.identified(state, rig, presses)
+
+    def identified(self, state: RigState, rig: RigModel, presses: tuple[Press, ...]) -> RigState:
+        """Return the state once a rig is identified from presses, learned from them all."""
         table = prior_table(state.job, rig, self.learning)
         after = replace(state, rig=rig, identification=presses, tables=(table, table))
         speeds = state.job.target.velocity_mm_s

@@ -24,17 +24,21 @@ def plain_surface(force_cN: float = 40.0, travel_mm: float = 4.0) -> ForceSurfac
 
 
 class DeviceConformance:
-    """Inherit, implement `make`, and pytest runs the contract of fdvv.device.contract.Device on it."""
+    """Inherit, implement `make`, and pytest runs the contract of fdvv.device.contract.Device on it.
+
+    travel_mm, force_cN : of the table that is pressed, which rises by 5 cN/mm; a weak device needs less.
+    """
 
     travel_mm = 4.0
     speed_mm_s = 100.0
+    force_cN = 40.0
 
     def make(self) -> Device:
         """Return a fresh device; twice the same one if it has a seed."""
         raise NotImplementedError
 
     def pressed(self, device: Device) -> Press:
-        device.upload(plain_surface(travel_mm=self.travel_mm), self.travel_mm)
+        device.upload(plain_surface(self.force_cN, self.travel_mm), self.travel_mm)
         return device.press(self.speed_mm_s)
 
     def test_it_tells_who_it_is(self) -> None:
@@ -61,7 +65,7 @@ class DeviceConformance:
     def test_a_refused_upload_leaves_the_old_table(self) -> None:
         device, other = self.make(), self.make()
         expected = self.pressed(other)
-        device.upload(plain_surface(travel_mm=self.travel_mm), self.travel_mm)
+        device.upload(plain_surface(self.force_cN, self.travel_mm), self.travel_mm)
         refused(lambda: device.upload(plain_surface(1e6), self.travel_mm))
         assert np.allclose(np.median(device.press(100.0).force_cN), np.median(expected.force_cN), atol=30)
 
@@ -88,7 +92,7 @@ class DeviceConformance:
 
     def test_a_paced_table_is_pressed_like_any_other(self) -> None:
         device = self.make()
-        surface = plain_surface(travel_mm=self.travel_mm)
+        surface = plain_surface(self.force_cN, self.travel_mm)
         device.upload(surface, self.travel_mm, paced=True)
         press = device.press(self.speed_mm_s)
         assert press.commanded_cN is not None

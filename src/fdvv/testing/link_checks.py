@@ -20,6 +20,8 @@ from fdvv.protocol.tables import Fault, Message, Mode, PingRequest, Settings
 from fdvv.testing.conformance import plain_surface
 
 FORCE_cN, TRAVEL_mm, SPEED_mm_s = 40.0, 4.0, 100.0
+LEAST_ratio = 0.4
+"""Of the force limit, the most that the table begins with: it rises by 20 cN."""
 PINGS = 100
 STRANGER = 0x7D
 """No message has this number."""
@@ -181,12 +183,23 @@ def _looser(device: Remote) -> str:
     return _refused("a cooler coil than it was built for", lambda: device.configure(wrong))
 
 
-def _image(force_cN: float = FORCE_cN) -> bytes:
-    return surface_image(plain_surface(force_cN, TRAVEL_mm), TRAVEL_mm)
+def _force_cN(device: Remote) -> float:
+    """Return the force of the table that is pressed, less on a weak rig."""
+    return min(FORCE_cN, LEAST_ratio * device.info().force_limit_cN)
+
+
+def _travel_mm(device: Remote) -> float:
+    return min(TRAVEL_mm, device.info().travel_limit_mm)
+
+
+def _image(device: Remote, force_cN: float | None = None) -> bytes:
+    travel_mm = _travel_mm(device)
+    table = plain_surface(_force_cN(device) if force_cN is None else force_cN, travel_mm)
+    return surface_image(table, travel_mm)
 
 
 def _damaged_image(device: Remote) -> str:
-    image = bytearray(_image())
+    image = bytearray(_image(device))
     image[-1] ^= 1
     return _refused("a damaged program", lambda: device.upload_program(bytes(image)))
 
@@ -195,7 +208,9 @@ def _too_strong(device: Remote) -> str:
     beyond_cN = device.info().force_limit_cN + 5
     if beyond_cN + 30 > device.settings().LIMITS["force_limit_cN64"][1] / CN64_PER_cN:
         return ""  # no table of this format is beyond it
-    return _refused("a table beyond its force limit", lambda: device.upload_program(_image(beyond_cN)))
+    return _refused(
+        "a table beyond its force limit", lambda: device.upload_program(_image(device, beyond_cN))
+    )
 
 
 def _watched(device: Remote, duration_s: float) -> TickColumns:
@@ -239,7 +254,7 @@ def _ticks(device: Remote) -> str:
 
 
 def _armed(device: Remote, duration_s: float) -> TickColumns:
-    device.upload(plain_surface(FORCE_cN, TRAVEL_mm), TRAVEL_mm)
+    device.upload(plain_surface(_force_cN(device), _travel_mm(device)), _travel_mm(device))
     device.client.announce(SPEED_mm_s)
     device.client.arm()
     device.client.listen(device.client.port.now_s() + RISE_s)
@@ -250,7 +265,7 @@ def _renders(device: Remote) -> str:
     columns = _armed(device, WATCH_s)
     if not columns.tick.size:
         return "no telemetry came"
-    expected = FORCE_cN + 5 * np.clip(columns.displacement_mm, 0.0, TRAVEL_mm)
+    expected = _force_cN(device) + 5 * np.clip(columns.displacement_mm, 0.0, _travel_mm(device))
     off_cN = float(np.median(np.abs(columns.commanded_cN - expected)))
     return f"it commands {off_cN:.1f} cN other than the table asks" if off_cN > TABLE_cN else ""
 
@@ -286,7 +301,7 @@ def _silence(device: Remote) -> str:
 
 
 def _goes_down(device: Remote) -> str:
-    device.upload(plain_surface(FORCE_cN, TRAVEL_mm), TRAVEL_mm)
+    device.upload(plain_surface(_force_cN(device), _travel_mm(device)), _travel_mm(device))
     try:
         press = device.press(SPEED_mm_s)
     except DeviceError as error:
@@ -298,19 +313,20 @@ def _goes_down(device: Remote) -> str:
     low_mm, high_mm = float(press.sensed_mm.min()), float(press.sensed_mm.max())
     if low_mm < -REVERSED_mm:
         return f"pressed, its displacement falls to {low_mm:.1f} mm instead of rising"
-    if high_mm < DEEP_RATIO * TRAVEL_mm:
-        return f"a press on a travel of {TRAVEL_mm:g} mm went to {high_mm:.2f} mm only"
+    if high_mm < DEEP_RATIO * _travel_mm(device):
+        return f"a press on a travel of {_travel_mm(device):g} mm went to {high_mm:.2f} mm only"
     return ""
 
 
 def _force_sensor(device: Remote) -> str:
     if not device.settings().force_gain_q14:
         return ""
-    device.upload(plain_surface(FORCE_cN, TRAVEL_mm), TRAVEL_mm)
+    device.upload(plain_surface(_force_cN(device), _travel_mm(device)), _travel_mm(device))
     press = device.press(SPEED_mm_s)
     assert press.sensed_cN is not None
     assert press.sensed_mm is not None
-    inside = (press.sensed_mm > 0.25 * TRAVEL_mm) & (press.sensed_mm < 0.75 * TRAVEL_mm)
+    travel_mm = _travel_mm(device)
+    inside = (press.sensed_mm > 0.25 * travel_mm) & (press.sensed_mm < 0.75 * travel_mm)
     if not inside.any():
         return "no record of a press came"
     middle_cN = float(np.median(press.sensed_cN[inside]))

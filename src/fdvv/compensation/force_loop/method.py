@@ -30,6 +30,8 @@ from fdvv.compensation.method import (
 from fdvv.compensation.presses import split_strokes
 from fdvv.compensation.rig_aware import (
     LOOSE_SPEED_TOLERANCE_ratio,
+    RigAware,
+    RigState,
     explain_rig,
     identification_trial,
     press_count,
@@ -72,6 +74,7 @@ class LoopState:
     corrections : of the target, press and release, (speeds, bins) each.
     pressed : per speed, of each press with the loop closed: press and release.
     message : what the last press changed.
+    tables : state of the method that renders by tables, where no gain of the loop is stable.
     """
 
     job: CompensationJob
@@ -82,6 +85,7 @@ class LoopState:
     response: LoopResponse | None = None
     identification: tuple[Press, ...] = ()
     message: str = ""
+    tables: RigState | None = None
 
 
 @dataclass(frozen=True)
@@ -131,6 +135,8 @@ class ForceLoop:
 
     def trial(self, state: LoopState) -> Trial | None:
         """Return the next press: first identification, then the speed with the fewest; None when finished."""
+        if state.tables is not None:
+            return self._by_tables.trial(state.tables)
         if state.gains is None:
             return identification_trial(state.job, len(state.identification), self.prior)
         if (at := self._at(state)) is None:
@@ -141,6 +147,9 @@ class ForceLoop:
 
     def step(self, press: Press, state: LoopState) -> LoopState:
         """Identify the rig, or learn from a press. Raises ModelError on an uninformative press."""
+        if state.tables is not None:
+            tables = self._by_tables.step(press, state.tables)
+            return replace(state, tables=tables, message=tables.message)
         if state.response is None:
             return self._identify_step(press, state)
         if (at := self._at(state)) is None:
@@ -159,6 +168,8 @@ class ForceLoop:
         return state.message
 
     def count(self, state: LoopState) -> PressCount:
+        if state.tables is not None:
+            return self._by_tables.count(state.tables)
         made = len(state.identification)
         needed = 0 if self.learned_rig else max(self.identification_presses, made + (state.gains is None))
         found = press_count(state.pressed, self.rounds, made, needed)
@@ -168,6 +179,9 @@ class ForceLoop:
 
     def done(self, state: LoopState) -> Outcome:
         """Return the tables, each as it was pressed: no table is kept that no press has judged."""
+        if state.tables is not None:
+            outcome = self._by_tables.done(state.tables)
+            return replace(outcome, sentence=f"rendered by tables, not by the loop: {outcome.sentence}")
         made = self.count(state).made
         surface = _surface(state.job, _kept(state))
         if state.rig is None:
@@ -179,6 +193,8 @@ class ForceLoop:
 
     def learned(self, state: LoopState) -> LearnedRig:
         """Return the rig and what the loop alone leaves. ModelError before identification."""
+        if state.tables is not None:
+            return self._by_tables.learned(state.tables)
         if state.rig is None:
             raise ModelError("the rig is not identified yet")
         target, zero = state.job.target, np.zeros_like(state.job.target.press_cN)
@@ -197,19 +213,33 @@ class ForceLoop:
         ]
         return min(open_, key=lambda i: len(state.pressed[i]), default=None)
 
+    @property
+    def _sensor(self) -> Sensor:
+        """The cell; it reads what its plate, which lies before it, leaves. A cone lies behind its sensor."""
+        return Sensor(filter_s=self.cell.filter_s, cone_g=-1e3 * self.cell.plate_kg)
+
+    @property
+    def _by_tables(self) -> RigAware:
+        """The method that renders by tables."""
+        presses = self.identification_presses, self.max_identification_presses
+        return RigAware(
+            self.rounds, self.learned_rig, *presses, self._sensor, bin_mm=self.bin_mm, prior=self.prior
+        )
+
     def _identify_step(self, press: Press, state: LoopState) -> LoopState:
         presses = (*state.identification, press)
-        # the plate lies before the cell, which reads what is left behind it: a cone lies behind its sensor
-        sensor = Sensor(filter_s=self.cell.filter_s, cone_g=-1e3 * self.cell.plate_kg)
         limits = self.identification_presses, self.max_identification_presses
-        prior = prior_of(self.prior, state.job, sensor)
+        prior = prior_of(self.prior, state.job, self._sensor)
         found = try_identification(presses, state.job.travel_mm, limits, prior)
         after = replace(state, identification=presses)
         return replace(after, message=found) if isinstance(found, str) else self._closed(after, found)
 
     def _closed(self, state: LoopState, rig: RigModel) -> LoopState:
         plant = plant_of_rig(rig, self.cell)
-        response = LoopResponse(plant, design_controller(plant))
+        try:
+            response = LoopResponse(plant, design_controller(plant))
+        except ModelError as error:
+            return self._opened(state, rig, str(error))
         gains = force_loop_gains(rig, self.cell, self.tick_s, response.controller)
         return replace(
             state,
@@ -219,6 +249,14 @@ class ForceLoop:
             corrections=_foreseen(state.job, response, self.tick_s, self.learned_rig is not None),
             message=explain_rig(rig, 0.5 * state.job.travel_mm),
         )
+
+    def _opened(self, state: LoopState, rig: RigModel, why: str) -> LoopState:
+        """Return a state that goes on by tables on the rig of these presses."""
+        law = self._by_tables
+        tables = law.init(state.job)
+        if self.learned_rig is None:
+            tables = law.identified(tables, rig, state.identification)
+        return replace(state, rig=rig, tables=tables, message=why)
 
     def _tuning(self, state: LoopState) -> Tuning:
         if state.rig is None:
