@@ -22,10 +22,9 @@ the default rig's.
 
 from __future__ import annotations
 
-import dataclasses
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -40,17 +39,14 @@ from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.rendering.compensate import compensate
 from fdvv.rendering.probe import probe
-from fdvv.twin.draw import draw_finger, draw_rig
+from fdvv.twin.draw import draw_around, draw_finger
 from fdvv.twin.rig import Rig
-from fdvv.twin.rig_moves import Coil
 
 SEEDS, FIRST_SEED = 20, 500
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 SLOW_mm_s, SLOW = SPEEDS_mm_s[:2], ", to 100 mm/s"
 PROBES = 4
 TICKS_us = (4000, 1000, 250, 50)
-STEEPEST_H_m = 0.5
-"""What the twin's equations bear."""
 BUTTON, FULL_ratio = "mx-clear", 0.6
 
 
@@ -115,38 +111,6 @@ def with_cell(rig: Rig) -> Rig:
     return replace(rig, coil=coil, load_cell=replace(rig.load_cell, fitted="yes"))
 
 
-def drawn(rig: Rig, random: np.random.Generator) -> Rig:
-    """Multiply every uncertain number of a rig by its draw for the default rig over its default.
-
-    The force at full duty stays: the coil's resistance follows from its force constant.
-    """
-    default, draw = Rig(), draw_rig(random)
-    sections: dict[str, Any] = {}
-    for field in dataclasses.fields(rig):
-        own, usual, found = (getattr(r, field.name) for r in (rig, default, draw))
-        sections[field.name] = replace(own, **_with_coil(own, dict(_varied(own, usual, found))))
-    return Rig(**sections)
-
-
-def _with_coil(own: Any, varied: dict[str, Any]) -> dict[str, Any]:
-    """Return the numbers of a section; of a coil with the resistance that keeps its force."""
-    if not isinstance(own, Coil):
-        return varied
-    stronger = varied["force_constant_N_A"] / own.force_constant_N_A
-    bridge_ohm = stronger * own.bridge_ohm
-    varied |= {"resistance_ohm": stronger * own.resistance_ohm, "bridge_ohm": bridge_ohm}
-    flat = replace(own, **{**varied, "reluctance_H_m": 0.0})
-    return varied | {"reluctance_H_m": min(varied["reluctance_H_m"], flat.steepest_H_m, STEEPEST_H_m)}
-
-
-def _varied(own: Any, usual: Any, found: Any) -> Iterator[tuple[str, float]]:
-    for field in dataclasses.fields(own):
-        was, now = getattr(usual, field.name), getattr(found, field.name)
-        if isinstance(was, float) and was != now:
-            value = getattr(own, field.name)
-            yield field.name, value * now / was if was else now
-
-
 def scaled_button(limit_N: float) -> FDVVModel:
     """Return the button, weaker where its largest force is beyond FULL_ratio of the rig's limit."""
     model = load_builtin(BUTTON)
@@ -178,11 +142,11 @@ def judged(
 ) -> list[float]:
     """Return the error of every curve in per cent of the button's force range."""
     random = np.random.default_rng((seed, 41))
-    built, finger = drawn(rig, random), draw_finger(random)
+    built, finger = draw_around(rig, random), draw_finger(random)
     model = scaled_button(rig.controller.force_limit_N)
     learned = compensate(TwinDevice(built, finger, seed), model, speeds_mm_s, RigAware(prior=known))
     fresh = TwinDevice(built, finger, seed + 1_000_000)
-    about = {"method": learned.method, "tuning": learned.outcome.tuning}
+    about: dict[str, Any] = {"method": learned.method, "tuning": learned.outcome.tuning}
     found = probe(fresh, model, learned.surface, speeds_mm_s, PROBES, **about)
     return [100 * float(np.median(c.mean_errors_cN)) / np.ptp(c.target_cN) for c in found.curves]
 

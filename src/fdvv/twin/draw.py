@@ -13,11 +13,44 @@ from fdvv.twin.rig import Rig
 from fdvv.twin.rig_moves import Coil
 
 Record = TypeVar("Record")
+STEEPEST_H_m = about(next(f for f in dataclasses.fields(Coil) if f.name == "reluctance_H_m")).bounds[1]
 
 
 def draw_rig(random: np.random.Generator) -> Rig:
     """Draw a rig: every uncertain parameter uniform over its plausible range, what a builder chooses kept."""
     return draw_parts(Rig(), random)
+
+
+def draw_around(rig: Rig, random: np.random.Generator) -> Rig:
+    """Draw a rig like one of another size: numbers go by their draw for the default rig over its default.
+
+    What a builder chooses stays, and so does the force at full duty: the coil's resistance follows from its
+    force constant.
+    """
+    drawn = draw_rig(random)
+    sections = {
+        f.name: _around(*(getattr(r, f.name) for r in (rig, Rig(), drawn))) for f in dataclasses.fields(rig)
+    }
+    return Rig(**sections)
+
+
+def _around(own: Any, usual: Any, drawn: Any) -> Any:
+    """Return a section with every number in proportion to its draw; what is 0 by default as it is drawn."""
+    found = {}
+    for name, was in vars(usual).items():
+        now = getattr(drawn, name)
+        if isinstance(was, float) and was != now:
+            found[name] = getattr(own, name) * now / was if was else now
+    return dataclasses.replace(own, **(_as_strong(own, found) if isinstance(own, Coil) else found))
+
+
+def _as_strong(own: Coil, found: dict[str, Any]) -> dict[str, Any]:
+    """Return a coil's numbers, with a resistance that keeps its force and a slope that it bears."""
+    ratio = found.get("force_constant_N_A", own.force_constant_N_A) / own.force_constant_N_A
+    found |= {"resistance_ohm": ratio * own.resistance_ohm, "bridge_ohm": ratio * own.bridge_ohm}
+    flat = dataclasses.replace(own, **{**found, "reluctance_H_m": 0.0})
+    slope_H_m = found.get("reluctance_H_m", own.reluctance_H_m)
+    return found | {"reluctance_H_m": min(slope_H_m, flat.steepest_H_m, STEEPEST_H_m)}
 
 
 def draw_finger(random: np.random.Generator) -> Finger:
