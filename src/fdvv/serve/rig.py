@@ -24,7 +24,7 @@ from fdvv.studio.api.device import scope_frame
 from fdvv.studio.contract import message_of
 from fdvv.studio.device_session import DeviceConnect, DeviceSession, DeviceStatus, DeviceUpload
 from fdvv.studio.device_thread import KeyChange
-from fdvv.studio.devices import device_names
+from fdvv.studio.devices import device_names, require_listed
 from fdvv.studio.jobs.file import result_file
 from fdvv.studio.studio import Studio
 
@@ -94,6 +94,7 @@ class RigClient:
         return self._answer(ask)
 
     def _open(self, ask: m.OpenDevice) -> a.DeviceIs:
+        require_listed("device.open", ask.device, self._rig.devices())
         with self._rig.lock:
             if self._rig.owner or self._gone:
                 reason = (
