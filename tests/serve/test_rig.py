@@ -129,6 +129,13 @@ def test_one_client_owns_the_device_and_others_are_refused_until_it_goes(server:
     second.close()
 
 
+def test_a_page_that_is_loaded_again_has_its_device_at_once(server: RunningServer) -> None:
+    for _ in range(5):
+        client = Client(server)
+        client.call("device.open", device="host")
+        client.close()
+
+
 def _opens(client: Client) -> bool:
     try:
         client.call("device.open", device="twin")

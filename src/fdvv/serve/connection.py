@@ -84,6 +84,7 @@ class Connection:
             self._over = True
             for task in self._tasks:
                 task.cancel()
+            self._rig.gone = True
             # not waited for: to cancel this connection cancels every wait in it
             self._loop.run_in_executor(None, self._rig.close)
 

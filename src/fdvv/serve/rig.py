@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Collection
 from dataclasses import asdict
-from threading import RLock
+from threading import Event, RLock
 
 import numpy as np
 from msgspec import Struct
@@ -30,6 +30,8 @@ from fdvv.studio.studio import Studio
 
 UP_mm = 0.1
 """A cap that was deeper than TOP_mm is back up above this."""
+LEAVES_s = 5.0
+"""A device whose owner is going is waited for so long: a page that is loaded again asks at once."""
 UP, DOWN, BETWEEN = 0, 1, 2
 Send = Callable[[Struct], None]
 
@@ -51,12 +53,12 @@ class RigOwnership:
 
 
 class RigClient:
-    """One client's hold of the device. send : takes events, from any thread."""
+    """One client's hold of the device. send : takes events, from any thread. gone : it has left."""
 
     def __init__(self, rig: RigOwnership, send: Send) -> None:
         self._rig, self._send = rig, send
         self._end: Callable[[], None] = lambda: None
-        self._turn, self._gone = RLock(), False
+        self._turn, self.gone, self._released = RLock(), False, Event()
         self._begin(DeviceStatus())
 
     def _begin(self, status: DeviceStatus) -> None:
@@ -73,8 +75,9 @@ class RigClient:
 
     def close(self) -> None:
         """Fall to zero force and let the device go, for good; nothing happens without one."""
-        self._gone = True
+        self.gone = True
         self._release()
+        self._released.set()
 
     def _release(self) -> None:
         if self._rig.owner is not self:
@@ -95,8 +98,10 @@ class RigClient:
 
     def _open(self, ask: m.OpenDevice) -> a.DeviceIs:
         require_listed("device.open", ask.device, self._rig.devices())
+        if (owner := self._rig.owner) and owner.gone:
+            owner._released.wait(LEAVES_s)
         with self._rig.lock:
-            if self._rig.owner or self._gone:
+            if self._rig.owner or self.gone:
                 reason = (
                     "you own one already" if self._rig.owner is self else "another client owns the device"
                 )
