@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import inspect
 import json
 import os
@@ -37,6 +38,7 @@ class RunningServer:
             text=True,
             env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
         )
+        atexit.register(self.process.kill)  # a test that fails does not stop it
         assert self.process.stdout is not None
         self.address, self.token = (self.process.stdout.readline().split()[-1] for _ in range(2))
         self.port = int(self.address.split(":")[-1].partition("/")[0])
