@@ -1,0 +1,2 @@
+import{In as e,Mr as t,Xr as n,Zr as r,ei as i,xr as a,yr as o,zr as s}from"./shared.js";import{n as c,r as l,t as u}from"./newest.js";var d=a(`<!> <p class="muted">A press counts where your key reaches the actuation point of the design under test, on the clock of the
+  browser's event. You hear the design's click, and feel your own keyboard.</p>`,1);function f(a,f){r(f,!0);let p=u(4,({t_ms:e,depth_mm:n,velocity_mm_s:r})=>t(()=>f.play).follow(e,n,r));e(l.follow(p));var m=d(),h=s(m);c(h,{used:()=>f.play.clicker.wake()}),i(2),o(a,m),n()}export{f as default};
