@@ -94,6 +94,9 @@ def test_what_the_key_types_presses_nothing_twice_and_works_no_shortcut(page: Pa
     page.keyboard.down(" ")  # no longer the key: the space bar presses as ever
     page.wait_for_selector(DOWN)
     page.keyboard.up(" ")
+    own.get_by_role("button", name="Choose another key").click()
+    page.keyboard.press("Escape")
+    expect(own.get_by_role("status")).to_contain_text("No key is read.")
 
 
 def test_rapid_trigger_lets_go_and_presses_where_the_key_turns(page: Page, own: Locator) -> None:

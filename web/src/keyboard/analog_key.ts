@@ -112,7 +112,7 @@ export class AnalogKey {
     if (!this.stop) return;
     this.stop();
     this.stop = null;
-    if (this.depths.now(0)?.depth_mm) this.read(performance.now(), 0);
+    if (this.depths.last_mm() > 0) this.read(performance.now(), 0);
     const live = this.keyboard && this.chosen;
     this.begin(live ? "live" : this.keyboard ? "choosing" : "none", this.keyboard?.name ?? "", "", "");
     if (live) this.key.set(keyName(this.code, live.code));
@@ -180,7 +180,7 @@ export class AnalogKey {
   private lost(): void {
     this.keyboard = null;
     if (this.status.peek() === "playing") return;
-    if (this.depths.now(0)?.depth_mm) this.read(performance.now(), 0);
+    if (this.depths.last_mm() > 0) this.read(performance.now(), 0);
     this.disconnect();
     this.problem.set("The keyboard was unplugged.");
   }
@@ -191,10 +191,11 @@ export class AnalogKey {
     const typing = event.target instanceof HTMLElement && event.target.matches("input[type=text], textarea");
     if (typing || (status !== "choosing" && status !== "live")) return;
     // of makers whose numbers say nothing of the key
-    if (status === "live" && !this.code && !event.repeat && (this.depths.now(0)?.depth_mm ?? 0) > 0) {
+    if (status === "live" && !this.code && !event.repeat && this.depths.last_mm() > 0) {
       this.code = event.code;
       this.key.set(keyName(this.code, 0));
     }
+    if (status === "choosing" && event.code === "Escape") this.disconnect();
     const own = status === "choosing" ? !["Tab", "Escape"].includes(event.code) : event.code === this.code;
     if (!own) return;
     event.preventDefault();

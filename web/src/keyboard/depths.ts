@@ -43,6 +43,11 @@ export class Depths {
     return { ...this.last, velocity_mm_s: 0 };
   }
 
+  /** Return where the key was last; 0 before the first reading. */
+  last_mm(): number {
+    return this.last?.depth_mm ?? 0;
+  }
+
   clear(): void {
     this.count = 0;
     this.stroke = "press";

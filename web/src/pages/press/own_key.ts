@@ -77,7 +77,8 @@ export class OwnKey {
   }
 
   private read(sample: Sample): void {
-    this.latency.sent(++this.sequence, sample.t_ms);
+    // what is not looked at is not drawn
+    if (!document.hidden) this.latency.sent(++this.sequence, sample.t_ms);
     this.trigger(sample);
     // a key that rests leaves the finger to mouse and keys
     if (!document.hidden && (sample.depth_mm > 0 || this.was_mm > 0)) this.lead(sample);
