@@ -104,6 +104,12 @@ def test_a_stop_far_from_where_it_was_asked_to_be_is_the_limiters(depth_mm: floa
     assert f"{depth_mm:.1f} mm instead of 4.0" in str(part_at_fault(facts))
 
 
+def test_a_stop_that_yields_under_a_finger_and_a_coil_is_no_fault() -> None:
+    deep = Scripted(depth_mm=4.6).facts()
+    assert named(deep) == "travel limiter"
+    assert named(replace(deep, commanded_cN=deep.commanded_cN - 300.0)) == ""
+
+
 def test_a_person_who_turns_early_is_not_the_limiter() -> None:
     turned = Scripted(depth_mm=2.5).facts()
     force = np.minimum(felt(turned), 60.0)

@@ -36,6 +36,8 @@ HELD_s = 0.02
 LOW_mm, DEEP_mm, PASSING_s = 0.6, 0.4, 0.01
 """A stop that stands so far before its place, or behind it, is not where it was asked to be: play and yield
 take 0.3 mm, an impact goes deeper for less than so long."""
+SOFTEST_cN_mm = 1000.0
+"""Stiffness of the softest stop: a finger and a coil that push down together go so much deeper."""
 BORNE_cN = 60.0
 """Beyond command: no free cap gives a finger so much."""
 LIFTING_cN = 50.0
@@ -152,8 +154,10 @@ def cap_down(facts: PressFacts) -> PartFault | None:
 
 
 def limiter_deep(facts: PressFacts) -> PartFault | None:
-    stayed = np.sort(facts.place_mm)[-max(1, round(PASSING_s / facts.tick_s))]
-    if stayed <= facts.travel_mm + DEEP_mm:
+    felt_cN = 0.0 if facts.force_cN is None else facts.force_cN
+    yields_mm = np.maximum(0.0, felt_cN - facts.commanded_cN) / SOFTEST_cN_mm
+    beyond = facts.place_mm - yields_mm > facts.travel_mm + DEEP_mm
+    if np.count_nonzero(beyond) * facts.tick_s < PASSING_s:
         return None
     return limiter_fault(facts.deepest_mm, facts.travel_mm)
 
