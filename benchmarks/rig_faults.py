@@ -7,7 +7,7 @@ refuses are drawn anew, and faults are planted where the sound session comes to 
 planted in the plant behind the real firmware core, each from the start and from a press in mid-session on
 where both make sense; then a whole session of learning is run. It counts as named if the session ends with
 that part's name at the second press from the fault's begin on, the check's own press included. Seeds from
-700 on were used to tune, so more than 120 sound sessions of the second family reach them.
+700 on were used to tune.
 """
 
 from __future__ import annotations

@@ -154,8 +154,8 @@ def cap_down(facts: PressFacts) -> PartFault | None:
 
 
 def limiter_deep(facts: PressFacts) -> PartFault | None:
-    felt_cN = 0.0 if facts.force_cN is None else facts.force_cN
-    yields_mm = np.maximum(0.0, felt_cN - facts.commanded_cN) / SOFTEST_cN_mm
+    force_cN = 0.0 if facts.force_cN is None else facts.force_cN
+    yields_mm = np.maximum(0.0, force_cN - facts.commanded_cN) / SOFTEST_cN_mm
     beyond = facts.place_mm - yields_mm > facts.travel_mm + DEEP_mm
     if np.count_nonzero(beyond) * facts.tick_s < PASSING_s:
         return None
