@@ -130,9 +130,7 @@ def test_presses_since_a_part_broke_are_set_apart_and_a_mended_rig_goes_on(tmp_p
 
 
 def test_a_press_that_was_used_is_set_apart_once_the_next_one_shows_the_change(tmp_path: Path) -> None:
-    log = PressLog(tmp_path)
     bench = Bench("coil warming", begins=4, folder=tmp_path / "s")
-    log.close()
     assert bench.named().fault.part == "coil"
     log = PressLog(tmp_path / "s")
     log.close()
