@@ -148,7 +148,7 @@ def cap_down(facts: PressFacts) -> PartFault | None:
     if abs(felt.mean()) > PULL_cN / 2:
         return None
     asked = force_text(float(pushed.mean()), ".0f")
-    seen = f"the coil does not lift the cap, which lies at {place.mean():.2f} mm, by a command of {asked}"
+    seen = f"with a command of {asked} the coil does not lift the cap from {place.mean():.2f} mm"
     remedy = "look whether its wires are exchanged or off, at driver, supply and gain, or for a heavier mover"
     return PartFault(COIL, seen, remedy)
 
