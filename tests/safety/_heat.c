@@ -61,9 +61,9 @@ static fdvv_settings draw_settings(uint32_t *state, const fdvv_board_limits *lim
     settings.heat_limit_K = (uint16_t)edge(state, 2, 600);
     settings.derate_start_K = 1;
     settings.force_limit_cN64 = (int16_t)edge(state, 64, 32000);
-    settings.duty_gain_q16 = edge(state, 64, 65535);
-    settings.nominal_supply_mV = (uint16_t)edge(state, 3000, 36000);
-    settings.supply_high_mV = (uint16_t)edge(state, 9001, 40000);
+    settings.duty_gain_q16 = edge(state, 64, 1048576);
+    settings.nominal_supply_mV = (uint16_t)edge(state, 3000, 48000);
+    settings.supply_high_mV = (uint16_t)edge(state, 9001, 57000);
     fdvv_settings_tighten(&settings, limits);
     return settings;
 }
@@ -73,9 +73,9 @@ static fdvv_settings loosest(uint32_t *state, const fdvv_board_limits *limits)
 {
     fdvv_settings settings = draw_settings(state, limits);
     settings.force_limit_cN64 = 32000;
-    settings.duty_gain_q16 = 65535;
+    settings.duty_gain_q16 = 1048576;
     settings.nominal_supply_mV = limits->nominal_supply_mV;
-    settings.supply_high_mV = 40000;
+    settings.supply_high_mV = 57000;
     settings.full_duty_rise_K = limits->full_duty_rise_K;
     settings.heat_limit_K = 600;
     fdvv_settings_tighten(&settings, limits);

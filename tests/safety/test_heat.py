@@ -58,10 +58,11 @@ def rigs() -> Iterator[BoardLimits]:
 
 
 def strong_rigs() -> Iterator[BoardLimits]:
-    """Yield each of these as it is, and with a force that only the supervisor holds below the limit."""
+    """Yield each as it is, and at any tick with a force that only the supervisor holds below the limit."""
+    ticks = {"tick_low_us": 50, "tick_high_us": 4000}
     for limits in rigs():
         yield limits
-        yield replace(limits, force_limit_cN64=32_000, duty_gain_q16=65_535)
+        yield replace(limits, force_limit_cN64=32_000, duty_gain_q16=1_048_576, **ticks)
 
 
 @pytest.fixture(scope="module")
