@@ -20,7 +20,6 @@ PAGES = (
 )
 NOT_YET = {
     "docs/reference/bill.md",
-    "docs/explanation/twin.md",
 }
 """Pages that still have long sentences: shorten them, then remove them here."""
 MOST_WORDS = 25
