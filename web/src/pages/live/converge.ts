@@ -10,6 +10,7 @@ import {
   type View,
   velocityColour,
 } from "../../draw";
+import type { CurveIntended } from "../../net";
 import { watched } from "./jobs";
 import { curveKey, type Stage, type StrokeName } from "./picture";
 
@@ -45,12 +46,13 @@ function pressRange(stage: Stage, velocity_mm_s: number): Range {
   return { low: 0.5, high: Math.max(FEWEST, last?.press.wanted ?? 0, ...made) + 0.5 };
 }
 
-/** One range for all speeds, so that they compare by eye. */
+/** One range for all speeds, so that they compare by eye; it holds the line of what is noticed, and its name. */
 function errorRange(stage: Stage): Range {
   const columns = [...watched().picture.curves]
     .filter(([key]) => key.startsWith(`${stage} `))
     .map(([, curve]) => curve.error_cN);
-  return { low: 0, high: 1.05 * Math.max(5, rangeOf(columns)?.high ?? 10) };
+  const bounds = [...watched().picture.intended.values()].map((one) => 1.15 * noticeable_cN(one));
+  return { low: 0, high: 1.05 * Math.max(5, rangeOf(columns)?.high ?? 10, ...bounds) };
 }
 
 function draw(brush: Brush, view: View, stage: Stage, velocity_mm_s: number): void {
@@ -67,12 +69,16 @@ function draw(brush: Brush, view: View, stage: Stage, velocity_mm_s: number): vo
   });
 }
 
+function noticeable_cN({ noticeable_press_cN, noticeable_release_cN }: CurveIntended): number {
+  return Math.min(noticeable_press_cN, noticeable_release_cN);
+}
+
 function drawNoticeable(brush: Brush, view: View, velocity_mm_s: number): void {
   const found = watched().picture.intended.get(velocity_mm_s);
   if (!found) return;
   const { muted, surface } = palette();
   const { left, width } = view.box;
-  const bound_cN = Math.min(found.noticeable_press_cN, found.noticeable_release_cN);
+  const bound_cN = noticeable_cN(found);
   const y = view.y.px(bound_cN);
   brush.line([left, left + width], [y, y], { colour: muted, dash: [2, 3] });
   const style = { colour: muted, align: "right", base: "bottom", size_px: 10, halo: surface } as const;
