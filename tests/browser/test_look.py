@@ -117,17 +117,28 @@ def looked_at(page: Page, width: int) -> list[str]:
     return found
 
 
+def at_every_size(page: Page, opened: Callable[[Page], None] = lambda _page: None) -> list[str]:
+    """Return the faults of a page at each size. opened : brings about what is looked at, size by size."""
+    found: list[str] = []
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        opened(page)
+        found += looked_at(page, width)
+    return found
+
+
+def taken(logged: list[str]) -> list[str]:
+    """Return what the page has logged since the last time."""
+    lines = logged.copy()
+    logged.clear()
+    return lines
+
+
 @pytest.mark.parametrize("address", PAGES)
 def test_no_text_is_cut_covered_or_outside(look: tuple[Page, list[str]], address: str) -> None:
     page, logged = look
     go(page, address)
-    found: list[str] = []
-    for width, height in SIZES:
-        page.set_viewport_size({"width": width, "height": height})
-        found += looked_at(page, width)
-    found += logged
-    logged.clear()
-    assert found == []
+    assert at_every_size(page) + taken(logged) == []
 
 
 def test_pages_that_are_opened_again_know_what_was_fetched_before(look: tuple[Page, list[str]]) -> None:
@@ -199,29 +210,25 @@ OPEN: dict[str, tuple[str, Callable[[Page], None]]] = {
 @pytest.mark.parametrize("what", OPEN)
 def test_what_is_open_is_whole(look: tuple[Page, list[str]], what: str) -> None:
     page, logged = look
-    address, opened = OPEN[what]
-    found: list[str] = []
-    for width, height in SIZES:
-        page.set_viewport_size({"width": width, "height": height})
+    address, how = OPEN[what]
+
+    def opened(page: Page) -> None:
         go(page, address)
-        opened(page)
-        found += looked_at(page, width)
-    found += logged
-    logged.clear()
-    assert found == []
+        how(page)
+
+    assert at_every_size(page, opened) + taken(logged) == []
 
 
 def test_opened_files_are_whole(look: tuple[Page, list[str]], tmp_path: Path) -> None:
     page, _ = look
     files = [write_cycle(tmp_path / f"A switch with a rather long name, number {n}.csv") for n in (1, 2)]
     (tmp_path / "no-button.csv").write_text("a,b\n1,2\n")
-    found: list[str] = []
-    for width, height in SIZES:
-        page.set_viewport_size({"width": width, "height": height})
+
+    def opened(page: Page) -> None:
         go(page, "home")
         expect(drop(page, *files, tmp_path / "no-button.csv").get_by_role("article")).to_have_count(3)
-        found += looked_at(page, width)
-    assert found == []
+
+    assert at_every_size(page, opened) == []
 
 
 @pytest.mark.timeout(240)
@@ -231,17 +238,11 @@ def test_work_on_a_rig_is_whole_while_it_runs_and_when_it_is_done(look: tuple[Pa
     page.get_by_role("button", name="Start", exact=True).click()
     verdict = page.get_by_role("region", name="Verdict")
     expect(verdict).to_contain_text(re.compile("press [2-9]"), timeout=90_000)
-    found: list[str] = []
-    for done in (False, True):
-        if done:
-            expect(verdict).to_contain_text("Mean error", timeout=150_000)
-            page.wait_for_load_state("networkidle")
-        for width, height in SIZES:
-            page.set_viewport_size({"width": width, "height": height})
-            found += looked_at(page, width)
-    found += logged
-    logged.clear()
-    assert found == []
+    found = at_every_size(page)
+    expect(verdict).to_contain_text("Mean error", timeout=150_000)
+    page.wait_for_load_state("networkidle")
+    found += at_every_size(page)
+    assert found + taken(logged) == []
 
 
 @pytest.mark.timeout(300)
@@ -252,17 +253,11 @@ def test_an_optimisation_is_whole_while_it_runs_and_when_it_is_done(look: tuple[
     page.get_by_role("button", name="Begin", exact=True).click()
     verdict = page.get_by_role("region", name="Verdict")
     expect(verdict).to_contain_text("A simulated person plays")
-    found: list[str] = []
-    for done in (False, True):
-        if done:
-            expect(verdict).to_contain_text("(95 %", timeout=240_000)
-            page.wait_for_load_state("networkidle")
-        for width, height in SIZES:
-            page.set_viewport_size({"width": width, "height": height})
-            found += looked_at(page, width)
-    found += logged
-    logged.clear()
-    assert found == []
+    found = at_every_size(page)
+    expect(verdict).to_contain_text("(95 %", timeout=240_000)
+    page.wait_for_load_state("networkidle")
+    found += at_every_size(page)
+    assert found + taken(logged) == []
 
 
 def test_a_study_is_whole_with_its_form_and_before_it_is_frozen(look: tuple[Page, list[str]]) -> None:
@@ -271,17 +266,13 @@ def test_a_study_is_whole_with_its_form_and_before_it_is_frozen(look: tuple[Page
     page.get_by_label("Name").fill("which-of-two-clicks-more")
     page.get_by_role("button", name="Create").click()
     expect(page.get_by_text("No problems found.")).to_be_visible()
-    found: list[str] = []
-    for width, height in SIZES:
-        page.set_viewport_size({"width": width, "height": height})
-        found += looked_at(page, width)
+
+    def asked(page: Page) -> None:
+        page.keyboard.press("Escape")
         page.get_by_role("button", name="Freeze the study").click()
         expect(page.get_by_role("alertdialog")).to_be_visible()
-        found += looked_at(page, width)
-        page.keyboard.press("Escape")
-    found += logged
-    logged.clear()
-    assert found == []
+
+    assert at_every_size(page) + at_every_size(page, asked) + taken(logged) == []
 
 
 @pytest.mark.parametrize("kind", PLANTED)
