@@ -54,7 +54,7 @@ export class StudySession implements FingerTarget {
       onMessage: (message) => this.take(message),
       wrong: (line) => this.refused(line),
       opened: () => this.channel && this.opened(),
-      lost: () => this.lost.set(true),
+      lost: () => this.left(),
     });
     if (live().state.peek() === "open") this.opened();
     const timer = setInterval(
@@ -159,10 +159,17 @@ export class StudySession implements FingerTarget {
     if (this.send(ask)) this.waiting.set(true);
   }
 
+  private left(): void {
+    batch(() => {
+      this.lost.set(true);
+      // the server says it again where the study still is
+      this.paused.set(false);
+    });
+  }
+
   private opened(): void {
     const card = this.card.peek();
     batch(() => {
-      this.lost.set(false);
       this.waiting.set(false);
       this.away();
     });
@@ -179,6 +186,9 @@ export class StudySession implements FingerTarget {
   }
 
   private taken(message: Tell): void {
+    // the connection is back before the study is: what is pressed between them would be lost
+    if (message.type === "step" || message.type === "about" || message.type === "stopped")
+      this.lost.set(false);
     if (message.type === "frame") this.takeFrame(message);
     else if (message.type === "felt") {
       this.felt.set(message.label);
@@ -264,6 +274,7 @@ export class StudySession implements FingerTarget {
   /** The server said no to something: nobody sits here yet, or the screen goes on as it is. */
   private refused(line: string): void {
     batch(() => {
+      this.lost.set(false);
       this.waiting.set(false);
       this.going.set("");
       this.reason.set(line);
