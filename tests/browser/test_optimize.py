@@ -239,6 +239,8 @@ def test_a_button_on_the_table_is_pressed_while_the_page_shows_the_bullet(
     page.goto(table.address)
     page.wait_for_selector("html[data-ready]")
     begin(page)
+    # the device is listed once the studio has looked for it
+    expect(page.get_by_label("Press on").locator("option")).to_have_count(3)
     page.get_by_label("Press on").select_option(index=1)
     page.get_by_role("button", name="Play trial 1").click()
     expect(page.get_by_text("Press the button on the table")).to_be_visible()
@@ -258,6 +260,13 @@ def kept_rounds_of(page: Page, studio: RunningStudio) -> tuple[TaskRound, ...]:
     page.get_by_role("link", name="All runs").click()
     page.wait_for_selector("a.opt-run")
     return kept_rounds(studio.project / "optimize" / "1")
+
+
+def ended(page: Page, studio: RunningStudio) -> Optimization:
+    """End the studio, which opens the runs that its pages show, and open the run's folder."""
+    page.goto("about:blank")
+    studio.stop()
+    return Optimization.open(studio.project / "optimize" / "1")
 
 
 def press_each(page: Page) -> None:
@@ -287,9 +296,7 @@ def test_a_suggestion_is_changed_before_it_is_played_and_a_trial_abandoned(
     page.wait_for_selector("text=edited by you")
     page.get_by_role("button", name="Abandon this trial").click()
     page.wait_for_selector("td:has-text('abandoned')")
-    page.get_by_role("link", name="All runs").click()
-    page.wait_for_selector("a.opt-run")
-    with Optimization.open(studio.project / "optimize" / "1") as session:
+    with ended(page, studio) as session:
         (trial,) = session.trials
     assert (trial.state, trial.design["actuation_mm"]) == (TrialState.ABANDONED, 1.25)
 
@@ -303,7 +310,7 @@ def test_a_simulated_person_goes_on_while_the_page_is_away(page: Page, studio: R
     page.wait_for_selector("text=/^simulated person 0: . of 7 trials, done/")
     assert page.locator(".tag.simulated").count() >= 2
     expect(page.locator("[aria-label=Progress] tbody tr")).to_have_count(3)
-    with Optimization.open(studio.project / "optimize" / "1") as session:
+    with ended(page, studio) as session:
         assert (len(session.trials), session.finished) == (3, True)
         assert len(session.retests) == (0 if session.recommended() == session.start else 4)
 
@@ -362,9 +369,7 @@ def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: 
     page.wait_for_selector("text=All comparisons are made")
     page.get_by_role("tab", name="Result").click()
     page.wait_for_selector(".opt-compared")
-    page.get_by_role("link", name="All runs").click()
-    page.wait_for_selector("a.opt-run")
-    with Optimization.open(studio.project / "optimize" / "1") as session:
+    with ended(page, studio) as session:
         assert [one.answer for one in session.comparisons] == [Answer.SECOND, Answer.EQUAL]
         assert [one.answer for one in session.retest_comparisons] in ([Answer.FIRST], [])
 

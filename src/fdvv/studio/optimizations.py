@@ -63,8 +63,9 @@ class SimulatedPlay:
             log.exception("a simulated play failed")
             self.fault = "it failed; the studio's terminal tells why"
         finally:
-            self.running = False
+            # who sees that it ended may open the folder
             self._runs.leave(self._run)
+            self.running = False
             self._runs.announce(self._run)
 
     def _one(self, user: SimulatedUser) -> bool:
