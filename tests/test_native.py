@@ -1,12 +1,16 @@
-"""The compiled kernels under the undefined-behaviour sanitiser."""
+"""What the compiled kernels are handed, and the kernels under the undefined-behaviour sanitiser."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
+import weakref
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from fdvv._native import address
 
 ROOT = Path(__file__).resolve().parents[1]
 NATIVE, CORE = ROOT / "src" / "fdvv" / "_native", ROOT / "firmware" / "core"
@@ -44,6 +48,16 @@ for velocity in (5.0, 100.0, 500.0):
     device.press(velocity)
 print("done")
 """
+
+
+def test_an_array_lives_as_long_as_its_address() -> None:
+    """Else a kernel that is handed a temporary array reads what another thread has put in its place."""
+    array = np.zeros(3)
+    lives, pointer = weakref.ref(array), address(array)
+    del array
+    assert lives() is not None
+    del pointer
+    assert lives() is None
 
 
 @pytest.mark.slow

@@ -37,7 +37,7 @@ def words(data: bytes) -> npt.NDArray[np.uint32]:
 
 
 def address(array: npt.NDArray[np.generic]) -> ctypes.c_void_p:
-    """Return the address of a C-contiguous array; the caller keeps the array alive during the call."""
+    """Return the address of a C-contiguous array, which lives at least as long as what is returned."""
     if not array.flags.c_contiguous:
         raise ValueError(f"array must be C-contiguous, got strides {array.strides}")
-    return ctypes.c_void_p(array.ctypes.data)
+    return array.ctypes.data_as(ctypes.c_void_p)
