@@ -1,9 +1,10 @@
 """Does a studio that many pages use for long keep its memory, and does it go on answering soon?
 
-Run as ``python -m benchmarks.studio_soak [MINUTES] [PAGES]`` (10 and 20 by default) with Chromium installed.
-Every page wanders in turn through library, editor and press of built-in buttons, in a studio of its own.
-Printed are the memory of the studio's process after a tenth of the time and at the end, and how long calls
-took in the page, from question to answer, on the machine that runs both; the rig is simulated.
+Run as ``python -m benchmarks.studio_soak [MINUTES] [PAGES] [MOVE_s]`` (10, 20, 10 by default) with Chromium
+installed. Every page wanders through library, editor and press of built-in buttons, in its own studio. It
+moves on every MOVE_s, as somebody who looks around; with 0 all move as fast as they can, and two cores do
+nothing but draw. Printed are the memory of the studio after a tenth of the time and at the end, and how
+long calls took in the page, from question to answer, on the machine that runs both; the rig is simulated.
 """
 
 from __future__ import annotations
@@ -55,18 +56,18 @@ def opened(browser: Browser, studio: RunningStudio, count: int) -> list[Page]:
     return pages
 
 
-def wander(pages: list[Page], studio: RunningStudio, until_s: float) -> Iterator[float]:
+def wander(pages: list[Page], studio: RunningStudio, until_s: float, move_s: float) -> Iterator[float]:
     """Lead page after page on until the time is over; yield the studio's memory after each round."""
     turn = 0
     while time.monotonic() < until_s:
         for number, page in enumerate(pages):
             page.evaluate(f"location.hash = '#/{PLACES[(turn + number) % len(PLACES)]}'")
-            page.wait_for_timeout(20)
+            page.wait_for_timeout(max(20.0, 1e3 * move_s / len(pages)))
         turn += 1
         yield memory_MB(studio)
 
 
-def soak(minutes: float, count: int) -> tuple[float, list[float]]:
+def soak(minutes: float, count: int, move_s: float) -> tuple[float, list[float]]:
     """Return by how many MB the studio has grown since a tenth of the time, and the calls in ms."""
     with TemporaryDirectory() as folder, sync_playwright() as playwright:
         studio = RunningStudio(Path(folder) / "project")
@@ -74,8 +75,8 @@ def soak(minutes: float, count: int) -> tuple[float, list[float]]:
         try:
             pages = opened(browser, studio, count)
             begun = time.monotonic()
-            *_, first_MB = wander(pages, studio, begun + 6 * minutes)
-            *_, last_MB = wander(pages, studio, begun + 60 * minutes)
+            *_, first_MB = wander(pages, studio, begun + 6 * minutes, move_s)
+            *_, last_MB = wander(pages, studio, begun + 60 * minutes, move_s)
             calls = [float(ms) for page in pages for ms in page.evaluate("window.calls")]
         finally:
             browser.close()
@@ -92,9 +93,11 @@ def main() -> None:
     """Print all figures; exit status 1 where one is beyond its bound."""
     minutes = float(sys.argv[1]) if len(sys.argv) > 1 else 10.0
     count = int(sys.argv[2]) if len(sys.argv) > 2 else 20
-    grown_MB, calls = soak(minutes, count)
+    move_s = float(sys.argv[3]) if len(sys.argv) > 3 else 10.0
+    grown_MB, calls = soak(minutes, count, move_s)
     median, p99, worst = np.percentile(calls, (50, 99, 100))
-    print(f"{count} pages for {minutes:g} minutes: {len(calls)} calls, the studio grew by {grown_MB:.1f} MB")
+    print(f"{count} pages for {minutes:g} minutes, each moves on every {move_s:g} s")
+    print(f"{len(calls)} calls, the studio grew by {grown_MB:.1f} MB")
     print(f"calls: median {median:.0f} ms, 99 % within {p99:.0f} ms, at most {worst:.0f} ms")
     sys.exit(int(grown_MB > GROWTH_MB or p99 > SOON_ms))
 
