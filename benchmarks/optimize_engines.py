@@ -44,9 +44,10 @@ from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.population.plan import PopulationPlan, optimise
 from fdvv.optimize.population.population import read_population, run_population
-from fdvv.optimize.problem import Problem, Score, Trial
+from fdvv.optimize.problem import Problem, Trial
 from fdvv.optimize.space import Design
 from fdvv.parallel.open import open_executor
+from fdvv.task.score import Score
 
 OTHERS: Mapping[str, tuple[int, Mapping[str, float]]] = {"usual": (24, {}), "shifted": (8, SHIFTED)}
 """Whose scores a warm start begins from: how many people, and how they differ from the judged ones."""

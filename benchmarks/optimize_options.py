@@ -23,7 +23,8 @@ import numpy as np
 from fdvv.optimize.engines.gp import ChangeCost
 from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Objective, Problem, Score, Trial, TrialState
+from fdvv.optimize.problem import Problem, Trial, TrialState
+from fdvv.task.score import Objective, Score
 from fdvv.units import FloatArray
 
 SPACE = paper_space()

@@ -16,9 +16,9 @@ from fdvv.model.model import FDVVModel
 from fdvv.optimize.paper_space import paper_model
 from fdvv.optimize.people.simulate import score_design, simulate_task
 from fdvv.optimize.people.user import SimulatedUser, UserSettings, draw_user, timing_spread_s
-from fdvv.optimize.problem import Score
 from fdvv.optimize.space import Design
-from fdvv.optimize.tasks import LOST_ms, TemporalPointing
+from fdvv.task.pointing import LOST_ms, TemporalPointing
+from fdvv.task.score import Score
 from fdvv.units import FloatArray
 
 FIRST_SEED = 2000

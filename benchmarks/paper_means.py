@@ -17,7 +17,7 @@ from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.people.press_simulator import PressSimulator, known_rig
 from fdvv.optimize.people.simulate import Hand
 from fdvv.optimize.people.user import SimulatedUser, UserSettings, aim_s, draw_users, timing_spread_s
-from fdvv.optimize.tasks import LOST_ms, TemporalPointing
+from fdvv.task.pointing import LOST_ms, TemporalPointing
 from fdvv.units import FloatArray
 
 PAPER_BUTTONS = ("optimal", "clear", "brown", "black", "red", "random")

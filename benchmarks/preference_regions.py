@@ -19,7 +19,8 @@ import numpy as np
 
 from fdvv.optimize.engines.registry import pair_engine_of
 from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Answer, Comparison, Objective, PairEngine, Problem
+from fdvv.optimize.problem import Answer, Comparison, PairEngine, Problem
+from fdvv.task.score import Objective
 from fdvv.units import FloatArray
 
 SPACE = paper_space()

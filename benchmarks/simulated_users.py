@@ -40,7 +40,7 @@ from fdvv.model.model import FDVVModel
 from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.people.simulate import score_design
 from fdvv.optimize.people.user import SimulatedUser, draw_users
-from fdvv.optimize.tasks import TemporalPointing
+from fdvv.task.pointing import TemporalPointing
 from fdvv.units import FloatArray
 
 GAINS = (0.0, 0.05, 0.1, 0.3)

@@ -16,7 +16,6 @@ from fdvv.optimize.population.population import ChunkRecord
 from fdvv.optimize.problem import Comparison, Trial
 from fdvv.optimize.run.ledger import Answered, Edited, TrialOutcome
 from fdvv.optimize.run.setup import OptimizeSetup
-from fdvv.optimize.run.task_rounds import TaskRound
 from fdvv.program.file import ProgramRecord
 from fdvv.project.history import DocumentBase, HistoryChange
 from fdvv.recording.file import Correction
@@ -37,6 +36,7 @@ from fdvv.study.files.seal import KeyHolderFile
 from fdvv.study.plan.events import Event
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.sweep.plan import SweepPlan
+from fdvv.task.rounds import TaskRound
 from fdvv.vibration.exciter import ExciterRecord, KnownExciter
 from fdvv_rig.selftest.receipt import SelftestReceipt
 

@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import expect
 
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.task_rounds import ClockSource
+from fdvv.task.rounds import ClockSource
 from tests.browser.accessibility import audit
 from tests.browser.test_optimize import ROUNDS, Wire, begin, kept_rounds
 from tests.studio.running import RunningStudio

@@ -13,10 +13,11 @@ from benchmarks.studio_play import button_ms
 from playwright.sync_api import expect
 
 from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Answer, Score, TrialState
+from fdvv.optimize.problem import Answer, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
-from fdvv.optimize.run.task_rounds import ClockSource, TaskRound, TaskRounds
+from fdvv.task.rounds import ClockSource, TaskRound, TaskRounds
+from fdvv.task.score import Score
 from tests.browser.accessibility import audit
 from tests.studio.running import RunningStudio
 from tests.support.grids import grid

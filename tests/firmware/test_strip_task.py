@@ -14,8 +14,8 @@ from fdvv.device.twin import SimulatedPerson
 from fdvv.model.file import load_builtin
 from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.people.user import SimulatedUser
-from fdvv.optimize.tasks import TemporalPointing
 from fdvv.program.button import compile_button
+from fdvv.task.pointing import TemporalPointing
 from fdvv_m0.board import EmulatedBoard
 from fdvv_strip.board import LedPointingTask, StripStart
 from fdvv_strip.task import play_on_strip, played_presser

@@ -6,8 +6,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fdvv.optimize.problem import Engine, Objective, Problem, Score, Trial, TrialState
+from fdvv.optimize.problem import Engine, Problem, Trial, TrialState
 from fdvv.optimize.space import Constraint, Design, DesignSpace, Parameter
+from fdvv.task.score import Objective, Score
 
 BOWL = DesignSpace("bowl", tuple(Parameter(f"p{i}_mm", -2.0, 4.0) for i in range(3)))
 LIMIT = Constraint("sum", "the sum stays below 2 mm", lambda d: 2.0 - sum(d.values()))

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize.problem import Objective, Score
 from fdvv.optimize.run.belief import best_design
 from fdvv.optimize.run.report import optimize_html
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup
 from fdvv.optimize.space import Parameter
+from fdvv.task.score import Objective, Score
 
 pytest.importorskip("sklearn")
 pytestmark = pytest.mark.usefixtures("hasty_disk")

@@ -11,8 +11,9 @@ import pytest
 from fdvv.errors import InputError, ModelError
 from fdvv.optimize.engines.registry import engine_names, engine_of
 from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Engine, Objective, Problem, Score, Trial, TrialState
+from fdvv.optimize.problem import Engine, Problem, Trial, TrialState
 from fdvv.optimize.space import Constraint, DesignSpace, Parameter
+from fdvv.task.score import Objective, Score
 from fdvv_botorch.models import torch_there
 from tests.optimize.problems import BOWL, HELD, bowl_ms, problem, run, scored
 

@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.optimize.problem import Answer, Score, Trial, TrialState
+from fdvv.optimize.problem import Answer, Trial, TrialState
 from fdvv.optimize.run.ledger import Ledger, steps_before
+from fdvv.task.score import Score
 
 A, B = {"p_mm": 1.0}, {"p_mm": 2.0}
 

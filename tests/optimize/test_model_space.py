@@ -18,7 +18,8 @@ from fdvv.optimize.model_space import (
     monotone_constraint,
     neutral_design,
 )
-from fdvv.optimize.problem import Objective, Problem
+from fdvv.optimize.problem import Problem
+from fdvv.task.score import Objective
 
 CLEAR, RED, DOME = (load_builtin(name) for name in ("mx-clear", "mx-red", "rubber-dome"))
 X = np.linspace(0.3, 3.8, 60)

@@ -16,10 +16,11 @@ import pytest
 
 from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Objective, Problem, Score, Trial, TrialState
+from fdvv.optimize.problem import Problem, Trial, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.space import Design
+from fdvv.task.score import Objective, Score
 
 HATCHERY = """
 import sys

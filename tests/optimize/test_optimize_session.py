@@ -8,10 +8,11 @@ import pytest
 
 from fdvv.errors import InputError, ModelError
 from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Objective, Score, TrialState
+from fdvv.optimize.problem import TrialState
 from fdvv.optimize.run.session import Optimization, replay_differences
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.space import Design
+from fdvv.task.score import Objective, Score
 
 MIDDLE = paper_space().of_unit([0.5] * 8)[0]
 

@@ -22,7 +22,7 @@ from benchmarks.paper_means import (
 from fdvv.model.file import load_builtin
 from fdvv.optimize.people.simulate import score_design
 from fdvv.optimize.people.user import SimulatedUser, timing_spread_s
-from fdvv.optimize.tasks import TemporalPointing
+from fdvv.task.pointing import TemporalPointing
 
 TASK = TemporalPointing("easy", quantised=False)
 USER = replace(SimulatedUser(), adaptation_ratio=0.0)

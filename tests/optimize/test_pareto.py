@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from fdvv.errors import InputError
 from fdvv.optimize.engines.multi_objective import pareto_front
 from fdvv.optimize.engines.registry import engine_of
-from fdvv.optimize.problem import Objective, Problem, Score, Trial, TrialState
+from fdvv.optimize.problem import Problem, Trial, TrialState
+from fdvv.task.score import Objective, Score
 from fdvv_botorch.models import torch_there
 from tests.optimize.problems import BOWL
 

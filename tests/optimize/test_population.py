@@ -20,8 +20,8 @@ from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.population.plan import PopulationPlan
 from fdvv.optimize.population.population import PopulationResult, read_population, run_population
 from fdvv.optimize.problem import Problem
-from fdvv.optimize.tasks import TemporalPointing
 from fdvv.parallel.open import open_executor
+from fdvv.task.pointing import TemporalPointing
 
 PEOPLE = PopulationPlan(people=5, seed=3, engine="random", budget=3, rounds=5, judged=1)
 GRID = PopulationPlan(kind="grid", people=9, seed=3, designs=12, rounds=4)

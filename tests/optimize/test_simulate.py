@@ -15,7 +15,9 @@ from fdvv.model.model import FDVVModel
 from fdvv.optimize.people.press_simulator import PressSimulator, refusal_of
 from fdvv.optimize.people.simulate import score_design, simulate_task
 from fdvv.optimize.people.user import SimulatedUser
-from fdvv.optimize.tasks import Accuracy, LOST_ms, RapidTapping, TemporalPointing
+from fdvv.task.accuracy import Accuracy
+from fdvv.task.pointing import LOST_ms, TemporalPointing
+from fdvv.task.tapping import RapidTapping
 
 EASY = TemporalPointing("easy")
 EXACT = replace(EASY, quantised=False)

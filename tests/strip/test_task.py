@@ -10,7 +10,8 @@ from fdvv.errors import DeviceError
 from fdvv.model.file import load_builtin
 from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.people.user import SimulatedUser
-from fdvv.optimize.tasks import TaskPress, TemporalPointing
+from fdvv.task.pointing import TemporalPointing
+from fdvv.task.task import TaskPress
 from fdvv_strip.board import LedPointingTask, StripResult
 from fdvv_strip.library import LibraryStrip
 from fdvv_strip.task import play_on_strip, played_presser, press_of, strip_round

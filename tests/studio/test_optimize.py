@@ -14,14 +14,15 @@ from starlette.testclient import TestClient, WebSocketTestSession
 from fdvv.model.file import load_builtin, model_from_json
 from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Objective, Problem, Score, TrialState
+from fdvv.optimize.problem import Problem, TrialState
 from fdvv.optimize.run.begin import read_grid
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.task_rounds import ClockSource, TaskRounds
-from fdvv.optimize.tasks import TemporalPointing
 from fdvv.studio import play_trials
 from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.studio import Studio
+from fdvv.task.pointing import TemporalPointing
+from fdvv.task.rounds import ClockSource, TaskRounds
+from fdvv.task.score import Objective, Score
 from tests.studio.conftest import LIVE
 from tests.support.grids import grid
 from tests.support.pressed_rig import KeyedRig

@@ -16,7 +16,7 @@ from fdvv.model.file import builtin_names, load_builtin, model_from_json, model_
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.registry import engine_names, pair_engine_names
 from fdvv.optimize.model_space import model_space, neutral_design
-from fdvv.optimize.problem import OPEN, Objective, Score, Trial, TrialState
+from fdvv.optimize.problem import OPEN, Trial, TrialState
 from fdvv.optimize.run.belief import best_design
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import SETUP_FILE, OptimizeSetup, SpaceSetup, model_space_setup
@@ -25,6 +25,7 @@ from fdvv.rendering.rig_catalog import SHIPPED_RIGS
 from fdvv.serve import answers as a
 from fdvv.serve import messages as m
 from fdvv.studio.studio import Studio
+from fdvv.task.score import Objective, Score
 
 FOLDER = "serve"
 """Of a project: runs, and the server's token."""

@@ -16,11 +16,11 @@ from fdvv.live.press import LiveEventKind, LivePress, PressTimes
 from fdvv.live.press_subject import PressSubject
 from fdvv.live.run import LiveFrame, LiveRun
 from fdvv.live.travel_key import TravelKey
-from fdvv.optimize.run.task_rounds import ClockSource
 from fdvv.studio.contract import Message, Over, Tell
 from fdvv.studio.devices import DeviceLocks, available_devices, require_listed
 from fdvv.studio.played_trial import PlayDelay, PlayedTrial, PlayKept, PlayRound
 from fdvv.studio.studio import Studio
+from fdvv.task.rounds import ClockSource
 
 log = logging.getLogger("fdvv.studio")
 CLOCK = time.monotonic

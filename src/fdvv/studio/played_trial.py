@@ -10,9 +10,10 @@ from fdvv.errors import InputError, ModelError
 from fdvv.optimize.problem import OPEN, Trial, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
-from fdvv.optimize.run.task_rounds import ClockSource, RoundTiming, TaskRounds
-from fdvv.optimize.tasks import TaskPress, TemporalPointing
 from fdvv.studio.contract import Message
+from fdvv.task.pointing import TemporalPointing
+from fdvv.task.rounds import ClockSource, RoundTiming, TaskRounds
+from fdvv.task.task import TaskPress
 
 if TYPE_CHECKING:
     from fdvv.studio.optimizations import Optimizations

@@ -14,7 +14,8 @@ import numpy as np
 
 from fdvv.errors import BuildError
 from fdvv.optimize.engines.gp_model import Basis, Observed, believe, observed, pooled, prior_basis
-from fdvv.optimize.problem import Objective, Problem, Trial
+from fdvv.optimize.problem import Problem, Trial
+from fdvv.task.score import Objective
 from fdvv.units import FloatArray
 
 REST = 32

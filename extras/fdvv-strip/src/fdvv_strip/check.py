@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from fdvv.optimize.tasks import TaskPress, TemporalPointing
+from fdvv.task.pointing import TemporalPointing
+from fdvv.task.task import TaskPress
 from fdvv_strip.board import LedPointingTask
 from fdvv_strip.library import LibraryStrip, strip_port
 from fdvv_strip.tables import StripLed

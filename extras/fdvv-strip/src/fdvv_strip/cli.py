@@ -10,8 +10,8 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import remote
-from fdvv.optimize.tasks import TaskPress
 from fdvv.rendering.tuning import program_image
+from fdvv.task.task import TaskPress
 from fdvv_strip.check import StripCheck, check_strip
 from fdvv_strip.run import rendering
 

@@ -15,7 +15,7 @@ from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.population.plan import PopulationPlan
 from fdvv.optimize.population.population import run_population
 from fdvv.optimize.run.begin import read_grid
-from fdvv.optimize.tasks import TemporalPointing
+from fdvv.task.pointing import TemporalPointing
 
 
 @click.command()

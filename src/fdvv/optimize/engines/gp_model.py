@@ -19,8 +19,9 @@ import numpy.typing as npt
 
 from fdvv.errors import ModelError
 from fdvv.optimize.engines.search import missing
-from fdvv.optimize.problem import Objective, Problem, Trial, TrialState
+from fdvv.optimize.problem import Problem, Trial, TrialState
 from fdvv.optimize.space import DesignSpace
+from fdvv.task.score import Objective
 from fdvv.units import FloatArray
 
 LENGTH = (0.2, 0.7)

@@ -13,7 +13,8 @@ import numpy as np
 from fdvv.errors import InputError
 from fdvv.optimize.engines.gp_model import finished, score_table
 from fdvv.optimize.engines.search import generator
-from fdvv.optimize.problem import Objective, Problem, Score, Trial
+from fdvv.optimize.problem import Problem, Trial
+from fdvv.task.score import Objective, Score
 from fdvv.units import FloatArray
 
 AUGMENTED = 0.05

@@ -15,7 +15,6 @@ from fdvv.optimize.experiment.setup import LEVELS, RANDOM, ExperimentSetup
 from fdvv.optimize.experiment.winner import RenderedWinner, rendered_curves
 from fdvv.optimize.paper_space import paper_model
 from fdvv.optimize.run.report import DesignPanel, control_points, plot_designs
-from fdvv.optimize.tasks import LEVELS_px_s
 from fdvv.rendering.figures import plot_rendering
 from fdvv.report.prose import (
     ALPHA,
@@ -31,6 +30,7 @@ from fdvv.report.report import Section, Table, render_html, write_report
 from fdvv.report.score_figures import ScoreBars, TrainingScores, plot_score_bars, plot_training
 from fdvv.report.svg import figure_svg
 from fdvv.stats.anova import Anova
+from fdvv.task.pointing import LEVELS_px_s
 
 EXAMPLES = 3
 """People whose designs are drawn."""

@@ -26,7 +26,7 @@ from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.player import SimulatedPlayer, about_player, play_seed
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import SETUP_FILE, OptimizeSetup
-from fdvv.optimize.tasks import TemporalPointing
+from fdvv.task.pointing import TemporalPointing
 
 TRAINING, VALIDATION = 1, 2
 """Phases of an experiment, as seeds know them."""

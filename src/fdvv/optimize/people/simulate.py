@@ -13,8 +13,11 @@ from fdvv.model.model import FDVVModel
 from fdvv.optimize.people.percept import Percept, bottom_at, percept_of, tactile_events
 from fdvv.optimize.people.press_simulator import PressSimulator, PressTrace, known_rig
 from fdvv.optimize.people.user import SimulatedUser, aim_s, spread_factor, timing_spread_s, tiredness
-from fdvv.optimize.problem import Score
-from fdvv.optimize.tasks import Accuracy, RapidTapping, Task, TaskPress, TemporalPointing
+from fdvv.task.accuracy import Accuracy
+from fdvv.task.pointing import TemporalPointing
+from fdvv.task.score import Score
+from fdvv.task.tapping import RapidTapping
+from fdvv.task.task import Task, TaskPress
 
 TRIES, HARDER, HARDEST = 4, 1.5, 6.0
 """Presses on a new button that do not count, at most; by how much harder each is after one that did not reach

@@ -19,9 +19,10 @@ from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.people.simulate import score_design
 from fdvv.optimize.people.user import SimulatedUser, UserSettings, draw_user
-from fdvv.optimize.problem import Engine, Problem, Score, Trial, TrialState
+from fdvv.optimize.problem import Engine, Problem, Trial, TrialState
 from fdvv.optimize.space import Design, DesignSpace
-from fdvv.optimize.tasks import TemporalPointing
+from fdvv.task.pointing import TemporalPointing
+from fdvv.task.score import Score
 from fdvv.units import FloatArray
 
 PLAN_FILE = "population.json"

@@ -24,10 +24,11 @@ from fdvv.optimize.population.plan import (
     grid_designs,
     read_plan,
 )
-from fdvv.optimize.problem import Score, Trial, TrialState
-from fdvv.optimize.tasks import TemporalPointing
+from fdvv.optimize.problem import Trial, TrialState
 from fdvv.parallel.campaign import EachItem, Progress, run_campaign
 from fdvv.parallel.executor import Executor
+from fdvv.task.pointing import TemporalPointing
+from fdvv.task.score import Score
 from fdvv.units import FloatArray
 
 RESULT_FILE, SUMMARY_FILE = "population.npz", "summary.json"

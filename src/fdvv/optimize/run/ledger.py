@@ -16,8 +16,9 @@ import msgspec
 
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_bodies
-from fdvv.optimize.problem import Answer, Comparison, Score, Trial, TrialState
+from fdvv.optimize.problem import Answer, Comparison, Trial, TrialState
 from fdvv.optimize.space import Design
+from fdvv.task.score import Score
 
 REMEDY = "move the folder away and begin another run"
 NEXT = {

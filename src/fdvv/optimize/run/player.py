@@ -15,7 +15,10 @@ from fdvv.optimize.people.user import SimulatedUser, draw_user
 from fdvv.optimize.problem import Trial, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
-from fdvv.optimize.tasks import Accuracy, LEVELS_px_s, RapidTapping, Task, TemporalPointing
+from fdvv.task.accuracy import Accuracy
+from fdvv.task.pointing import LEVELS_px_s, TemporalPointing
+from fdvv.task.tapping import RapidTapping
+from fdvv.task.task import Task
 
 SIMULATED_TASKS = POINTING, TAPPING, ACCURACY = "temporal-pointing", "tapping", "accuracy"
 """Names of the tasks that simulated people can play."""

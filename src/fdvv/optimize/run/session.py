@@ -11,7 +11,7 @@ from fdvv.io.files import require_new_folder, write_atomic
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.multi_objective import ParetoFront, pareto_front
 from fdvv.optimize.engines.registry import engine_of, pair_engine_of
-from fdvv.optimize.problem import OPEN, Answer, Comparison, Engine, Score, Trial, TrialState
+from fdvv.optimize.problem import OPEN, Answer, Comparison, Engine, Trial, TrialState
 from fdvv.optimize.run.ledger import Ledger, Step, steps_before
 from fdvv.optimize.run.setup import (
     SETUP_FILE,
@@ -24,6 +24,7 @@ from fdvv.optimize.run.setup import (
 )
 from fdvv.optimize.space import Design
 from fdvv.rendering.rig_catalog import RigCatalog
+from fdvv.task.score import Score
 
 LEDGER_FILE = "trials.jsonl"
 START, PERSON, RETEST = "start", "person", "retest"

@@ -19,13 +19,14 @@ from fdvv.model.file import model_from_json, model_to_json
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.model_space import model_of, model_space
 from fdvv.optimize.paper_space import paper_model, paper_space
-from fdvv.optimize.problem import Objective, Problem, Trial
+from fdvv.optimize.problem import Problem, Trial
 from fdvv.optimize.realistic import realistic_bounds, realistic_cN
 from fdvv.optimize.space import Constraint, Design, DesignSpace, Parameter
-from fdvv.optimize.tasks import ASYNCHRONY, TemporalPointing
 from fdvv.rendering.feasibility import CurveFeasibility, feasibility
 from fdvv.rendering.rig_catalog import AvailableRig, RigCatalog
 from fdvv.rendering.session import now, versions
+from fdvv.task.pointing import ASYNCHRONY, TemporalPointing
+from fdvv.task.score import Objective
 
 MISSED_RATIO = 0.25
 """Of a curve's mean force; where limits and lag keep more of it, a feasibility report calls it spoilt."""

@@ -10,7 +10,7 @@ from msgspec import Meta, field
 from fdvv.errors import FdvvError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.problem import OPEN, Answer, Objective, Score, TrialState
+from fdvv.optimize.problem import OPEN, Answer, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.run.verdict import (
@@ -22,10 +22,11 @@ from fdvv.optimize.run.verdict import (
     verdict_sentence,
 )
 from fdvv.optimize.space import Parameter
-from fdvv.optimize.tasks import TemporalPointing
 from fdvv.studio.contract import Empty, Message, call, error_line, message_of, watch_channel
 from fdvv.studio.optimizations import Optimizations, OptimizeChanged
 from fdvv.studio.played_trial import playable, pointing_of
+from fdvv.task.pointing import TemporalPointing
+from fdvv.task.score import Objective, Score
 
 Number = Annotated[int, Meta(ge=0, le=2**31)]
 Name = Annotated[str, Meta(max_length=100)]

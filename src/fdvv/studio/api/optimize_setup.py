@@ -11,10 +11,9 @@ from fdvv.live.press_subject import button_choices
 from fdvv.optimize.engines.registry import engine_names, pair_engine_names
 from fdvv.optimize.model_space import model_space, neutral_design
 from fdvv.optimize.paper_space import paper_design_like
-from fdvv.optimize.problem import Objective, Trial
+from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.begin import offered_grid, offered_grids
 from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup
-from fdvv.optimize.tasks import LEVELS_px_s
 from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.optimize import OTHERS, START, TITLE, Level, Name, Number, OptimizeAsk
 from fdvv.studio.contract import Empty, Message, Offer, call
@@ -22,6 +21,8 @@ from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.play_trials import pressed_devices
 from fdvv.studio.played_trial import TASK, playable, pointing_of
 from fdvv.studio.studio import Studio
+from fdvv.task.pointing import LEVELS_px_s
+from fdvv.task.score import Objective
 
 
 class OptimizeOffers(Message):

@@ -16,7 +16,7 @@ from msgspec import Struct
 
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind
-from fdvv.optimize.tasks import TaskPress
+from fdvv.task.task import TaskPress
 
 ROUNDS = "rounds.jsonl"
 

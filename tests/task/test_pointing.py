@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.optimize.problem import Score
-from fdvv.optimize.tasks import LOST_ms, Task, TaskPress, TemporalPointing
+from fdvv.task.pointing import LOST_ms, TemporalPointing
+from fdvv.task.score import Score
+from fdvv.task.task import Task, TaskPress
 
 EXACT = TemporalPointing("easy", quantised=False)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.optimize.run.task_rounds import ClockSource, RoundTiming, TaskRounds
+from fdvv.task.rounds import ClockSource, RoundTiming, TaskRounds
 
 TIMING = RoundTiming(ClockSource.PAGE, 30.0, 17.0, 10.0, 10.0, 5e6, 0.6, 4.0, 16.7, "key")
 

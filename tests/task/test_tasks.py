@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
-from fdvv.optimize.tasks import Accuracy, RapidTapping, Task, TaskPress
+from fdvv.task.accuracy import Accuracy
+from fdvv.task.tapping import RapidTapping
+from fdvv.task.task import Task, TaskPress
 
 
 def test_even_taps_have_their_rate_and_no_spread() -> None:
