@@ -190,18 +190,18 @@ static void start_vibrations(fdvv_machine *machine, const uint8_t *image, const 
 {
     int32_t ahead_um16 = look_ahead_um16(machine, in), reached_um16 = machine->reached_um16;
     int32_t next_um16 = INT32_MAX;
-    const fdvv_vibration *vibration;
-    uint32_t left, velocity_mm_s16, state_bit = (uint32_t)1 << machine->state;
+    const fdvv_vibration *vibration, *end;
+    uint32_t velocity_mm_s16, state_bit = (uint32_t)1 << machine->state;
     uint8_t release = in->position->release, other_stroke = release ? FDVV_STROKE_PRESS : FDVV_STROKE_RELEASE;
     if (ahead_um16 <= reached_um16)
         return;
     machine->reached_um16 = ahead_um16;
     if (ahead_um16 < machine->next_um16)
         return;
-    left = fdvv_image_head(image)->vibrations;
     vibration = fdvv_image_vibration(image, 0);
+    end = vibration + fdvv_image_head(image)->vibrations;
     velocity_mm_s16 = selected_velocity_mm_s16(machine, in);
-    for (; left; left--, vibration++) {
+    for (; vibration != end; vibration++) {
         int32_t at_um16 = release ? -vibration->at_um16 : vibration->at_um16;
         if (at_um16 > ahead_um16)
             next_um16 = at_um16 < next_um16 ? at_um16 : next_um16;
