@@ -343,23 +343,35 @@ static uint32_t raised_K(const fdvv_supervisor *me, uint32_t rise_K)
     return lower(rise_K * me->limits->supply_high_mV / me->limits->nominal_supply_mV + 1, HOTTEST_K);
 }
 
+/* Twice the longest period of a board's watchdog: a tick decides on its force before it counts the ticks that were missed. */
+#define LATE_us 16000
+#define MOST_LATE_K_q16 ((uint32_t)2 << 16) /* a coil that gains more has no board that could stop in time */
+
+static uint32_t gain_when_late_K_q16(uint32_t highest_K, uint32_t time_us)
+{
+    uint64_t gain_q48 = fdvv_wide_product(highest_K << 16, fdvv_fraction_q32(LATE_us, time_us));
+    return lower((uint32_t)(gain_q48 >> 32) + 1, MOST_LATE_K_q16);
+}
+
 /* The model is never cooler than the coil of the board, whatever the settings were and are: towards the higher of both
  * ends it heats with the shorter of both time constants and cools with the longer, so at the temperature of the coil it
  * never falls behind. tick / time is more than the part 1 - exp(-tick / time) of the way, tick / (time + tick) is less. */
 static FDVV_COLD void set_heat_model(fdvv_supervisor *me, const fdvv_settings *settings)
 {
-    uint32_t board_us = me->limits->heat_time_ms * 1000, time_us = settings->heat_time_ms * 1000;
+    uint32_t board_us = me->limits->heat_time_ms * 1000, time_us = settings->heat_time_ms * 1000, highest_K;
 #ifndef FDVV_NO_THERMISTOR
     fdvv_thermistor_set(&me->thermistor, me->limits, settings, me->heating_q32);
 #endif
     me->heating_q32 = fdvv_fraction_q32(settings->tick_us, lower(time_us, board_us)) + 1;
     me->cooling_q32 = fdvv_fraction_q32(settings->tick_us, higher(time_us, board_us) + settings->tick_us);
-    me->rise_K = (uint16_t)higher(settings->full_duty_rise_K, me->limits->full_duty_rise_K);
+    me->rise_K = (uint16_t)(highest_K = higher(settings->full_duty_rise_K, me->limits->full_duty_rise_K));
     me->nominal_supply_mV = me->limits->nominal_supply_mV;
     if (me->limits->supply_high_mV > me->nominal_supply_mV) {
-        uint32_t span_mV = me->limits->supply_high_mV - (uint32_t)me->nominal_supply_mV;
-        me->rise_K_mV_q16 = ((raised_K(me, raised_K(me, me->rise_K)) - me->rise_K) << 16) / span_mV + 1;
+        highest_K = raised_K(me, raised_K(me, me->rise_K));
+        me->rise_K_mV_q16 =
+            ((highest_K - me->rise_K) << 16) / (me->limits->supply_high_mV - (uint32_t)me->nominal_supply_mV) + 1;
     }
+    me->late_K_q16 = gain_when_late_K_q16(highest_K, lower(time_us, board_us));
 }
 
 void fdvv_supervisor_settings(fdvv_supervisor *supervisor, const fdvv_settings *settings)
@@ -411,7 +423,7 @@ uint8_t fdvv_supervisor_ask(fdvv_supervisor *supervisor, const fdvv_settings *se
 int16_t fdvv_supervisor_limit_cN64(fdvv_supervisor *supervisor, const fdvv_settings *settings)
 {
     uint32_t start = (uint32_t)settings->derate_start_K << 16, end = (uint32_t)settings->heat_limit_K << 16;
-    uint32_t heat = supervisor->heat_K_q16;
+    uint32_t heat = supervisor->heat_K_q16 + supervisor->late_K_q16;
     if (!is_rendering(supervisor->mode))
         return 0;
     if (heat >= start)

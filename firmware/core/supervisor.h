@@ -34,6 +34,7 @@ typedef struct {
     uint32_t heating_q32;     /* part of the way to end_K_q16 in a tick, rounded up */
     uint32_t cooling_q32;     /* the same on the way down, rounded down */
     uint32_t rise_K_mV_q16;   /* rise_K grows by it with every mV above the nominal supply */
+    uint32_t late_K_q16;      /* by which full duty may warm the coil before the next two ticks, late as they may be */
     uint32_t derate_cN64_K_q8; /* force limit per degree of heat */
     uint32_t active;          /* bit FDVV_FAULT_…: its condition is true now */
     uint32_t last_sum;        /* of the position readings, to detect a stuck sensor */
@@ -77,7 +78,8 @@ void fdvv_supervisor_check(fdvv_supervisor *supervisor, const fdvv_settings *set
  * FDVV_FAULT_INTERNAL. */
 void fdvv_supervisor_fault(fdvv_supervisor *supervisor, uint8_t fault, int32_t value, int32_t bound);
 
-/* Largest force allowed in this tick: 0 unless armed or derated. Switches between these two modes. */
+/* Largest force allowed in this tick: 0 unless armed or derated. Switches between these two modes. The heat
+ * counts as higher by late_K_q16. */
 int16_t fdvv_supervisor_limit_cN64(fdvv_supervisor *supervisor, const fdvv_settings *settings);
 
 /* Advance the thermal model to the end of the tick that begins with this duty at this supply; ticks missed before it

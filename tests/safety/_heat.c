@@ -25,6 +25,8 @@ int safety_heat(uint32_t seed, int scenes, double scene_s, int is_guarded, const
 
 double safety_recovery_s(const fdvv_settings *settings, const fdvv_board_limits *limits, int counts);
 
+double safety_late_K(const fdvv_settings *settings, const fdvv_board_limits *limits);
+
 static uint32_t draw(uint32_t *state)
 {
     *state ^= *state << 13;
@@ -236,6 +238,27 @@ double safety_recovery_s(const fdvv_settings *settings, const fdvv_board_limits 
         fdvv_supervisor_thermistor(&me, (uint16_t)counts, 1);
     }
     return ticks * 1e-6 * settings->tick_us;
+}
+
+/* The hottest that the coil gets where all force that is allowed is used, and every tick is late by as much as the watchdog
+ * lets it be. */
+double safety_late_K(const fdvv_settings *settings, const fdvv_board_limits *limits)
+{
+    static const fdvv_kept_heat cold = {0, UINT32_MAX};
+    coil it = {0.0, 0.0, limits->heat_time_ms * 1e-3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, limits};
+    uint16_t supply_mV = settings->supply_high_mV;
+    double hottest_K = 0.0, tick_s = settings->tick_us * 1e-6, time_s;
+    fdvv_supervisor me;
+    start(&me, &it, settings, &cold);
+    for (time_s = 0.0; time_s < it.time_s; time_s += 8e-3) {
+        int16_t duty_q15 = (int16_t)allowed_q15(&me, settings, supply_mV);
+        warm(&it, 8e-3 - tick_s);
+        load_coil(&it, duty_q15, supply_mV);
+        warm(&it, tick_s);
+        hottest_K = it.heat_K > hottest_K ? it.heat_K : hottest_K;
+        fdvv_supervisor_heat(&me, duty_q15, supply_mV, (uint16_t)lround(8e-3 / tick_s));
+    }
+    return hottest_K;
 }
 
 /* Play so many scenes; returns how many went well before one did not. */

@@ -251,6 +251,7 @@ class Supervisor:
     heating_q32: int = 0
     cooling_q32: int = 0
     rise_K: int = 0
+    late_K_q16: int = 0
     slope_q8: int = 0
     thermistor: Thermistor = field(default_factory=Thermistor)
 
@@ -268,6 +269,7 @@ class Supervisor:
         self.heating_q32 = settings.tick_us * 2**32 // quick + 1
         self.cooling_q32 = settings.tick_us * 2**32 // (slow + settings.tick_us)
         self.rise_K = max(settings.full_duty_rise_K, self.limits.full_duty_rise_K)
+        self.late_K_q16 = min(self._highest_K() * 2**16 * (16_000 * 2**32 // quick) // 2**32 + 1, 2**17)
         self.slope_q8 = 256 * settings.force_limit_cN64 // (settings.heat_limit_K - settings.derate_start_K)
 
     def ask(self, settings: Settings, ask: int, number: int) -> Refusal:
@@ -380,7 +382,7 @@ class Supervisor:
         if not self.rendering:
             return 0
         heat, start, end = (
-            self.heat_K_q48 >> 32,
+            (self.heat_K_q48 >> 32) + self.late_K_q16,
             settings.derate_start_K * 2**16,
             settings.heat_limit_K * 2**16,
         )
@@ -429,14 +431,20 @@ class Supervisor:
         else:
             self.heat_K_q48 += (self.end_K_q16 - (self.heat_K_q48 >> 32)) * part_q32
 
+    def _highest_K(self) -> int:
+        """Return the rise at full duty for ever, at the highest supply."""
+        low_mV, high_mV, highest_K = self.limits.nominal_supply_mV, self.limits.supply_high_mV, self.rise_K
+        if high_mV > low_mV:
+            for _ in range(2):
+                highest_K = min(65_533, highest_K * high_mV // low_mV + 1)
+        return highest_K
+
     def _end_K_q16(self, duty_q15: int, supply_mV: int) -> int:
         """Return the rise for ever: a lower supply counts as nominal, above it a chord of the square does."""
         low_mV, high_mV = self.limits.nominal_supply_mV, self.limits.supply_high_mV
         rise_K = self.rise_K
         if supply_mV > low_mV:
-            highest_K = rise_K
-            for _ in range(2):
-                highest_K = min(65_533, highest_K * high_mV // low_mV + 1)
+            highest_K = self._highest_K()
             slope_q16 = (highest_K - rise_K) * 2**16 // (high_mV - low_mV) + 1 if high_mV > low_mV else 0
             rise_K += (supply_mV - low_mV) * slope_q16 % 2**32 // 2**16 + 1
         return rise_K * -(-(duty_q15**2) // 2**14) % 2**32

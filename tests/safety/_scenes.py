@@ -282,8 +282,11 @@ def heat(script: Script) -> None:
 
 
 def crossings(script: Script) -> None:
-    """Come to the start of derating and to its end exactly: many missed ticks end at whole kelvins."""
-    for rise_K in (15, 16, 17, 29, 30):
+    """Come to the start of derating and to its end exactly: many missed ticks end at whole kelvins.
+
+    So quick a coil counts as two kelvins warmer, as the next ticks may be late.
+    """
+    for rise_K in (13, 14, 15, 27, 28, 30):
         settings = Settings(
             full_duty_rise_K=rise_K, derate_start_K=16, heat_limit_K=30, heat_time_ms=100, tick_us=1000
         )
@@ -292,9 +295,9 @@ def crossings(script: Script) -> None:
             script.heat(-32768, 65_535)
             script.limit(settings)
         script.tick(settings, Inputs(sum=1))
-    sooner = Settings(full_duty_rise_K=15, derate_start_K=10, heat_limit_K=30, heat_time_ms=100, tick_us=1000)
+    sooner = Settings(full_duty_rise_K=13, derate_start_K=10, heat_limit_K=30, heat_time_ms=100, tick_us=1000)
     for duty in (-32768, 32767):
-        # derated at 15 K, or just below: the way back begins there
+        # derated at 15 K less two, or just below: the way back begins there
         script.armed(sooner)
         for _ in range(4):
             script.heat(duty, 65_535)

@@ -29,6 +29,13 @@ from tests.support.inputs import inputs_at
 
 SCENE_s = 60.0
 RIGS = ("voltage", "recommended", "light")
+STRONG = {
+    "force_limit_cN64": 32_000,
+    "duty_gain_q16": 1_048_576,
+    "tick_low_us": 50,
+    "tick_high_us": 4000,
+}
+"""A board at any tick whose force only the supervisor's bound of the heat holds back."""
 
 
 class Result(ctypes.Structure):
@@ -58,11 +65,10 @@ def rigs() -> Iterator[BoardLimits]:
 
 
 def strong_rigs() -> Iterator[BoardLimits]:
-    """Yield each as it is, and at any tick with a force that only the supervisor holds below the limit."""
-    ticks = {"tick_low_us": 50, "tick_high_us": 4000}
+    """Yield each as it is, and as STRONG."""
     for limits in rigs():
         yield limits
-        yield replace(limits, force_limit_cN64=32_000, duty_gain_q16=1_048_576, **ticks)
+        yield replace(limits, **STRONG)
 
 
 @pytest.fixture(scope="module")
@@ -106,6 +112,23 @@ def test_no_coil_is_beyond_the_limit_in_random_minutes_with_restarts_and_power_c
         assert result.hottest_K <= limits.heat_limit_K
         hottest_K = max(hottest_K, result.hottest_K / limits.heat_limit_K)
     assert hottest_K > 0.95
+
+
+@pytest.mark.parametrize("tick_us", [50, 1000, 4000])
+def test_a_board_that_is_late_in_every_tick_keeps_its_coil_below_the_limit(
+    library: ctypes.CDLL, tick_us: int
+) -> None:
+    library.safety_late_K.restype = ctypes.c_double
+    for name in RIGS:
+        limits = replace(limits_of(load_rig(name)), **STRONG)
+        strong = {
+            "force_limit_cN64": 32_000,
+            "duty_gain_q16": 1_048_576,
+            "derate_start_K": limits.heat_limit_K - 1,
+        }
+        settings = replace(settings_of(load_rig(name)), tick_us=tick_us, **strong)
+        hottest_K = library.safety_late_K(settings.pack(), limits.pack())
+        assert limits.heat_limit_K - 3 < hottest_K <= limits.heat_limit_K
 
 
 @pytest.mark.parametrize(("name", "whole_s"), [("voltage", 24.4), ("recommended", 3.5)])
