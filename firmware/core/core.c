@@ -205,7 +205,7 @@ void fdvv_core_tick(fdvv_core *core, const fdvv_inputs *inputs, fdvv_outputs *ou
         stop_rendering(core, outputs);
     core->events = 0;
     advance(core);
-    fdvv_supervisor_heat(supervisor, outputs->duty_q15, inputs->supply_mV, elapsed_ticks);
+    fdvv_heat_tick(&supervisor->heat, outputs->duty_q15, inputs->supply_mV, elapsed_ticks);
     if (core->position.release)
         flags |= FDVV_TICK_FLAG_RELEASE;
     if (elapsed_ticks > 1)
@@ -220,6 +220,6 @@ void fdvv_core_after_tick(fdvv_core *core, const fdvv_inputs *inputs)
 #ifdef FDVV_NO_THERMISTOR
     (void)core, (void)inputs;
 #else
-    fdvv_supervisor_thermistor(&core->supervisor, inputs->thermistor_counts, inputs->elapsed_ticks);
+    fdvv_heat_thermistor(&core->supervisor.heat, inputs->thermistor_counts, inputs->elapsed_ticks);
 #endif
 }

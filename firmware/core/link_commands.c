@@ -39,7 +39,7 @@ static uint8_t ping(fdvv_link *link, const void *request)
     reply->tick = link->tick;
     reply->mode = supervisor->mode;
     reply->fault = supervisor->fault;
-    reply->heat_K = (uint16_t)(supervisor->heat_K_q16 >> 16);
+    reply->heat_K = (uint16_t)(supervisor->heat.coil_K_q16 >> 16);
     return FDVV_REFUSAL_NONE;
 }
 
@@ -63,7 +63,7 @@ static uint8_t read_coil(fdvv_link *link, const void *request)
     fdvv_read_coil_reply *reply = (fdvv_read_coil_reply *)link->reply;
     const fdvv_supervisor *supervisor = &link->core->supervisor;
     (void)request;
-    reply->heat_K = (uint16_t)(supervisor->heat_K_q16 >> 16);
+    reply->heat_K = (uint16_t)(supervisor->heat.coil_K_q16 >> 16);
     reply->thermistor_K = (uint16_t)(FDVV_THERMISTOR(supervisor, is_known)
                                          ? FDVV_THERMISTOR(supervisor, reading_K_q16) >> 16
                                          : UINT16_MAX);

@@ -67,7 +67,7 @@ typedef struct {
       set->force_gain_q14 ? set->over_force_cN64 - derived->force_cN64 : 0, derived->force_cN64, set->over_force_cN64) \
     /* Is the coil too warm, according to the thermal model? */                                                 \
     X(OVER_HEAT, ALWAYS, INACTIVE, STOP, K,                                                                     \
-      set->heat_limit_K - 1 - (int32_t)(me->heat_K_q16 >> 16), me->heat_K_q16 >> 16, set->heat_limit_K)         \
+      set->heat_limit_K - 1 - (int32_t)(me->heat.coil_K_q16 >> 16), me->heat.coil_K_q16 >> 16, set->heat_limit_K) \
     /* Is the supply voltage too low? */                                                                        \
     X(SUPPLY_LOW, ALWAYS, INACTIVE, STOP, mV,                                                                   \
       in->supply_mV - set->supply_low_mV, in->supply_mV, set->supply_low_mV)                                    \
@@ -318,8 +318,6 @@ void fdvv_supervisor_fault(fdvv_supervisor *supervisor, uint8_t fault, int32_t v
 
 /* -- modes -------------------------------------------------------------------------------------------------- */
 
-#define HOTTEST_K 65533 /* with the two kelvins that are added to it, the most that 16 bits hold */
-
 void fdvv_supervisor_init(fdvv_supervisor *supervisor, const fdvv_board_limits *limits)
 {
     static const fdvv_supervisor at_boot = {0};
@@ -327,58 +325,11 @@ void fdvv_supervisor_init(fdvv_supervisor *supervisor, const fdvv_board_limits *
     supervisor->limits = limits;
 }
 
-static uint32_t lower(uint32_t a, uint32_t b)
-{
-    return a < b ? a : b;
-}
-
-static uint32_t higher(uint32_t a, uint32_t b)
-{
-    return a > b ? a : b;
-}
-
-/* rise_K at the highest supply, if it goes with the supply; rounded up, and kept to 16 bits. */
-static uint32_t raised_K(const fdvv_supervisor *me, uint32_t rise_K)
-{
-    return lower(rise_K * me->limits->supply_high_mV / me->limits->nominal_supply_mV + 1, HOTTEST_K);
-}
-
-/* Twice the longest period of a board's watchdog: a tick decides on its force before it counts the ticks that were missed. */
-#define LATE_us 16000
-#define MOST_LATE_K_q16 ((uint32_t)2 << 16) /* a coil that gains more has no board that could stop in time */
-
-static uint32_t gain_when_late_K_q16(uint32_t highest_K, uint32_t time_us)
-{
-    uint64_t gain_q48 = fdvv_wide_product(highest_K << 16, fdvv_fraction_q32(LATE_us, time_us));
-    return lower((uint32_t)(gain_q48 >> 32) + 1, MOST_LATE_K_q16);
-}
-
-/* The model is never cooler than the coil of the board, whatever the settings were and are: towards the higher of both
- * ends it heats with the shorter of both time constants and cools with the longer, so at the temperature of the coil it
- * never falls behind. tick / time is more than the part 1 - exp(-tick / time) of the way, tick / (time + tick) is less. */
-static FDVV_COLD void set_heat_model(fdvv_supervisor *me, const fdvv_settings *settings)
-{
-    uint32_t board_us = me->limits->heat_time_ms * 1000, time_us = settings->heat_time_ms * 1000, highest_K;
-#ifndef FDVV_NO_THERMISTOR
-    fdvv_thermistor_set(&me->thermistor, me->limits, settings, me->heating_q32);
-#endif
-    me->heating_q32 = fdvv_fraction_q32(settings->tick_us, lower(time_us, board_us)) + 1;
-    me->cooling_q32 = fdvv_fraction_q32(settings->tick_us, higher(time_us, board_us) + settings->tick_us);
-    me->rise_K = (uint16_t)(highest_K = higher(settings->full_duty_rise_K, me->limits->full_duty_rise_K));
-    me->nominal_supply_mV = me->limits->nominal_supply_mV;
-    if (me->limits->supply_high_mV > me->nominal_supply_mV) {
-        highest_K = raised_K(me, raised_K(me, me->rise_K));
-        me->rise_K_mV_q16 =
-            ((highest_K - me->rise_K) << 16) / (me->limits->supply_high_mV - (uint32_t)me->nominal_supply_mV) + 1;
-    }
-    me->late_K_q16 = gain_when_late_K_q16(highest_K, lower(time_us, board_us));
-}
-
 void fdvv_supervisor_settings(fdvv_supervisor *supervisor, const fdvv_settings *settings)
 {
     uint32_t span_K = (uint32_t)settings->heat_limit_K - settings->derate_start_K;
     supervisor->settings_sum = checksum(settings);
-    set_heat_model(supervisor, settings);
+    fdvv_heat_set(&supervisor->heat, supervisor->limits, settings);
     supervisor->derate_cN64_K_q8 = ((uint32_t)settings->force_limit_cN64 << 8) / span_K;
     supervisor->position_known = 0;
 }
@@ -423,7 +374,7 @@ uint8_t fdvv_supervisor_ask(fdvv_supervisor *supervisor, const fdvv_settings *se
 int16_t fdvv_supervisor_limit_cN64(fdvv_supervisor *supervisor, const fdvv_settings *settings)
 {
     uint32_t start = (uint32_t)settings->derate_start_K << 16, end = (uint32_t)settings->heat_limit_K << 16;
-    uint32_t heat = supervisor->heat_K_q16 + supervisor->late_K_q16;
+    uint32_t heat = supervisor->heat.coil_K_q16 + supervisor->heat.late_K_q16;
     if (!is_rendering(supervisor->mode))
         return 0;
     if (heat >= start)
@@ -434,100 +385,4 @@ int16_t fdvv_supervisor_limit_cN64(fdvv_supervisor *supervisor, const fdvv_setti
         return settings->force_limit_cN64;
     /* at most force_limit_cN64 << 16: the slope is the force limit divided by the span from start to end */
     return heat < end ? (int16_t)(supervisor->derate_cN64_K_q8 * ((end - heat) >> 8) >> 16) : 0;
-}
-
-/* Rise at which the coil would end at this duty, rounded up. A current drive heats with the square of the duty, a
- * voltage drive with that of duty times supply: the higher of the two. The chord from the nominal to the highest supply
- * lies above the square. Beyond the highest supply the duty is 0. */
-static inline uint32_t end_K_q16(const fdvv_supervisor *me, int16_t duty_q15, uint16_t supply_mV)
-{
-    uint32_t rise_K = me->rise_K;
-    if (supply_mV > me->nominal_supply_mV)
-        rise_K += ((uint32_t)(supply_mV - me->nominal_supply_mV) * me->rise_K_mV_q16 >> 16) + 1;
-    return rise_K * (((uint32_t)((int32_t)duty_q15 * duty_q15) + 0x3fff) >> 14);
-}
-
-static uint64_t heat_K_q48(const fdvv_supervisor *me)
-{
-    return (uint64_t)me->heat_K_q16 << 32 | me->heat_rest_q48;
-}
-
-static void set_heat_K_q48(fdvv_supervisor *me, uint64_t heat_q48)
-{
-    me->heat_K_q16 = (uint32_t)(heat_q48 >> 32);
-    me->heat_rest_q48 = (uint32_t)heat_q48;
-}
-
-static FDVV_COLD uint64_t long_product(uint32_t x, uint32_t y)
-{
-    return fdvv_wide_product(x, y);
-}
-
-/* Of a coil that takes more than 65536 ticks to warm, with two multiplications less. */
-static inline uint64_t part_q48(uint32_t way_q16, uint32_t part_q32)
-{
-    uint32_t low = (way_q16 & 0xffff) * part_q32, high = (way_q16 >> 16) * part_q32 + (low >> 16);
-    if (part_q32 >> 16)
-        return long_product(way_q16, part_q32);
-    return (uint64_t)(high >> 16) << 32 | (high << 16 | (low & 0xffff));
-}
-
-/* Missed ticks had the duty of the last one: they may heat, and never cool. */
-static __attribute__((noinline)) void heat_missed(fdvv_supervisor *me, uint32_t ticks)
-{
-    uint64_t part_q32;
-    if (me->end_K_q16 <= me->heat_K_q16)
-        return;
-    part_q32 = part_q48(ticks, me->heating_q32);
-    if (part_q32 >> 32) /* the whole way */
-        set_heat_K_q48(me, (uint64_t)me->end_K_q16 << 32);
-    else
-        set_heat_K_q48(me, heat_K_q48(me) + fdvv_wide_product(me->end_K_q16 - me->heat_K_q16, (uint32_t)part_q32));
-}
-
-/* First-order thermal model. The temperature rise has 48 fractional bits, so that no step is too small. */
-void fdvv_supervisor_heat(fdvv_supervisor *supervisor, int16_t duty_q15, uint16_t supply_mV, uint16_t elapsed_ticks)
-{
-    uint32_t end_q16 = end_K_q16(supervisor, duty_q15, supply_mV), heat_q16;
-    if (elapsed_ticks > 1)
-        heat_missed(supervisor, elapsed_ticks - 1u);
-    supervisor->end_K_q16 = end_q16;
-    heat_q16 = supervisor->heat_K_q16;
-    if (end_q16 > heat_q16)
-        set_heat_K_q48(supervisor, heat_K_q48(supervisor) + part_q48(end_q16 - heat_q16, supervisor->heating_q32));
-    else
-        set_heat_K_q48(supervisor, heat_K_q48(supervisor) - part_q48(heat_q16 - end_q16, supervisor->cooling_q32));
-}
-
-#ifndef FDVV_NO_THERMISTOR
-void fdvv_supervisor_thermistor(fdvv_supervisor *supervisor, uint16_t counts, uint16_t elapsed_ticks)
-{
-    fdvv_thermistor *thermistor = &supervisor->thermistor;
-    if (!thermistor->is_fitted)
-        return;
-    thermistor->load_K_q16 += supervisor->end_K_q16;
-    if (elapsed_ticks > 1) /* missed ticks had the duty of the one before */
-        thermistor->load_K_q16 += long_product(thermistor->end_K_q16, elapsed_ticks - 1u);
-    thermistor->end_K_q16 = supervisor->end_K_q16;
-    thermistor->ticks = (uint16_t)lower(thermistor->ticks + higher(elapsed_ticks, 1), UINT16_MAX);
-    if (thermistor->ticks < FDVV_THERMISTOR_TICKS)
-        return;
-    supervisor->heat_K_q16 =
-        fdvv_thermistor_sample(thermistor, counts, supervisor->heat_K_q16 + 1, supervisor->heating_q32);
-    supervisor->heat_rest_q48 = 0;
-}
-#endif
-
-void fdvv_supervisor_keep_heat(const fdvv_supervisor *supervisor, fdvv_kept_heat *kept)
-{
-    kept->heat_K_q16 = supervisor->heat_K_q16 + (1 << 16);
-    kept->check = ~kept->heat_K_q16;
-}
-
-FDVV_COLD void fdvv_supervisor_resume_heat(fdvv_supervisor *supervisor, const fdvv_kept_heat *kept)
-{
-    if (kept->check == ~kept->heat_K_q16)
-        supervisor->heat_K_q16 = kept->heat_K_q16;
-    else /* no force, and no fault */
-        supervisor->heat_K_q16 = ((uint32_t)supervisor->limits->heat_limit_K << 16) - 1;
 }

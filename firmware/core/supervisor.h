@@ -2,8 +2,8 @@
 #ifndef FDVV_SUPERVISOR_H
 #define FDVV_SUPERVISOR_H
 
+#include "heat.h"
 #include "inputs.h"
-#include "thermistor.h"
 
 typedef char fdvv_settings_are_whole_dozens_of_words[sizeof(fdvv_settings) % 48 == 0 ? 1 : -1];
 
@@ -25,16 +25,8 @@ typedef struct {
     uint8_t host_heard;       /* a message came within the timeout */
     uint16_t faults;          /* count since boot, including those not latched; saturates at 65535 */
     uint16_t equal_sums;      /* ticks since last_sum changed */
-    uint16_t rise_K;          /* at full duty and nominal supply, for ever */
-    uint16_t nominal_supply_mV; /* of the board */
     fdvv_evidence now;        /* as `evidence`, of the last tick */
-    uint32_t heat_K_q16;      /* temperature rise of the coil, from the thermal model */
-    uint32_t heat_rest_q48;   /* the bits below those of heat_K_q16 */
-    uint32_t end_K_q16;       /* rise at which the duty of the last tick would end */
-    uint32_t heating_q32;     /* part of the way to end_K_q16 in a tick, rounded up */
-    uint32_t cooling_q32;     /* the same on the way down, rounded down */
-    uint32_t rise_K_mV_q16;   /* rise_K grows by it with every mV above the nominal supply */
-    uint32_t late_K_q16;      /* by which full duty may warm the coil before the next two ticks, late as they may be */
+    fdvv_heat heat;           /* of the coil */
     uint32_t derate_cN64_K_q8; /* force limit per degree of heat */
     uint32_t active;          /* bit FDVV_FAULT_…: its condition is true now */
     uint32_t last_sum;        /* of the position readings, to detect a stuck sensor */
@@ -42,16 +34,7 @@ typedef struct {
     uint32_t settings_sum;    /* checksum of the settings as they were set */
     const fdvv_board_limits *limits;
     fdvv_evidence evidence;   /* of the latched fault */
-#ifndef FDVV_NO_THERMISTOR
-    fdvv_thermistor thermistor;
-#endif
 } fdvv_supervisor;
-
-/* The heat over a reset, in memory that start-up leaves alone. */
-typedef struct {
-    uint32_t heat_K_q16;
-    uint32_t check;           /* ~heat_K_q16 */
-} fdvv_kept_heat;
 
 /* limits: of the board; constant, and kept by reference. */
 void fdvv_supervisor_init(fdvv_supervisor *supervisor, const fdvv_board_limits *limits);
@@ -79,23 +62,8 @@ void fdvv_supervisor_check(fdvv_supervisor *supervisor, const fdvv_settings *set
 void fdvv_supervisor_fault(fdvv_supervisor *supervisor, uint8_t fault, int32_t value, int32_t bound);
 
 /* Largest force allowed in this tick: 0 unless armed or derated. Switches between these two modes. The heat
- * counts as higher by late_K_q16. */
+ * counts as higher by heat.late_K_q16. */
 int16_t fdvv_supervisor_limit_cN64(fdvv_supervisor *supervisor, const fdvv_settings *settings);
-
-/* Advance the thermal model to the end of the tick that begins with this duty at this supply; ticks missed before it
- * had the duty of the last call. */
-void fdvv_supervisor_heat(fdvv_supervisor *supervisor, int16_t duty_q15, uint16_t supply_mV, uint16_t elapsed_ticks);
-
-/* After fdvv_supervisor_heat, with the same ticks: where a thermistor is fitted, bound the heat by its reading, once in
- * FDVV_THERMISTOR_TICKS. */
-void fdvv_supervisor_thermistor(fdvv_supervisor *supervisor, uint16_t counts, uint16_t elapsed_ticks);
-
-/* After every tick: keep the heat, and a kelvin for what the coil may get until the watchdog resets a stopped board. */
-void fdvv_supervisor_keep_heat(const fdvv_supervisor *supervisor, fdvv_kept_heat *kept);
-
-/* After a reset: go on with the heat that was kept. Where none was, as after a power cut, the coil may be as warm as a
- * coil of this board can be: start just below the limit of the board, at which there is no force. */
-void fdvv_supervisor_resume_heat(fdvv_supervisor *supervisor, const fdvv_kept_heat *kept);
 
 /* Return 0 if the settings are valid, else 1 + the number of the first field that is out of range, inconsistent with
  * another one, or looser than the limits of the board. */

@@ -42,9 +42,9 @@ typedef struct {
 #ifdef FDVV_NO_THERMISTOR /* a board that is built for a rig without one, to save its flash */
 #define FDVV_THERMISTOR(supervisor, field) 0
 #else
-#define FDVV_THERMISTOR(supervisor, field) ((supervisor)->thermistor.field)
+#define FDVV_THERMISTOR(supervisor, field) ((supervisor)->heat.thermistor.field)
 
-/* Use this tick and these limits. heating_q32: as in the supervisor, of the ticks so far. */
+/* Use this tick and these limits. heating_q32: as in the thermal model, of the ticks so far. */
 void fdvv_thermistor_set(fdvv_thermistor *thermistor, const fdvv_board_limits *limits, const fdvv_settings *settings,
                          uint32_t heating_q32);
 

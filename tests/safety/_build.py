@@ -12,7 +12,7 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[2]
 CORE = REPOSITORY / "firmware" / "core"
 DRIVERS = tuple(Path(__file__).with_name(name) for name in ("_driver.c", "_replay.c"))
-NAMES = ("arithmetic", "crc32", "image", "image_check", "settings", "supervisor", "thermistor")
+NAMES = ("arithmetic", "crc32", "heat", "image", "image_check", "settings", "supervisor", "thermistor")
 SOURCES = tuple(CORE / f"{name}.c" for name in NAMES)
 WARNINGS = ("-std=c99", "-Wall", "-Wextra", "-Werror")
 SANITISED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")

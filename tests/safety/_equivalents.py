@@ -2,8 +2,6 @@
 # ruff: noqa: E501
 
 SUPERVISOR = {
-    "if (elapsed_ticks > 1) /* missed ticks had the duty of the one before */: > -> >= at 23": "no missed tick adds nothing",
-    "if (elapsed_ticks > 1) /* missed ticks had the duty of the one before */: 1 -> (0) at 25": "no missed tick adds nothing",
     "return value < INT32_MAX ? (int32_t)value : INT32_MAX;: < -> <= at 18": "at the bound both are equal",
     "return clamp_to_int32(a > b ? (uint32_t)a - (uint32_t)b : (uint32_t)b - (uint32_t)a);: > -> >= at 29": (
         "both differences of equal numbers are zero"
@@ -24,18 +22,22 @@ SUPERVISOR = {
     "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: 0 -> 1 at 13": "the slow path gives the same result",
     "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: 0 -> (-1) at 13": "the slow path gives the same result",
     "return (0 FAULT_TABLE(OR_MARGIN)) >= 0;: 0 -> 1 at 42": "the slow path gives the same result",
-    "return a < b ? a : b;: < -> <= at 14": "equal numbers are each the lower one",
-    "return a > b ? a : b;: > -> >= at 14": "equal numbers are each the higher one",
-    "if (part_q32 >> 16): >> -> << at 18": "the long way is the same",
-    "if (part_q32 >> 16): 16 -> (15) at 21": "the long way is the same",
-    "if (end_q16 > heat_q16): > -> >= at 17": "at the end the step is zero",
-    "if (elapsed_ticks > 1): > -> >= at 23": "no missed tick heats nothing",
-    "if (elapsed_ticks > 1): 1 -> (0) at 25": "no missed tick heats nothing",
-    "if (me->end_K_q16 <= me->heat_K_q16): <= -> < at 23": "at the end the step is zero",
     "set->force_gain_q14 ? set->over_force_cN64 - derived->force_cN64 : 0, "
     "derived->force_cN64, set->over_force_cN64): 0 -> 1 at 74": "neither margin is negative",
     "0, me->now.value, me->now.bound): 0 -> 1 at 7": "neither margin is negative",
     "supervisor->active = 0;: 0 -> 1 at 30": "bit 0 belongs to no fault",
+}
+HEAT = {
+    "if (elapsed_ticks > 1) /* missed ticks had the duty of the one before */: > -> >= at 23": "no missed tick adds nothing",
+    "if (elapsed_ticks > 1) /* missed ticks had the duty of the one before */: 1 -> (0) at 25": "no missed tick adds nothing",
+    "return a < b ? a : b;: < -> <= at 14": "equal numbers are each the lower one",
+    "return a > b ? a : b;: > -> >= at 14": "equal numbers are each the higher one",
+    "if (part_q32 >> 16): >> -> << at 18": "the long way is the same",
+    "if (part_q32 >> 16): 16 -> (15) at 21": "the long way is the same",
+    "if (end_q16 > coil_q16): > -> >= at 17": "at the end the step is zero",
+    "if (elapsed_ticks > 1): > -> >= at 23": "no missed tick heats nothing",
+    "if (elapsed_ticks > 1): 1 -> (0) at 25": "no missed tick heats nothing",
+    "if (me->end_K_q16 <= me->coil_K_q16): <= -> < at 23": "at the end the step is zero",
 }
 THERMISTOR = {
     "return a > HOTTEST_K_q16 - b ? HOTTEST_K_q16 : a + b;: > -> >= at 14": "at the bound both are equal",
@@ -49,7 +51,7 @@ THERMISTOR = {
         "the bound is below the reading in this sample, and in the next the excess is 1 either way"
     ),
     "uint32_t lowest = rise > margin ? rise - margin : 0;: > -> >= at 28": "the difference of equal numbers is zero",
-    "uint32_t lowest = rise > margin ? rise - margin : 0;: 0 -> 1 at 55": "the supervisor passes a heat of 1 or more",
+    "uint32_t lowest = rise > margin ? rise - margin : 0;: 0 -> 1 at 55": "the thermal model passes a heat of 1 or more",
     "if (heat > highest): > -> >= at 14": "at the bound both are equal",
     "return heat < lowest ? lowest : heat;: < -> <= at 17": "at the bound both are equal",
     "fail(me, FDVV_THERMISTOR_IS_OPEN, fdvv_clamp(counts, 0, INT16_MAX), FDVV_THERMISTOR_OPEN);: 0 -> 1 at 62": (
@@ -74,4 +76,4 @@ SETTINGS = {
     "ROW(tick_us, tick_low_us, 1),: 1 -> 2 at 31": "only compared with zero",
     "ROW(full_duty_rise_K, full_duty_rise_K, 1),: 1 -> 2 at 45": "only compared with zero",
 }
-EQUIVALENT = {"supervisor": SUPERVISOR, "thermistor": THERMISTOR, "settings": SETTINGS}
+EQUIVALENT = {"supervisor": SUPERVISOR, "heat": HEAT, "thermistor": THERMISTOR, "settings": SETTINGS}

@@ -94,7 +94,7 @@ static void load_coil(coil *it, int16_t duty_q15, uint16_t supply_mV)
 
 static double heat_of(const fdvv_supervisor *me)
 {
-    return ldexp((double)me->heat_K_q16, -16) + ldexp((double)me->heat_rest_q48, -48);
+    return ldexp((double)me->heat.coil_K_q16, -16) + ldexp((double)me->heat.coil_rest_q48, -48);
 }
 
 /* Towards the end of the duty for so long. The bead is a little too late: it follows the coil of the start. */
@@ -132,7 +132,7 @@ static void start(fdvv_supervisor *me, const coil *it, const fdvv_settings *sett
 {
     fdvv_supervisor_init(me, it->limits);
     fdvv_supervisor_settings(me, settings);
-    fdvv_supervisor_resume_heat(me, kept);
+    fdvv_heat_resume(&me->heat, it->limits, kept);
 }
 
 /* A stopped board: the coil keeps its duty until the watchdog resets the board, if that is less than the kelvin. */
@@ -140,7 +140,7 @@ static void restart(fdvv_supervisor *me, coil *it, const fdvv_settings *settings
 {
     double volts = (double)it->limits->supply_high_mV / it->limits->nominal_supply_mV, stopped_s = 8e-3;
     fdvv_kept_heat kept;
-    fdvv_supervisor_keep_heat(me, &kept);
+    fdvv_heat_keep(&me->heat, &kept);
     if (it->limits->full_duty_rise_K * volts * volts * stopped_s < it->time_s)
         warm(it, stopped_s);
     it->end_K = 0.0;
@@ -162,7 +162,7 @@ static void cut(fdvv_supervisor *me, coil *it, const fdvv_settings *settings, ui
 static int32_t allowed_q15(fdvv_supervisor *me, const fdvv_settings *settings, uint16_t supply_mV)
 {
     double duty;
-    if (me->thermistor.faults)
+    if (me->heat.thermistor.faults)
         return 0;
     me->mode = FDVV_MODE_ARMED;
     duty = fdvv_supervisor_limit_cN64(me, settings) * (settings->duty_gain_q16 / 65536.0) * settings->nominal_supply_mV /
@@ -196,9 +196,9 @@ static int play(uint32_t *state, double scene_s, int is_guarded, const fdvv_boar
                 warm(&it, (elapsed - 1) * tick_s);
             load_coil(&it, (int16_t)now_q15, supply_mV);
             warm(&it, tick_s);
-            fdvv_supervisor_heat(&me, (int16_t)now_q15, supply_mV, elapsed);
+            fdvv_heat_tick(&me.heat, (int16_t)now_q15, supply_mV, elapsed);
             if (limits->thermistor_lag_ms)
-                fdvv_supervisor_thermistor(&me, me.thermistor.ticks + elapsed < 100 ? 0 : counts_of(&it, state), elapsed);
+                fdvv_heat_thermistor(&me.heat, me.heat.thermistor.ticks + elapsed < 100 ? 0 : counts_of(&it, state), elapsed);
             double margin_K = heat_of(&me) - it.heat_K;
             result->ticks++;
             result->mean_margin_K += margin_K;
@@ -234,8 +234,8 @@ double safety_recovery_s(const fdvv_settings *settings, const fdvv_board_limits 
         me.mode = FDVV_MODE_ARMED;
         if (fdvv_supervisor_limit_cN64(&me, settings) == settings->force_limit_cN64)
             break;
-        fdvv_supervisor_heat(&me, 0, limits->nominal_supply_mV, 1);
-        fdvv_supervisor_thermistor(&me, (uint16_t)counts, 1);
+        fdvv_heat_tick(&me.heat, 0, limits->nominal_supply_mV, 1);
+        fdvv_heat_thermistor(&me.heat, (uint16_t)counts, 1);
     }
     return ticks * 1e-6 * settings->tick_us;
 }
@@ -256,7 +256,7 @@ double safety_late_K(const fdvv_settings *settings, const fdvv_board_limits *lim
         load_coil(&it, duty_q15, supply_mV);
         warm(&it, tick_s);
         hottest_K = it.heat_K > hottest_K ? it.heat_K : hottest_K;
-        fdvv_supervisor_heat(&me, duty_q15, supply_mV, (uint16_t)lround(8e-3 / tick_s));
+        fdvv_heat_tick(&me.heat, duty_q15, supply_mV, (uint16_t)lround(8e-3 / tick_s));
     }
     return hottest_K;
 }

@@ -35,17 +35,17 @@ static int32_t play(fdvv_supervisor *me, const step *it, const fdvv_settings *se
         return 0;
     case FAULT: fdvv_supervisor_fault(me, (uint8_t)it->a, it->b, it->c); return 0;
     case LIMIT: return fdvv_supervisor_limit_cN64(me, settings);
-    case HEAT: fdvv_supervisor_heat(me, (int16_t)it->a, (uint16_t)it->b, (uint16_t)it->c); return 0;
+    case HEAT: fdvv_heat_tick(&me->heat, (int16_t)it->a, (uint16_t)it->b, (uint16_t)it->c); return 0;
     case THERMISTOR:
-        fdvv_supervisor_thermistor(me, (uint16_t)it->a, (uint16_t)it->b);
-        return me->thermistor.counts;
+        fdvv_heat_thermistor(&me->heat, (uint16_t)it->a, (uint16_t)it->b);
+        return me->heat.thermistor.counts;
     case RESUME: /* a restart: keep, spoil by b and c, start anew */
-        fdvv_supervisor_keep_heat(me, &kept);
-        kept.heat_K_q16 ^= (uint32_t)it->b;
+        fdvv_heat_keep(&me->heat, &kept);
+        kept.coil_K_q16 ^= (uint32_t)it->b;
         kept.check ^= (uint32_t)it->c;
         fdvv_supervisor_init(me, me->limits);
         fdvv_supervisor_settings(me, settings);
-        fdvv_supervisor_resume_heat(me, &kept);
+        fdvv_heat_resume(&me->heat, me->limits, &kept);
         return 0;
     case POKE_MODE: me->mode = (uint8_t)it->a; return 0;
     case POKE_FAULTS: me->faults = (uint16_t)it->a; return 0;
@@ -63,7 +63,7 @@ int safety_replay(const step *steps, int count, const fdvv_settings *settings, c
         const step *it = &steps[i];
         int32_t gave = play(&me, it, &settings[it->settings], limits);
         if (gave != it->gives || me.mode != it->mode || me.fault != it->fault || me.faults != it->faults ||
-            me.heat_K_q16 != it->heat_K_q16 || me.heat_rest_q48 != it->heat_rest_q48 || memcmp(&me.evidence, &it->evidence, sizeof me.evidence))
+            me.heat.coil_K_q16 != it->heat_K_q16 || me.heat.coil_rest_q48 != it->heat_rest_q48 || memcmp(&me.evidence, &it->evidence, sizeof me.evidence))
             return i;
     }
     return count;

@@ -12,7 +12,7 @@ import pytest
 
 from tests.safety._build import CORE, DRIVERS, LIBRARY, REPOSITORY, SANITISED, compile_c
 
-MEASURED = ("supervisor", "thermistor", "settings", "image_check", "crc32")
+MEASURED = ("supervisor", "heat", "thermistor", "settings", "image_check", "crc32")
 BESIDE = ("arithmetic", "image")
 RUNS = ("test_supervisor.py", "test_settings.py", "test_image_check.py")
 

@@ -1,4 +1,4 @@
-"""Faults planted in supervisor, thermistor and settings are caught: their tests can be trusted."""
+"""Faults planted in supervisor, heat, thermistor and settings are caught: their tests can be trusted."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from tests.safety._equivalents import EQUIVALENT
 from tests.safety._mutants import Mutant, mutants
 from tests.safety._script import Script
 
-SOURCES = {name: CORE / f"{name}.c" for name in ("supervisor", "thermistor", "settings")}
-SHARES = {"supervisor": 44, "thermistor": 12, "settings": 12}
+SOURCES = {name: CORE / f"{name}.c" for name in ("supervisor", "heat", "thermistor", "settings")}
+SHARES = {"supervisor": 32, "heat": 12, "thermistor": 12, "settings": 12}
 """Mutants planted by default."""
 REPLAY = Path(__file__).with_name("_replay.c")
 SECONDS = 5

@@ -117,7 +117,7 @@ static uint8_t serve_tick(void)
     board_key(outputs.key); /* 0 unless rendering, so never down in mode fault */
     board_drive(outputs.duty_q15, outputs.enable);
     fdvv_core_after_tick(&core, &inputs);
-    fdvv_supervisor_keep_heat(&core.supervisor, &kept_heat);
+    fdvv_heat_keep(&core.supervisor.heat, &kept_heat);
     board_watchdog_clear();
     update_counters(&readings);
     board_stop(outputs.stop_us);
@@ -190,7 +190,7 @@ static void start(void)
     describe();
     fdvv_settings_tighten(&settings, &limits);
     fdvv_core_init(&core, &settings, &limits);
-    fdvv_supervisor_resume_heat(&core.supervisor, &kept_heat);
+    fdvv_heat_resume(&core.supervisor.heat, core.supervisor.limits, &kept_heat);
     fdvv_supervisor_ask(&core.supervisor, &core.settings, FDVV_ASK_BOOTED, 0);
     fdvv_link_init(&link, &core, &board);
     vibration_silence();
