@@ -71,6 +71,8 @@ def verdict(bench: Bench, name: str, mutant: Mutant, number: int) -> str:
             "-std=c99",
             "-O0",
             "-Werror=return-type",
+            "-fsanitize=bounds",  # else what lies behind a table decides whether a read beyond it is seen
+            "-fsanitize-undefined-trap-on-error",
             f"-I{CORE}",
             "-o",
             program,
