@@ -15,7 +15,7 @@ from scipy.special import ndtri
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.paper_space import paper_model
 from fdvv.optimize.people.simulate import score_design, simulate_task
-from fdvv.optimize.people.user import SimulatedUser, UserSettings, draw_user, timing_spread_s
+from fdvv.optimize.people.user import SimulatedUser, UserSettings, draw_user, spread_factor, timing_spread_s
 from fdvv.optimize.space import Design
 from fdvv.task.pointing import LOST_ms, TemporalPointing
 from fdvv.task.score import Score
@@ -24,6 +24,8 @@ from fdvv.units import FloatArray
 FIRST_SEED = 2000
 """Below it seeds were used to tune, or were looked at while an engine was changed."""
 SESSIONS, TRUE_SEED = 2, 7_000_000
+PRACTISED = 600
+"""Presses before those that a design is truly judged by: those of 30 trials."""
 NODES = ndtri((np.arange(200) + 0.5) / 200)
 """Of a normal distribution, each as likely as the next."""
 SHIFTED: Mapping[str, float] = {"pace_mm_s": 1.3, "stiffness_N_m": 0.7, "push_cN": 0.75, "bias_ms": 1.4}
@@ -82,13 +84,12 @@ def expected_ms(
     A movement's scatter only shifts a press in time, and so does what a person makes up for, a sum of what
     was felt before. Sessions are played without any scatter and it is added as its distribution.
     """
-    still = replace(user, clock_ratio=1e-9, motor_ms=0.0, percept_ms=0.0)
+    still = replace(user, clock_ratio=1e-9, motor_ms=0.0, percept_ms=0.0, block_ms=0.0)
     exact = replace(task, quantised=False)
     counted = []
     for session in range(sessions):
-        for press, sd_ms in zip(
-            simulate_task(exact, model, still, TRUE_SEED + session), _sd_ms(task, user), strict=True
-        ):
+        presses = simulate_task(exact, model, still, TRUE_SEED + session, presses_before=PRACTISED)
+        for press, sd_ms in zip(presses, _sd_ms(task, user), strict=True):
             assert press.target_s is not None
             late = 1e3 * (press.activations_s[0] - press.target_s) if press.activations_s else np.inf
             scatter = NODES * sd_ms if late > -1e3 * task.cue_s + 1e-6 else np.zeros(1)
@@ -98,10 +99,11 @@ def expected_ms(
 
 def _sd_ms(task: TemporalPointing, user: SimulatedUser) -> list[float]:
     """Return the scatter of each press of a session: its own, and that of what earlier ones made up for."""
-    own = (1e3 * timing_spread_s(user, task.cue_s, task.period_s)) ** 2 + user.motor_ms**2
+    clock_ms = 1e3 * timing_spread_s(user, task.cue_s, task.period_s) * spread_factor(user, PRACTISED)
+    own = clock_ms**2 + user.motor_ms**2
     found, made_up = [], 0.0
     for _ in range(task.rounds):
-        found.append(float(np.sqrt(own + made_up)))
+        found.append(float(np.sqrt(own + made_up + user.block_ms**2)))
         # of the percept only the spread at salience 1 is known here; its share is small
         share = user.adaptation_ratio
         made_up = (1 - share) ** 2 * made_up + share**2 * (own + user.percept_ms**2)

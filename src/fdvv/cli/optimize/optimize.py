@@ -8,7 +8,15 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.optimize.options import Play, engine_option, level_option, on_strip, rig_option, strip_options
+from fdvv.cli.optimize.options import (
+    Play,
+    engine_option,
+    group_option,
+    level_option,
+    on_strip,
+    rig_option,
+    strip_options,
+)
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.begin import RunRequest, begin_run
 from fdvv.optimize.run.player import POINTING, player_of
@@ -42,6 +50,7 @@ def optimize() -> None:
 @ui.option(
     "--vary", multiple=True, default=("FDV",), help="Of a button: FDV, FDVV or single numbers; repeatable."
 )
+@ui.option("--buttons", is_flag=True, help="Of the paper's space: only designs that are buttons.")
 @ui.option("--wide", is_flag=True, help="Of a button: also what no real button is like.")
 @ui.option(
     "--retest", type=click.IntRange(0, 1000), default=40, help="Pairs of trials, result against start."
@@ -58,6 +67,7 @@ def optimize() -> None:
 @ui.option("--trials", type=click.IntRange(1, 100_000), default=30, help="How many designs are tried.")
 @ui.option("--presses", type=click.IntRange(2, 1000), default=20, help="Of a trial.")
 @ui.option("--person", type=ui.COUNT, default=0, help="Seed that the simulated person is drawn with.")
+@group_option
 @ui.option("--seed", type=ui.COUNT, default=0, help="Of the run.")
 @rig_option
 @strip_options

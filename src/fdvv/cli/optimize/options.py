@@ -12,6 +12,7 @@ import click
 from fdvv import extras
 from fdvv.cli import ui
 from fdvv.cli.options import remote
+from fdvv.optimize.people.groups import GROUPS
 
 if TYPE_CHECKING:
     from fdvv.optimize.problem import Trial
@@ -76,6 +77,10 @@ engine_option = ui.option(
 )
 
 level_option = ui.choice_option("--level", ("easy", "hard"), help="Of the task.")
+
+group_option = ui.choice_option(
+    "--group", tuple(GROUPS), help="Of simulated people: as in the paper, or with best buttons that differ."
+)
 
 rig_option = ui.option(
     "--rig", default="ideal", help="Shipped rig that renders designs; ideal does so exactly."

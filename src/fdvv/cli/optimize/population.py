@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
+from fdvv.cli.optimize.options import group_option
 from fdvv.cli.options import Workers, executor_options
 from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.paper_space import paper_model, paper_space
@@ -28,6 +29,8 @@ from fdvv.task.pointing import TemporalPointing
     "--grid", type=click.IntRange(1, 100_000), help="Score a grid of so many designs instead of optimising."
 )
 @ui.option("--seed", type=click.IntRange(0, 2**32 - 1), default=0, help="Of people, engines and presses.")
+@group_option
+@ui.option("--buttons", is_flag=True, help="Only designs that are buttons.")
 @ui.option("--shift", "shifts", multiple=True, metavar="NAME=RATIO", help="Other people, as pace_mm_s=1.3.")
 @ui.option("--rig", default="ideal", help="Shipped rig that is pressed.")
 @ui.option(

@@ -26,7 +26,7 @@ from fdvv.units import FloatArray, N_from_cN, m_from_mm, mm_from_m
 TASK_RIGS = ("ideal", "paper", "light")
 """Shipped rigs that tasks are played on; on all but the ideal one the rig's own forces come on top."""
 KEY_mm = 4.0
-"""A stroke lasts as long as on a key of this travel, however deep this one is (isochrony of movements)."""
+"""Travel of the usual key, on which a stroke has the person's pace."""
 BEFORE_s = 0.015
 """From the finger's rest in this press to the onset of its movement."""
 AFTER_s = 0.02
@@ -135,7 +135,9 @@ class PressSimulator:
     def noise(self, random: np.random.Generator, count: int) -> Noise:
         """Take so many ticks of the noise that all presses share, from anywhere."""
         at = int(random.integers(POOL_TICKS)) % max(1, POOL_TICKS - count)
-        return Noise(*(getattr(self._pool, one.name)[at : at + count] for one in fields(Noise)))
+        drawn = Noise(*(getattr(self._pool, one.name)[at : at + count] for one in fields(Noise)))
+        more = self.user.effort_noise_ratio / Finger().habit.effort_noise_ratio
+        return replace(drawn, effort_ratio=more * drawn.effort_ratio)
 
     def ticks_in(self, duration_s: float) -> int:
         """Count the ticks of a duration."""
@@ -146,14 +148,23 @@ class PressSimulator:
         user = self.user
         rest, push, pace, stiff = np.clip(random.standard_normal(4), -3, 3).tolist()
         stiffness = user.stiffness_N_m * max(0.1, 1 + user.stiffness_spread_ratio * stiff)
-        usual_m = depth_m(self.finger, N_from_cN(user.push_cN), stiffness)
         pushed_cN = user.push_cN * push_ratio * max(0.1, 1 + user.push_spread_ratio * push)
         travel_m = m_from_mm(self.model.travel_mm)
         end_m = travel_m + depth_m(self.finger, N_from_cN(pushed_cN), stiffness)
         pace_mm_s = user.pace_mm_s * pace_ratio * max(0.1, 1 + user.pace_spread_ratio * pace)
         # of the person's usual push: who pushes harder goes deeper in the same time
-        press_s = max(SHORTEST_s, (KEY_mm + mm_from_m(usual_m)) / pace_mm_s)
+        usual_mm = self._usual_mm(stiffness)
+        longer = (usual_mm + self.model.travel_mm - KEY_mm) / usual_mm
+        press_s = max(SHORTEST_s, usual_mm / pace_mm_s * longer ** (1 - user.isochrony_ratio))
         return self._gesture(user.rest_cN + user.rest_spread_cN * rest, end_m, press_s, stiffness)
+
+    @property
+    def usual_press_s(self) -> float:
+        """How long the person's stroke takes on the usual key."""
+        return max(SHORTEST_s, self._usual_mm(self.user.stiffness_N_m) / self.user.pace_mm_s)
+
+    def _usual_mm(self, stiffness: float) -> float:
+        return KEY_mm + mm_from_m(depth_m(self.finger, N_from_cN(self.user.push_cN), stiffness))
 
     def resting(self, rest_cN: float, more_cN: float, grown_s: float) -> Gesture:
         """Return a finger whose force on the cap grows within grown_s, were the cap to hold still."""

@@ -19,9 +19,9 @@ from fdvv.task.score import Score
 from fdvv.task.tapping import RapidTapping
 from fdvv.task.task import Task, TaskPress
 
-TRIES, HARDER, HARDEST = 4, 1.5, 6.0
-"""Presses on a new button that do not count, at most; by how much harder each is after one that did not reach
-the stop, and the hardest, in proportion to the person's usual push (assumed)."""
+TRIES, HARDEST = 4, 6.0
+"""Presses on a new button that do not count, at most; the hardest press, in proportion to the person's usual
+push (assumed)."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class Hand:
         """Push harder from now on if the press did not reach the stop; return whether so."""
         weak = bottom_at(press, self._bench.model.travel_mm) is None
         if weak:
-            self.push_ratio = min(HARDEST, HARDER * self.push_ratio)
+            self.push_ratio = min(HARDEST, self._bench.user.harder_ratio * self.push_ratio)
         return weak
 
     def _felt(self, press: PressTrace) -> Percept:
@@ -217,7 +217,9 @@ def point(
     """Press at each bullet; the felt error of a press moves the plan of the next."""
     user, hand = bench.user, Hand(bench, random)
     spread_s = timing_spread_s(user, task.cue_s, task.period_s)
-    aim, anticipated_s = aim_s(user, task.zone_s), 1e-3 * user.anticipated_ms
+    aim = aim_s(user, task.zone_s)
+    anticipated_s = 1e-3 * user.anticipated_ms + user.anticipated_ratio * bench.usual_press_s
+    shift_ms = user.block_ms * float(random.standard_normal()) if user.block_ms else 0.0
     for number in range(task.rounds):
         clock, motor, touch = random.standard_normal(3).tolist()
         target_s = task.target_s(number)
@@ -229,7 +231,7 @@ def point(
             continue
         felt_s = onset_s + press.percept.time_s + press.percept.spread_s * touch
         anticipated_s += user.adaptation_ratio * (felt_s - target_s - aim)
-        keys = tuple(onset_s + 1e-3 * user.bias_ms + key_s for key_s in press.keys_s)
+        keys = tuple(onset_s + 1e-3 * (user.bias_ms + shift_ms) + key_s for key_s in press.keys_s)
         # a key that is down under the resting finger went down as the bullet started
         early = (target_s - task.cue_s,) if press.early else ()
         yield TaskPress(target_s, (*early, *keys), press.effort_N_s)

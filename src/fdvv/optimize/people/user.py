@@ -11,9 +11,26 @@ import numpy as np
 
 from fdvv.errors import ModelError
 
-AT_LEAST_0 = ("motor_ms", "percept_ms", "lift_mm", "rest_spread_cN", "learning_ratio", "fatigue_ratio")
+AT_LEAST_0 = (
+    "motor_ms",
+    "percept_ms",
+    "block_ms",
+    "lift_mm",
+    "rest_spread_cN",
+    "effort_noise_ratio",
+    "learning_ratio",
+    "fatigue_ratio",
+)
 FREE = ("bias_ms", "anticipated_ms", "rest_cN")
-RATIOS = ("aim_ratio", "adaptation_ratio", "pace_spread_ratio", "push_spread_ratio", "stiffness_spread_ratio")
+RATIOS = (
+    "aim_ratio",
+    "anticipated_ratio",
+    "isochrony_ratio",
+    "adaptation_ratio",
+    "pace_spread_ratio",
+    "push_spread_ratio",
+    "stiffness_spread_ratio",
+)
 
 
 @dataclass(frozen=True)
@@ -26,14 +43,20 @@ class SimulatedUser:
     clock_ratio, cue_1_s, cue_delay_s, aim_ratio : of the click-timing model: c_sigma, nu, delta, c_mu.
     motor_ms : spread of a movement's onset about its plan.
     bias_ms : how late keys are reported and targets seen, alike for all buttons; the person cannot notice.
-    anticipated_ms : time from the onset of movement to its felt event that is allowed for on a new button.
+    block_ms : spread of a shift that all presses of a score share, from score to score.
+    anticipated_ms, anticipated_ratio : time from the onset of movement to its felt event that is allowed for
+        on a new button: a time, and a share of the stroke on the usual key.
     adaptation_ratio : share of the felt error that the next press makes up for.
     percept_ms : spread of the felt time of an event of salience 1.
     snap_cN, impact_mm_s, vibration_m_s2 : a fall of force, a speed at the stop, a vibration of salience 1.
     stiffness_N_m, damping_N_s_m, mass_kg : of the finger.
     push_cN : force beyond the bottom that is aimed at.
     rest_cN, rest_spread_cN : force of the resting finger, and how it differs from press to press.
-    pace_mm_s : mean speed of the finger's referent.
+    harder_ratio : how much harder the next press is after one that did not reach the stop.
+    effort_noise_ratio : noise of the muscle, tremor with it, in proportion to its force.
+    pace_mm_s : mean speed of the finger's referent on the usual key.
+    isochrony_ratio : 1 where a stroke takes as long on every button, 0 where it takes in proportion to its
+        length.
     lift_mm : height above the cap before a press; 0: resting.
     pace_spread_ratio, push_spread_ratio, stiffness_spread_ratio : from press to press.
     learning_ratio, learning_presses : extra spread of timing at first, and presses in which it falls to 1/e.
@@ -49,7 +72,9 @@ class SimulatedUser:
     aim_ratio: float = 0.185
     motor_ms: float = 10.0
     bias_ms: float = 93.0
+    block_ms: float = 0.0
     anticipated_ms: float = 0.0
+    anticipated_ratio: float = 0.0
     adaptation_ratio: float = 0.05
     percept_ms: float = 20.0
     snap_cN: float = 10.0
@@ -61,7 +86,10 @@ class SimulatedUser:
     push_cN: float = 150.0
     rest_cN: float = 10.0
     rest_spread_cN: float = 5.0
+    harder_ratio: float = 1.5
+    effort_noise_ratio: float = 0.03
     pace_mm_s: float = 100.0
+    isochrony_ratio: float = 1.0
     lift_mm: float = 0.0
     pace_spread_ratio: float = 0.1
     push_spread_ratio: float = 0.15
@@ -96,8 +124,21 @@ SPREADS: Mapping[str, float] = MappingProxyType(
         "anticipated_ms": 10.0,
     }
 )
-"""Between people: of the logarithm, but of bias_ms and anticipated_ms in ms."""
+"""Between the people of the paper's experiment: of the logarithm, but of STRAIGHT in ms."""
 STRAIGHT = ("bias_ms", "anticipated_ms")
+DIFFERENT = (
+    *SPREADS,
+    "snap_cN",
+    "impact_mm_s",
+    "vibration_m_s2",
+    "push_spread_ratio",
+    "effort_noise_ratio",
+    "harder_ratio",
+    "learning_ratio",
+    "fatigue_ratio",
+    "block_ms",
+)
+"""What people may differ in; new names go to the end, for a person's draws come in this order."""
 
 
 @dataclass(frozen=True)
@@ -106,8 +147,8 @@ class UserSettings:
 
     Attributes
     ----------
-    middle : the person in the middle of all. spreads : standard deviations between people by field, of the
-        logarithm or in ms (STRAIGHT); a field that is left out does not differ.
+    middle : the person in the middle of all. spreads : standard deviations between people by field of
+        DIFFERENT, of the logarithm or in ms (STRAIGHT); a field that is left out does not differ.
     """
 
     middle: SimulatedUser = field(default_factory=SimulatedUser)
@@ -115,8 +156,8 @@ class UserSettings:
 
     def __post_init__(self) -> None:
         for name, spread in self.spreads.items():
-            if name not in SPREADS or not 0 <= spread < 1e3:
-                raise ModelError(f"people may differ in {', '.join(SPREADS)}, not in {name} by {spread}")
+            if name not in DIFFERENT or not 0 <= spread < 1e3:
+                raise ModelError(f"people may differ in {', '.join(DIFFERENT)}, not in {name} by {spread}")
 
 
 def draw_users(count: int, seed: int = 0, settings: UserSettings | None = None) -> tuple[SimulatedUser, ...]:
@@ -128,7 +169,8 @@ def draw_user(number: int, seed: int = 0, settings: UserSettings | None = None) 
     """Draw one person by number."""
     settings = settings or UserSettings()
     random = np.random.default_rng([seed, number])
-    draws = dict(zip(SPREADS, np.clip(random.standard_normal(len(SPREADS)), -2, 2).tolist(), strict=True))
+    normal = np.clip(random.standard_normal(len(DIFFERENT)), -2, 2)
+    draws = dict(zip(DIFFERENT, normal.tolist(), strict=True))
     changed = {
         name: _moved(settings.middle, name, spread * draws[name]) for name, spread in settings.spreads.items()
     }
@@ -140,7 +182,7 @@ def _moved(middle: SimulatedUser, name: str, by: float) -> float:
     if name in STRAIGHT:
         return value + by
     moved = value * float(np.exp(by))
-    return min(1.0, moved) if name.endswith("_ratio") else moved
+    return min(1.0, moved) if name in RATIOS else moved
 
 
 def timing_spread_s(user: SimulatedUser, cue_s: float, period_s: float) -> float:

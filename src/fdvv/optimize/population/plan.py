@@ -15,8 +15,10 @@ from fdvv.errors import InputError
 from fdvv.io.documents import Kind, read_record
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
+from fdvv.optimize.button_constraints import button_constraints
 from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.paper_space import paper_model, paper_space
+from fdvv.optimize.people.groups import PAPER_GROUP, group_named
 from fdvv.optimize.people.simulate import score_design
 from fdvv.optimize.people.user import SimulatedUser, UserSettings, draw_user
 from fdvv.optimize.problem import Engine, Problem, Trial, TrialState
@@ -42,6 +44,7 @@ class PopulationPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     ----------
     kind : "optimize": every person has a run of their own; "grid": everybody scores the same designs.
     people, seed : people 0, 1, ... of a draw with that seed, see fdvv.optimize.people.user.draw_user.
+    group : of people, see fdvv.optimize.people.groups. buttons : only designs that are buttons.
     shifts : ratios by which the person in the middle differs from the usual one, by field of SimulatedUser.
     level, rounds : of temporal pointing. rig : shipped one that is pressed.
     engine, options, budget : of each person's run; unused in a grid.
@@ -55,6 +58,8 @@ class PopulationPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     kind: Literal["optimize", "grid"] = "optimize"
     people: Annotated[int, Meta(ge=1, le=1_000_000)] = 100
     seed: Annotated[int, Meta(ge=0, lt=2**32)] = 0
+    group: str = PAPER_GROUP
+    buttons: bool = False
     shifts: dict[str, Shift] = {}
     level: Literal["easy", "hard"] = "easy"
     rounds: Annotated[int, Meta(ge=1, le=1000)] = 20
@@ -65,6 +70,11 @@ class PopulationPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     designs: Annotated[int, Meta(ge=1, le=100_000)] = 100
     against: str = "mx-clear"
     judged: Annotated[int, Meta(ge=1, le=100)] = 5
+
+    @property
+    def space(self) -> DesignSpace:
+        """The designs there are."""
+        return paper_space(button_constraints() if self.buttons else ())
 
     @property
     def chunks(self) -> int:
@@ -81,18 +91,20 @@ class PopulationPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
         return range(chunk * CELLS, min((chunk + 1) * CELLS, self.people * self.designs))
 
     def user(self, number: int) -> SimulatedUser:
-        """Draw a person. Raises InputError on a shift of what people do not have."""
-        return draw_user(number, self.seed, settings_of(self.shifts))
+        """Draw a person. Raises InputError on a shift of what people do not have, and an unknown group."""
+        return draw_user(number, self.seed, settings_of(self.shifts, self.group))
 
 
-def settings_of(shifts: Mapping[str, float]) -> UserSettings:
-    """Shift the person in the middle. Raises InputError on what people do not have."""
-    middle = SimulatedUser()
+def settings_of(shifts: Mapping[str, float], group: str = PAPER_GROUP) -> UserSettings:
+    """Shift the person in the middle of a group. Raises InputError on what people do not have."""
+    people = group_named(group)
+    middle = people.middle
     for name in shifts:
         if name == "number" or not hasattr(middle, name):
             fields = ", ".join(n for n in middle.__dataclass_fields__ if n != "number")
             raise InputError("--shift", name, "people have no such number", f"use one of: {fields}")
-    return UserSettings(replace(middle, **{name: getattr(middle, name) * r for name, r in shifts.items()}))
+    shifted = {name: getattr(middle, name) * ratio for name, ratio in shifts.items()}
+    return replace(people, middle=replace(middle, **shifted))
 
 
 def seed_of(*numbers: int) -> int:
@@ -141,7 +153,7 @@ class PopulationWork:
         plan, user = self.plan, self.plan.user(number)
         objective = self.task.objectives[0]
         problem = Problem(
-            paper_space(), self.task.objectives[:1], seed_of(plan.seed, number, ENGINE), self.prior
+            plan.space, self.task.objectives[:1], seed_of(plan.seed, number, ENGINE), self.prior
         )
         engine = engine_of(plan.engine, plan.options)
 
@@ -166,7 +178,7 @@ class PopulationWork:
 
     def _grid(self, chunk: int) -> dict[str, FloatArray]:
         plan, name = self.plan, self.task.objectives[0].name
-        designs = grid_designs(paper_space(), plan.designs)
+        designs = grid_designs(plan.buttons, plan.designs)
         found = []
         for cell in plan.cells(chunk):
             number, person = divmod(cell, plan.people)
@@ -181,7 +193,7 @@ class PopulationWork:
 
 
 @lru_cache(maxsize=4)
-def grid_designs(space: DesignSpace, count: int) -> tuple[dict[str, float], ...]:
-    """Return the first designs of an even net that hold the space's constraints."""
-    problem = Problem(space, TemporalPointing().objectives)
+def grid_designs(buttons: bool, count: int) -> tuple[dict[str, float], ...]:
+    """Return the first designs of an even net over the paper's space, or over what is a button in it."""
+    problem = Problem(PopulationPlan(buttons=buttons).space, TemporalPointing().objectives)
     return tuple(engine_of("sobol").suggest(problem, (), count))

@@ -16,7 +16,6 @@ from fdvv.eventlog import Journal, JournalKind
 from fdvv.io.columns import pack_column, unpack_column
 from fdvv.io.documents import pretty
 from fdvv.io.files import require_new_folder, write_atomic
-from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.population.plan import (
     PLAN_FILE,
     PopulationPlan,
@@ -81,7 +80,7 @@ class PopulationResult:
 
     @property
     def designs(self) -> tuple[dict[str, float], ...]:
-        return grid_designs(paper_space(), self.plan.designs)
+        return grid_designs(self.plan.buttons, self.plan.designs)
 
     def summary(self) -> dict[str, Any]:
         """Return figures for people and for programs; everything is simulated."""

@@ -14,6 +14,7 @@ from fdvv.button.open import open_button
 from fdvv.errors import InputError
 from fdvv.optimize.experiment.setup import LEVELS
 from fdvv.optimize.model_space import model_space, neutral_design
+from fdvv.optimize.people.groups import PAPER_GROUP
 from fdvv.optimize.population.population import RESULT_FILE, PopulationResult, read_population
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.player import POINTING, SIMULATED_PAIRS, about_player, task_named
@@ -90,15 +91,17 @@ class RunRequest:
     Attributes
     ----------
     space, vary : paper, or a button and what of it is varied; None: paper with a prior, else BUTTON.
-    wide : bounds are those of `model_space`, not of real buttons. within : a rig that must be able to render
+    wide : bounds are those of `model_space`, not of real buttons. buttons : of the paper's space only designs
+        that are buttons, see `button_constraints`. within : a rig that must be able to render
         every design: a shipped one's name, or a *.rig.json. prior : folder of a finished grid of others.
     retest : pairs of trials that retest the result.
     task, level, presses : what is played. engine, options, budget, seed : of the run.
-    person, rig : the simulated one, and what is pressed; person None: a human plays.
+    person, group, rig : the simulated one, of which group, and what is pressed; person None: a human plays.
     """
 
     space: str | None = None
     wide: bool = False
+    buttons: bool = False
     retest: int = SIMULATED_PAIRS
     vary: Sequence[str] = ("FDV",)
     within: str | None = None
@@ -111,6 +114,7 @@ class RunRequest:
     budget: int = 30
     seed: int = 0
     person: int | None = 0
+    group: str = PAPER_GROUP
     rig: str = "ideal"
 
 
@@ -140,7 +144,7 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
 def _space(request: RunRequest, rig_id: str | None) -> tuple[SpaceSetup, dict[str, float] | None]:
     """Return the space, and the design a run starts from: a button that is varied is tried as it is first."""
     if request.space in (PAPER, None):
-        return SpaceSetup(rig=rig_id), None
+        return SpaceSetup(rig=rig_id, buttons=request.buttons), None
     base = open_button(request.space)
     setup = model_space_setup(base, request.vary, {} if request.wide else None, rig_id)
     return setup, neutral_design(model_space(base, request.vary, setup.bounds), base)
@@ -150,7 +154,7 @@ def _about(request: RunRequest) -> dict[str, Any]:
     retest = {OptimizeSetup.RETEST: request.retest}
     if request.person is None:
         return {OptimizeSetup.PRESSES: request.presses, **retest}
-    return {**about_player(request.person, request.rig, request.presses), **retest}
+    return {**about_player(request.person, request.rig, request.presses, request.group), **retest}
 
 
 def _prior(request: RunRequest) -> tuple[Trial, ...]:

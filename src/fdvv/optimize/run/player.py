@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
+from fdvv.optimize.people.groups import PAPER_GROUP, group_named
 from fdvv.optimize.people.press_simulator import TASK_RIGS, refusal_of
 from fdvv.optimize.people.simulate import score_design
 from fdvv.optimize.people.user import SimulatedUser, draw_user
@@ -94,11 +95,12 @@ SIMULATED_PAIRS = 40
 """Of a retest; 20 presses of a simulated person take 25 ms."""
 
 
-def about_player(person: int, rig: str, presses: int) -> dict[str, Any]:
-    """Return what a setup keeps of who plays (``about``). Raises InputError on an unknown rig."""
+def about_player(person: int, rig: str, presses: int, group: str = PAPER_GROUP) -> dict[str, Any]:
+    """Return what a setup keeps of who plays (``about``). Raises InputError on an unknown rig or group."""
+    group_named(group)
     if rig not in TASK_RIGS:
         raise InputError("rig", rig, "none is called so", f"use one of {', '.join(TASK_RIGS)}")
-    return {"player": {"person": person, "rig": rig, "presses": presses}}
+    return {"player": {"person": person, "group": group, "rig": rig, "presses": presses}}
 
 
 def player_of(setup: OptimizeSetup) -> SimulatedPlayer:
@@ -108,6 +110,7 @@ def player_of(setup: OptimizeSetup) -> SimulatedPlayer:
         remedy = "resume it in the studio, or begin a run with --person"
         raise InputError("run", "$.about.player", "no simulated person plays this run", remedy)
     presses, rig = int(player.get("presses", 20)), str(player.get("rig", "ideal"))
-    return SimulatedPlayer(
-        draw_user(0, player["person"]), task_named(setup.task, setup.level, presses), rig, setup.seed
-    )
+    # runs of an earlier fdvv name no group
+    people = group_named(str(player.get("group", PAPER_GROUP)))
+    user, task = draw_user(0, player["person"], people), task_named(setup.task, setup.level, presses)
+    return SimulatedPlayer(user, task, rig, setup.seed)

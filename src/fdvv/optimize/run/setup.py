@@ -17,6 +17,7 @@ from fdvv.errors import InputError, ModelError
 from fdvv.io.documents import Kind, pretty, read_record
 from fdvv.model.file import model_from_json, model_to_json
 from fdvv.model.model import FDVVModel
+from fdvv.optimize.button_constraints import button_constraints
 from fdvv.optimize.model_space import model_of, model_space
 from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.problem import Problem, Trial
@@ -97,7 +98,7 @@ class SpaceSetup(Struct, frozen=True, forbid_unknown_fields=True):
     base : that button, as its file says. names, bounds : what of it is varied, see `model_space`.
     most_cN : no force of a variation is larger; None: what a motor gives.
     rig : id of a rig that must be able to render a design; velocities_mm_s : at which.
-    parameters : of the kind own.
+    parameters : of the kind own. buttons : of the kind paper only designs that are buttons.
     """
 
     kind: Literal["paper", "model", "own"] = "paper"
@@ -108,6 +109,7 @@ class SpaceSetup(Struct, frozen=True, forbid_unknown_fields=True):
     rig: str | None = None
     velocities_mm_s: tuple[float, ...] = (100.0,)
     parameters: tuple[Parameter, ...] | msgspec.UnsetType = msgspec.UNSET
+    buttons: bool = False
 
 
 class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -187,11 +189,15 @@ def space_of(setup: SpaceSetup, rigs: RigCatalog) -> DesignSpace:
     """Return the space of a setup with its constraints. Raises InputError."""
     if setup.kind == "own":
         return DesignSpace("own", setup.parameters or ())
-    free = paper_space() if setup.kind == "paper" else _variations(setup)
+    free = _variations(setup) if setup.kind == "model" else _paper(setup.buttons)
     if setup.rig is None:
         return free
     limits = rig_constraints(rigs.rig(setup.rig), designer_of(setup), setup.velocities_mm_s)
     return replace(free, constraints=(*free.constraints, *limits))
+
+
+def _paper(buttons: bool) -> DesignSpace:
+    return paper_space(button_constraints() if buttons else ())
 
 
 def _variations(setup: SpaceSetup) -> DesignSpace:
