@@ -2,45 +2,25 @@
 
 from __future__ import annotations
 
-import secrets
-import shutil
 from pathlib import Path
 
 import numpy as np
 
-import fdvv
 from fdvv.errors import InputError
-from fdvv.eventlog import Journal
-from fdvv.io.files import make_private, read_limited, sync_folder, write_atomic
-from fdvv.rendering.session import now
+from fdvv.io.files import read_limited, write_atomic
+from fdvv.study.admin.kept import KeptStudy, make_folder
 from fdvv.study.admin.review import review_plan, twin_problems
 from fdvv.study.analysis.unseal import unseal_folder
 from fdvv.study.files import layout
-from fdvv.study.files.chained_log import ChainedLog, open_when_free, read_chained
-from fdvv.study.files.counts import Counter, read_counts
-from fdvv.study.files.folder import StudyFolder, study_problems
-from fdvv.study.files.layout import LOG_FILE, PEOPLE, SESSION_FILE, Frozen, digest
-from fdvv.study.files.log_head import head_path
-from fdvv.study.files.people import (
-    EVERYBODY,
-    Schedule,
-    free_place,
-    lock_schedule,
-    open_schedule,
-    pause_person,
-    people_of,
-    person_of,
-    read_locked,
-)
-from fdvv.study.files.person_folder import keep_person, wipe
-from fdvv.study.files.run_key import CLOSED, OPEN_FIRST, RunKey
-from fdvv.study.files.seal import CODE_COST, PASSPHRASE_COST, Cost, KeyHolder, new_code, new_key_holder
+from fdvv.study.files.folder import StudyFolder
+from fdvv.study.files.seal import CODE_COST, PASSPHRASE_COST, Cost
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.plan_file import STUDY_FILE, check_plan, read_plan_text
 from fdvv.study.plan.schedule import draw_schedule
+from fdvv.study.plan.trial import StudyTrial
 
 
-class Study(StudyFolder):
+class Study(KeptStudy, StudyFolder):
     """A study that lies in a folder; no file is held open between two calls. Made by `declare` or `open`.
 
     Attributes
@@ -60,20 +40,7 @@ class Study(StudyFolder):
     @classmethod
     def declare_text(cls, folder: Path, text: str, beside: Path, source: object = STUDY_FILE) -> Study:
         """Declare a study from the text of its plan, whole or not at all. beside : where its files lie."""
-        folder = Path(folder)
-        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-            raise InputError(folder, "folder", "is not empty", "name a new one, or open the study in it")
-        if folder.exists():  # it may be the working directory of a shell
-            _put_plan(folder, text, beside, source)
-            return cls(folder)
-        building = folder.with_name(f".{folder.name}.new")
-        shutil.rmtree(building, ignore_errors=True)  # of a process that was killed
-        try:
-            _put_plan(building, text, beside, source)
-            building.replace(folder)
-        finally:
-            shutil.rmtree(building, ignore_errors=True)
-        sync_folder(folder.parent)
+        make_folder(folder, lambda building: _put_plan(building, text, beside, source))
         return cls(folder)
 
     @classmethod
@@ -94,8 +61,8 @@ class Study(StudyFolder):
 
         passphrase : the key holder's; it is not stored. Sessions are open in this object from then on.
         Files beside the plan that it names are copied into the study first: what is frozen is rendered.
-        InputError on a plan with problems, a study that
-        was frozen before, a short passphrase. BuildError: no PyNaCl. OSError.
+        InputError on a plan with problems, a study that was frozen before, a short passphrase. BuildError: no
+        PyNaCl. OSError.
         """
         folder, plan = self.folder, self.plan
         check_plan(plan, folder / STUDY_FILE)
@@ -104,169 +71,19 @@ class Study(StudyFolder):
             raise InputError(
                 folder / STUDY_FILE, "plan", problem, "change it: it could not be run as it says"
             )
-        if (folder / layout.FROZEN_FILE).exists() or (folder / PEOPLE).exists():
-            raise InputError(folder, "study", "was frozen before", "declare a new study in another folder")
-        layout.keep_files(plan, folder)
-        paths = [folder / STUDY_FILE, *(layout.kept_path(folder, name) for name in layout.named_files(plan))]
-        files = {path.relative_to(folder).as_posix(): digest(layout.content(path)) for path in paths}
-        holder, keeper = new_key_holder(passphrase, cost)
-        write_atomic(folder / layout.KEEPER_FILE, keeper, private=True)
-        files[layout.KEEPER_FILE] = digest(keeper)
-        builtins = {name: layout.builtin_digest(name) for name in layout.named_builtins(plan)}
-        frozen = Frozen(
-            files=files, builtins=builtins, seal=holder.seal.text, fdvv=fdvv.__version__, when=now()
-        )
-        fingerprint, self.run_key = self._begin_log(frozen), holder.run_key
-        return fingerprint
-
-    def _begin_log(self, frozen: Frozen) -> str:
-        log_path, sha256 = self.folder / LOG_FILE, digest(frozen.text)
-        for left in (log_path, head_path(log_path)):
-            left.unlink(missing_ok=True)  # of a freezing that was killed
-        with ChainedLog.create(log_path, {"study": sha256}) as log:
-            log.write({"frozen": {"when": frozen.when, "sha256": sha256, "fdvv": frozen.fdvv}})
-        # last of all: before it is there, nothing is frozen
-        write_atomic(self.folder / layout.FROZEN_FILE, frozen.text)
-        sync_folder(self.folder)
-        return layout.fingerprint_of(sha256)
-
-    @property
-    def needs_run_key(self) -> bool:
-        """Whether people can begin only while sessions are open: in studies that were frozen since 0.1.0."""
-        return self.require_frozen().version > 1
-
-    def waits_for_key(self, person: str) -> bool:
-        """Whether a person can come back only once sessions are open. InputError."""
-        path = self.person_folder(person) / layout.SCHEDULE_FILE
-        return not self.sessions_open and path.is_file() and read_locked(path).version > 1
-
-    def open_sessions(self, passphrase: str, keeper: Path | bytes | None = None) -> None:
-        """Let sessions run with this object: keep the run key in its memory. That is recorded first.
-
-        keeper : keeper.json, or where it is, if it was moved. InputError on a wrong passphrase, OSError.
-        """
-        holder = self.key_holder(passphrase, keeper)
-        with self._log() as log:
-            log.write({"opened": {"when": now(), **self._counted()}})
-        self.run_key = holder.run_key
-        if (found := read_counts(self.folder)) and found.made_with(self.run_key):
-            self.run_key.counted = found.written
-        make_private(self.folder / PEOPLE)  # an earlier fdvv let others of this machine read it
+        self.require_unfrozen()
+        return self.freeze_files(layout.named_files(plan), layout.named_builtins(plan), passphrase, cost)
 
     def enrol(
         self, language: str = "", consent: str = "", simulated: bool = False, cost: Cost = CODE_COST
     ) -> tuple[str, str]:
-        """Enrol a person: draw their whole schedule and lock it. Return their name and their code.
+        """Enrol a person, see `enrol_person`. Return their name and their code. InputError, OSError."""
 
-        The code is shown to that person alone and not stored. consent : how it was given, if not on a page.
-        InputError where the study is not frozen, was changed or was unsealed, where sessions are not open.
-        OSError.
-        """
-        self.require_whole()
-        run_key = self._run_key(simulated)
-        language = language or self.plan.languages[0]
-        if language not in self.plan.languages:
-            known = ", ".join(self.plan.languages)
-            raise InputError(language, "language", "is not one of the study", f"name one of {known}")
-        with self._log() as log:
-            self._check_enrolment(log, simulated)
-            people = people_of(log.records)
-            person, place = f"P{len(people) + 1:02d}", free_place(people)
+        def draw(place: int) -> tuple[StudyTrial, ...]:
             # seeded by the operating system, anew for everybody: one schedule must not predict the next
-            trials = draw_schedule(self.plan, place, np.random.default_rng())
-            schedule, code = Schedule(log.about["study"], person, secrets.token_hex(32), trials), new_code()
-            text = lock_schedule(schedule, self.seal, code, cost, run_key)
-            heads = keep_person(self.folder / PEOPLE / person, schedule, text, consent)
-            if run_key:
-                Counter(self.folder, schedule.study, person, run_key).count_alone(heads, 0)
-            about = {"language": language, "place": place, "simulated": simulated}
-            log.write({"enrolled": {"person": person, **about, "when": now(), "schedule": digest(text)}})
-        return person, code
+            return draw_schedule(self.plan, place, np.random.default_rng())
 
-    def _run_key(self, simulated: bool) -> RunKey | None:
-        """Return what a new person's schedule is locked with beside their code; None where that is all."""
-        if not simulated and not self.sessions_open and self.needs_run_key:
-            raise InputError("study", "sessions", CLOSED, OPEN_FIRST)
-        # simulated people have nothing to be blind to, and are run without a key holder
-        return self.run_key if self.sessions_open and not simulated else None
-
-    def _check_enrolment(self, log: ChainedLog, simulated: bool) -> None:
-        if any("unsealed" in record for record in log.records):
-            reason = "was unsealed, nobody can begin it any more"
-            raise InputError(self.folder, "study", reason, "declare a new study")
-        if any(person.simulated != simulated for person in people_of(log.records)):
-            reason = "has people and cannot have simulated ones" if simulated else "has simulated people only"
-            raise InputError(self.folder, "study", reason, "declare another study for them")
-
-    def schedule(self, person: str, key: str | KeyHolder) -> Schedule:
-        """Open a schedule with its person's code in open sessions, or the key holder's key. **Secret.**
-
-        InputError on a wrong code, a person who withdrew, a study that was changed, closed sessions.
-        """
-        if self.person(person).state in ("withdrawn", "deleted"):
-            raise InputError(person, "person", "has withdrawn", "enrol somebody else")
-        self.require_whole(person)
-        run_key = self.run_key if self.sessions_open else None
-        return open_schedule(self.person_folder(person) / layout.SCHEDULE_FILE, key, run_key)
-
-    def session_log(self, schedule: Schedule) -> ChainedLog:
-        """Open the plain log of a person's session, to read and append. InputError, OSError."""
-        return ChainedLog(self.person_folder(schedule.person) / SESSION_FILE, bytes.fromhex(schedule.key))
-
-    def sealed_log(self, schedule: Schedule) -> ChainedLog:
-        """Open the log of what was rendered in a person's trials, each sealed. InputError."""
-        return ChainedLog(
-            self.person_folder(schedule.person) / layout.SEALED_FILE, bytes.fromhex(schedule.key)
-        )
-
-    def finished(self, person: str) -> None:
-        """Record that a person is done, with the ends of their logs: from now on none of it can be cut."""
-        folder = self.person_folder(person)
-        ends = {name: read_chained(folder / name).chain for name in (SESSION_FILE, layout.SEALED_FILE)}
-        with self._log() as log:
-            log.write({"finished": {"when": now(), "person": person, "ends": ends, **self._counted()}})
-
-    def _counted(self) -> dict[str, int]:
-        """Return how often the counts were written, for a line of the study's log."""
-        found = read_counts(self.folder)
-        return {"counted": found.written} if found else {}
-
-    def counter(self, schedule: Schedule, key: str | KeyHolder) -> Counter | None:
-        """Return what counts the lines of a person's logs; None of people that an earlier fdvv enrolled."""
-        if read_locked(self.person_folder(schedule.person) / layout.SCHEDULE_FILE).version == 1:
-            return None
-        run_key = key.run_key if isinstance(key, KeyHolder) else self.run_key
-        assert run_key is not None  # else the schedule was not opened
-        return Counter(self.folder, schedule.study, schedule.person, run_key)
-
-    def pause(self, person: str = EVERYBODY, on: bool = True) -> None:
-        """Pause a person, or everybody; recorded, so that it holds after every crash. on : else continue.
-
-        InputError where the study is not frozen, or on a person who is not in it. OSError.
-        """
-        self.require_frozen()
-        with self._log() as log:
-            pause_person(log, person, on)
-
-    def withdraw(self, person: str, delete: bool = True) -> None:
-        """Withdraw a person for good; that they were there stays in the study's log.
-
-        delete : all data of theirs, answers and what was rendered, and all that was unsealed of the study:
-        unseal it again. Else what they gave until now is kept. A second call does what was left undone.
-        InputError where they are in the study at this moment. OSError.
-        """
-        with self._log() as log:
-            state = person_of(log.records, person).state
-            own = self.folder / PEOPLE / person
-            if (own / SESSION_FILE).exists():
-                remedy = "have them press withdraw, or close their screen"
-                busy = InputError(person, "person", "is in the study at this moment", remedy)
-                Journal(own / SESSION_FILE, busy).close()
-            if state != "deleted" and (delete or state != "withdrawn"):
-                # first on record: a process that is killed in between leaves files that verify reports
-                log.write({"withdrawn": {"when": now(), "person": person, "deleted": delete}})
-            for left in (own, self.folder / layout.UNSEALED) if delete else ():
-                wipe(left)
+        return self.enrol_person(draw, self.plan.languages, language, consent, simulated, cost)
 
     def unseal(
         self, passphrase: str, who: str, why: str, keeper: Path | None = None, despite: bool = False
@@ -277,24 +94,12 @@ class Study(StudyFolder):
         people's files were changed: nothing of theirs counts, and the record says so.
         InputError on a wrong passphrase, an empty name or reason, a study that is not whole. OSError.
         """
-        about: dict[str, object] = {"who": " ".join(who.split()), "why": " ".join(why.split())}
-        for name, text in about.items():
-            if not text:
-                raise InputError(name, "whole", "is empty", "say who unseals the study, and why")
-        holder, plan = self.key_holder(passphrase, keeper), self.plan
-        problems = study_problems(self.folder, holder=holder)
-        if problems and not despite:
-            more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-            remedy = f"{layout.REMEDY}; --despite goes on without the people concerned"
-            raise InputError(self.folder, "study", problems[0] + more, remedy)
+        holder, about = self.require_unsealable(passphrase, who, why, keeper, despite)
         with self._log() as log:
-            return unseal_folder(self.folder, plan, log, holder, {**about, "problems": list(problems)})
-
-    def _log(self) -> ChainedLog:
-        return open_when_free(self.folder / LOG_FILE)
+            return unseal_folder(self.folder, self.plan, log, holder, about)
 
 
 def _put_plan(folder: Path, text: str, beside: Path, source: object) -> None:
     """Write a plan, behind all files that it names. InputError where one is not there, OSError."""
-    layout.copy_files(read_plan_text(text, source), Path(beside), folder)
+    layout.copy_files(layout.named_files(read_plan_text(text, source)), Path(beside), folder)
     write_atomic(folder / STUDY_FILE, text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from fdvv.errors import InputError
 from fdvv.study.files import layout
@@ -12,37 +12,39 @@ from fdvv.study.files.chained_log import ChainRead, read_chained
 from fdvv.study.files.counts import Counts, counts_problems, read_counts
 from fdvv.study.files.layout import FROZEN_FILE, KEEPER_FILE, LOG_FILE, PEOPLE, SCHEDULE_FILE, Frozen
 from fdvv.study.files.people import Person, paused_of, people_of, person_of, read_locked
-from fdvv.study.files.person_check import PersonCheck
+from fdvv.study.files.person_check import TRIALS, PersonCheck, SessionReading
 from fdvv.study.files.run_key import RunKey
 from fdvv.study.files.seal import KeyHolder, SealingKey
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
 
 
-class StudyFolder:
-    """A study that lies in a folder, to be read; no file is held open between two calls.
+class KeptFolder:
+    """A study that lies in a folder, whatever its plan declares, to be read.
+
+    No file is held open between two calls.
 
     Attributes
     ----------
-    folder : of the study. run_key : in memory while sessions are open, see `Study.open_sessions`; else None.
+    folder : of the study. run_key : in memory while sessions are open, see `KeptStudy.open_sessions`; else
+        None. reading : of the logs of its sessions.
     """
+
+    reading: ClassVar[SessionReading] = TRIALS
 
     def __init__(self, folder: Path) -> None:
         self.folder = Path(folder)
         self.run_key: RunKey | None = None
-        self._plan: tuple[bytes, StudyPlan] | None = None
 
     @property
-    def plan(self) -> StudyPlan:
-        """The plan. InputError where it cannot be read, or is not what was frozen."""
+    def plan_text(self) -> bytes:
+        """The file that declares the study. InputError where it is missing, or is not what was frozen."""
         path = self.folder / STUDY_FILE
         data = layout.content(path)
         frozen = self.frozen
         if frozen and frozen.files.get(STUDY_FILE) != layout.digest(data):
             raise InputError(path, "whole file", "was changed since the study was frozen", layout.REMEDY)
-        if self._plan is None or self._plan[0] != data:
-            self._plan = data, read_plan_text(data.decode(errors="replace"), path)
-        return self._plan[1]
+        return data
 
     @property
     def frozen(self) -> Frozen | None:
@@ -127,12 +129,14 @@ class StudyFolder:
         the marks of people's lines are verified too. record : a `record_end` that was written down.
         """
         opened = self.key_holder(passphrase, keeper) if passphrase else None
-        return study_problems(self.folder, fingerprint, opened, record=record, run_key=self.run_key)
+        return study_problems(
+            self.folder, fingerprint, opened, record=record, run_key=self.run_key, reading=self.reading
+        )
 
     def require_whole(self, person: str = "") -> None:
         """Raise InputError if the study is not as it was frozen. person : whose files are verified too."""
         people = (person,) if person else ()
-        for problem in study_problems(self.folder, people=people, run_key=self.run_key):
+        for problem in study_problems(self.folder, people=people, run_key=self.run_key, reading=self.reading):
             raise InputError(self.folder, "study", problem, layout.REMEDY)
 
     def key_holder(self, passphrase: str, keeper: Path | bytes | None = None) -> KeyHolder:
@@ -151,6 +155,23 @@ class StudyFolder:
         return holder
 
 
+class StudyFolder(KeptFolder):
+    """A study about what is rendered that lies in a folder, to be read."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder)
+        self._plan: tuple[bytes, StudyPlan] | None = None
+
+    @property
+    def plan(self) -> StudyPlan:
+        """The plan. InputError where it cannot be read, or is not what was frozen."""
+        data = self.plan_text
+        if self._plan is None or self._plan[0] != data:
+            path = self.folder / STUDY_FILE
+            self._plan = data, read_plan_text(data.decode(errors="replace"), path)
+        return self._plan[1]
+
+
 def study_problems(
     folder: Path,
     fingerprint: str = "",
@@ -158,11 +179,12 @@ def study_problems(
     people: Sequence[str] | None = None,
     record: str = "",
     run_key: RunKey | None = None,
+    reading: SessionReading = TRIALS,
 ) -> tuple[str, ...]:
     """Return all that is not as it was written, a line each.
 
     people : whose files are verified; None: everybody's. fingerprint, record : that were written down.
-    run_key : the marks of counts are verified with it, or with the key holder's.
+    run_key : the marks of counts are verified with it, or with the key holder's. reading : of sessions.
     """
     try:
         found = layout.read_frozen(folder)
@@ -189,7 +211,7 @@ def study_problems(
     # an enrolment that was killed was counted, and has no session
     lost = {name for name, one in (counts.people if counts else {}).items() if one.began} - names
     problems += [*wrong, *(f"{LOG_FILE}: {name} was counted, and is not in it" for name in sorted(lost))]
-    check = PersonCheck(folder, sha256, log, holder, counts, frozen.version > 1)
+    check = PersonCheck(folder, sha256, log, holder, counts, frozen.version > 1, reading)
     for person in enrolled:
         if people is None or person.name in people:
             problems += [f"{PEOPLE}/{person.name}{problem}" for problem in check.problems(person)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal, TypeVar
 
@@ -123,9 +124,10 @@ def study_file(folder: Path, name: str) -> Path:
     raise InputError(name, "name", "no such file in the study's folder", remedy)
 
 
-def copy_files(plan: StudyPlan, beside: Path, folder: Path) -> None:
+def copy_files(names: Sequence[str], beside: Path, folder: Path) -> None:
     """Copy the files that a plan names from beside it into a study's folder. InputError, OSError."""
-    for name in named_files(plan):
+    for name in names:
+        _require_inside(name)
         sources = (beside / name, kept_path(beside, name))
         source = next((path for path in sources if path.is_file()), None)
         if source is None:
@@ -135,12 +137,12 @@ def copy_files(plan: StudyPlan, beside: Path, folder: Path) -> None:
         write_atomic(kept_path(folder, name), read_limited(source, LARGEST_bytes, SMALLER))
 
 
-def keep_files(plan: StudyPlan, folder: Path) -> None:
+def keep_files(names: Sequence[str], folder: Path) -> None:
     """Copy the files that a plan names and that lie beside it to where the study keeps them.
 
     A file that it keeps already stays, for that is the one that was reviewed. InputError, OSError.
     """
-    for name in named_files(plan):
+    for name in names:
         kept = kept_path(folder, name)
         if not kept.is_file():
             write_atomic(kept, read_limited(study_file(folder, name), LARGEST_bytes, SMALLER))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,13 +16,26 @@ from fdvv.study.files.people import Person, open_schedule, read_locked
 from fdvv.study.files.seal import KeyHolder
 from fdvv.study.plan.events import SessionStarted, StaircaseConverged, TrialAnswered, TrialSkipped, event_of
 
+Records = Sequence[dict[str, Any]]
+
+
+@dataclass(frozen=True)
+class SessionReading:
+    """How the log of a session is read, by the kind of study.
+
+    answered : counts the answers in its records. lacks : says what is missing where the person was done.
+    """
+
+    answered: Callable[[Records], int]
+    lacks: Callable[[Records], Iterator[str]]
+
 
 @dataclass(frozen=True)
 class PersonCheck:
     """What the files of people are held against.
 
     folder, study : of the study, and SHA-256 of frozen.json. log : of the study. holder : marks are verified
-    with their key. counts : of the study. keyed : it was frozen with a run key.
+    with their key. counts : of the study. keyed : it was frozen with a run key. reading : of sessions.
     """
 
     folder: Path
@@ -31,6 +44,7 @@ class PersonCheck:
     holder: KeyHolder | None
     counts: Counts | None
     keyed: bool
+    reading: SessionReading
 
     def problems(self, person: Person) -> Iterator[str]:
         """Return all that is wrong with the files of a person, each from the place in their folder on."""
@@ -70,7 +84,7 @@ class PersonCheck:
         if counted:
             yield from self._counted(found, name, person.name)
         if person.state == "finished" and name == layout.SESSION_FILE:
-            yield from _left(found.records)
+            yield from self.reading.lacks(found.records)
 
     def _counted(self, found: ChainRead, name: str, person: str) -> Iterator[str]:
         own = self.counts.people.get(person) if self.counts else None
@@ -79,17 +93,17 @@ class PersonCheck:
             return
         if problem := own.logs[name].problem(found):
             yield problem
-        elif name == layout.SESSION_FILE and _answered(found.records) < own.answered:
-            yield f"has {_answered(found.records)} answers, {own.answered} were counted"
+        elif name == layout.SESSION_FILE and self.reading.answered(found.records) < own.answered:
+            yield f"has {self.reading.answered(found.records)} answers, {own.answered} were counted"
         if not found.head_marked:
             yield "has a head that anybody can write"
 
 
-def _answered(records: Sequence[dict[str, Any]]) -> int:
+def _answered(records: Records) -> int:
     return len({record["answered"]["number"] for record in records if "answered" in record})
 
 
-def _left(records: Sequence[dict[str, Any]]) -> Iterator[str]:
+def _left(records: Records) -> Iterator[str]:
     """Return what a session that is done lacks: trials without an answer that were not passed over."""
     try:
         events = [event_of(record) for record in records]
@@ -103,3 +117,7 @@ def _left(records: Sequence[dict[str, Any]]) -> Iterator[str]:
     left = [one for one in left if one.practice or (one.item, one.round) not in settled]
     if left:
         yield f"lacks the answers of {len(left)} trials, and the person was done"
+
+
+TRIALS = SessionReading(_answered, _left)
+"""Of studies that ask about what was rendered."""

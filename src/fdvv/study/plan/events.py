@@ -7,7 +7,7 @@ of the session; they do not reveal what a label hid.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, Literal, get_args
 
 import msgspec
@@ -215,22 +215,22 @@ def _check_rating(rating: Rating, given: Mapping[str, float], labels: tuple[str,
             raise InputError("answer", place, reason, CHOOSE)
 
 
-def checked_page(plan: StudyPlan, page: Page, values: Mapping[str, Value]) -> dict[str, Value]:
-    """Return a page's answers as they are kept; a choice in the study's first language. InputError."""
+def checked_page(languages: Sequence[str], page: Page, values: Mapping[str, Value]) -> dict[str, Value]:
+    """Return a page's answers as they are kept; a choice in the first of the languages. InputError."""
     questions = {question.name: question for question in page.questions}
     for name in set(values) - set(questions):
         raise InputError("answer", f"page {page.name}", f"does not ask {name!r:.60}", CHOOSE)
-    return {name: _checked_value(plan, page, one, values.get(name)) for name, one in questions.items()}
+    return {name: _checked_value(languages, page, one, values.get(name)) for name, one in questions.items()}
 
 
-def _checked_value(plan: StudyPlan, page: Page, question: Question, value: Value) -> Value:
+def _checked_value(languages: Sequence[str], page: Page, question: Question, value: Value) -> Value:
     place = f"page {page.name}, {question.name}"
     if value is None or value == "":
         if question.required:
             raise InputError("answer", place, "is not answered", CHOOSE)
         return None
     if question.choices:
-        return _choice(plan, question, value, place)
+        return _choice(languages, question, value, place)
     if question.low is not None or question.high is not None:
         return _number(question, value, place)
     if not isinstance(value, str) or len(value) > LONGEST_TEXT:
@@ -238,8 +238,8 @@ def _checked_value(plan: StudyPlan, page: Page, question: Question, value: Value
     return value
 
 
-def _choice(plan: StudyPlan, question: Question, value: Value, place: str) -> str:
-    first = question.choices.get(plan.languages[0]) or next(iter(question.choices.values()))
+def _choice(languages: Sequence[str], question: Question, value: Value, place: str) -> str:
+    first = question.choices.get(languages[0]) or next(iter(question.choices.values()))
     for choices in question.choices.values():
         if value in choices:
             return first[choices.index(str(value))]

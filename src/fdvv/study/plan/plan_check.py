@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
-import math
-import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from pathlib import PurePosixPath
 
 import msgspec
 
 from fdvv.model.file import MODEL_SUFFIX, builtin_names
-from fdvv.study.plan.plan import Item, Question, Stimulus, StudyPlan
+from fdvv.study.plan.plan import Item, Stimulus, StudyPlan
 from fdvv.study.plan.plan_words import word_languages
 from fdvv.study.plan.schedule import LABELS
+from fdvv.study.plan.text_check import (
+    LANGUAGE,
+    Text,
+    column_problems,
+    language_problems,
+    name_problems,
+    number_problems,
+    page_texts,
+    question_problems,
+    text_problems,
+    twice_problems,
+)
 from fdvv.study.plan.trial import EQUAL
 
-LANGUAGE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]{2,8})*")
 ACTUATION_SUFFIX = ".actuation.json"
-COLUMN = re.compile(r"[^\W\d]\w{0,39}")
-TAKEN = {"choice", "correct", "excluded", "item", "kind", "number", "person", "ratio", "round", "time_s"}
-"""Columns that every file of answers has."""
-
 MOST_TRIALS = 2000
 
 
@@ -68,20 +73,15 @@ def _staircase(plan: StudyPlan) -> Iterator[str]:
 
 def _languages(plan: StudyPlan) -> Iterator[str]:
     """List text that is missing in a language, or there in one that is not declared."""
-    if not plan.languages:
-        yield 'languages: there is none; write languages = ["en"]'
-    for language in plan.languages:
-        if not LANGUAGE.fullmatch(language):
-            yield f'languages: {language!r} is not a code as "en" or "pt-BR"'
-        elif language not in word_languages() and language not in plan.question:
+    yield from language_problems(plan.languages)
+    for language in filter(LANGUAGE.fullmatch, plan.languages):
+        if language not in word_languages() and language not in plan.question:
             known = ", ".join(word_languages())
             yield f"question: fdvv has no words in {language!r} (it has {known}); write question.{language}"
-    for place, said, needed in _texts(plan):
-        if said or needed:
-            yield from _missing(place, said, plan.languages)
+    yield from text_problems(_texts(plan), plan.languages)
 
 
-def _texts(plan: StudyPlan) -> Iterator[tuple[str, Mapping[str, object], bool]]:
+def _texts(plan: StudyPlan) -> Iterator[Text]:
     """Return every text of a plan: its place, its words by language, and whether it must be there at all."""
     yield "title", plan.title, True
     yield "question", plan.question, False
@@ -90,24 +90,7 @@ def _texts(plan: StudyPlan) -> Iterator[tuple[str, Mapping[str, object], bool]]:
         yield f"{place}, question", rating.question, True
         yield f"{place}, low", rating.low, False
         yield f"{place}, high", rating.high, False
-    for page in plan.pages:
-        place = f"pages ({page.name!r})"
-        yield f"{place}, title", page.title, True
-        yield f"{place}, text", page.text, False
-        for question in page.questions:
-            yield f"{place}, questions ({question.name!r})", question.question, True
-            yield f"{place}, questions ({question.name!r}), choices", question.choices, False
-
-
-def _missing(place: str, said: Mapping[str, object], languages: tuple[str, ...]) -> Iterator[str]:
-    for language in languages:
-        words = said.get(language)
-        texts = [words] if isinstance(words, str) else list(words) if isinstance(words, tuple) else []
-        if not texts or not all(text.strip() for text in texts):
-            yield f"{place}: there is no text in {language!r}"
-    for language in said:
-        if language not in languages:
-            yield f"{place}: {language!r} is not one of the study's languages ({', '.join(languages)})"
+    yield from page_texts(plan.pages)
 
 
 def plan_problems(plan: StudyPlan) -> tuple[str, ...]:
@@ -116,7 +99,7 @@ def plan_problems(plan: StudyPlan) -> tuple[str, ...]:
     Looks at the plan alone: whether the files it names are there and what they hold is for who has them.
     """
     return (
-        *_numbers(plan, ""),
+        *number_problems(plan, ""),
         *_names(plan),
         *_languages(plan),
         *(problem for item in plan.items for problem in _item(plan, item)),
@@ -134,18 +117,6 @@ def is_file(button: str) -> bool:
     return button.endswith(MODEL_SUFFIX) or "/" in button or "\\" in button
 
 
-def _numbers(part: object, place: str) -> Iterator[str]:
-    """Refuse inf and nan, which TOML knows and no bound stops."""
-    if isinstance(part, float) and not math.isfinite(part):
-        yield f"{place}: {part} is not a finite number"
-    if isinstance(part, msgspec.Struct):
-        for field in part.__struct_fields__:
-            yield from _numbers(getattr(part, field), f"{place}.{field}".lstrip("."))
-    if isinstance(part, tuple):
-        for i, one in enumerate(part, start=1):
-            yield from _numbers(one, f"{place}[{i}]")
-
-
 def _names(plan: StudyPlan) -> Iterator[str]:
     if not plan.items:
         yield "items: there is none; write [[items]]"
@@ -156,24 +127,11 @@ def _names(plan: StudyPlan) -> Iterator[str]:
         "languages": plan.languages,
     }
     groups |= {f"items ({i.name!r}), stimuli": [s.name for s in i.stimuli] for i in plan.items}
-    yield from _plain("name", plan.name)
+    yield from name_problems("name", plan.name)
     for place, names in groups.items():
         for name in names:
-            yield from _plain(place, name)
-        yield from _twice(place, names)
-
-
-def _plain(place: str, name: str) -> Iterator[str]:
-    if not name.isprintable() or name != name.strip() or not name:
-        yield f"{place}: {name!r:.70} must be printable, without spaces at its ends"
-
-
-def _twice(place: str, names: Iterable[str]) -> Iterator[str]:
-    seen: dict[str, str] = {}
-    for name in names:
-        if name.casefold() in seen:
-            yield f"{place}: {name!r} and {seen[name.casefold()]!r} are the same name"
-        seen[name.casefold()] = name
+            yield from name_problems(place, name)
+        yield from twice_problems(place, names)
 
 
 def _item(plan: StudyPlan, item: Item) -> Iterator[str]:
@@ -217,31 +175,13 @@ def _colliding_names(plan: StudyPlan) -> Iterator[str]:
 def _questions(plan: StudyPlan) -> Iterator[str]:
     for page in plan.pages:
         for question in page.questions:
-            yield from _question(f"pages ({page.name!r}), questions ({question.name!r})", question)
-
-
-def _question(place: str, question: Question) -> Iterator[str]:
-    low, high = question.low, question.high
-    if question.choices and (low is not None or high is not None):
-        yield f"{place}: it has choices and a range; leave out one"
-    if low is not None and high is not None and low >= high:
-        yield f"{place}: low {low:g} is not below high {high:g}"
-    lengths = {len(choices) for choices in question.choices.values()}
-    if lengths and (len(lengths) > 1 or min(lengths) < 2):
-        yield f"{place}: choices must be at least two, and as many in every language"
-    for choices in question.choices.values():
-        yield from _twice(f"{place}, choices", choices)
+            yield from question_problems(f"pages ({page.name!r}), questions ({question.name!r})", question)
 
 
 def _columns(plan: StudyPlan) -> Iterator[str]:
     named = [(f"ratings ({r.name!r})", r.name) for r in plan.ratings]
     named += [(f"pages ({p.name!r}), questions", q.name) for p in plan.pages for q in p.questions]
-    for place, name in named:
-        if not COLUMN.fullmatch(name):
-            yield f"{place}: {name!r:.50} names a column: at most 40 letters, digits and _"
-        if name.casefold() in TAKEN:
-            yield f"{place}: {name!r} is a column that every file of answers has"
-    yield from _twice("ratings and questions", [name for _, name in named])
+    yield from column_problems(named)
 
 
 def _claim(plan: StudyPlan) -> Iterator[str]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
 import msgspec
 
@@ -20,6 +20,7 @@ from fdvv.study.plan.plan_check import is_file, plan_problems
 
 REMEDY = "see docs/reference/study-file.md, or begin with fdvv study new"
 LIMIT_bytes = 1_000_000
+Plan = TypeVar("Plan", bound=msgspec.Struct)
 TEXTS = ("title", "text", "question", "low", "high")
 STUDY_FILE = "study.toml"
 """Name of the file that declares a study, in its folder."""
@@ -42,41 +43,52 @@ def read_plan_text(text: str | bytes, source: object) -> StudyPlan:
     InputError names source, the place in it, and what to do: what is no TOML, an unknown or missing field, a
     value of the wrong kind or outside its range.
     """
+    return read_declared(text, source, StudyPlan, "fdvv-study")
+
+
+def read_declared(text: str | bytes, source: object, kind: type[Plan], format_: str) -> Plan:
+    """Read a plan from TOML text. format_ : the name of the format. InputError, see `read_plan_text`."""
     if len(text) > LIMIT_bytes:
         raise InputError(source, "whole file", f"longer than {LIMIT_bytes} characters", REMEDY)
     data = read_toml(text, source, REMEDY)
-    _check_head(data, source)
+    _check_head(data, source, format_)
     try:
-        return msgspec.convert(data, StudyPlan)
+        return msgspec.convert(data, kind)
     except (msgspec.ValidationError, RecursionError) as error:
-        raise _refused(data, source, error) from error
+        raise _refused(data, source, error, kind) from error
 
 
 def check_plan(plan: StudyPlan, source: object) -> None:
     """Raise InputError on a plan that cannot be run or analysed as it says, with all that is wrong."""
-    problems = plan_problems(plan)
+    refuse_problems(plan_problems(plan), source)
+
+
+def refuse_problems(problems: Sequence[str], source: object) -> None:
+    """Raise InputError if there are problems of a plan, each "place: reason", with all of them."""
     if problems:
         place, _, reason = problems[0].partition(": ")
         more = f" (and {len(problems) - 1} more: {' | '.join(problems[1:])})" if problems[1:] else ""
         raise InputError(source, place, reason + more, REMEDY)
 
 
-def _check_head(data: dict[str, Any], source: object) -> None:
-    if data.get("format", "fdvv-study") != "fdvv-study":
-        reason = f'{data["format"]!r:.60} is not a study (it must be "fdvv-study")'
+def _check_head(data: dict[str, Any], source: object, format_: str) -> None:
+    if data.get("format", format_) != format_:
+        reason = f'{data["format"]!r:.60} is not a study (it must be "{format_}")'
         raise InputError(source, "format", reason, REMEDY)
     if data.get("version", 1) != 1:
         reason = f"version {data['version']!r:.40}, this fdvv reads version 1"
         raise InputError(source, "version", reason, "install the fdvv that wrote it, or a newer one")
 
 
-def _refused(data: dict[str, Any], source: object, error: Exception) -> InputError:
+def _refused(
+    data: dict[str, Any], source: object, error: Exception, kind: type[msgspec.Struct]
+) -> InputError:
     reason, _, path = str(error).partition(" - at ")
     keys = re.findall(r"[A-Za-z_][\w-]*|\[\d*\]|\[\.\.\.\]", path.strip("`").removeprefix("$"))
     reason = (
         reason.replace("Object", "this table").replace("`object`", "a table").replace("`array`", "a list")
     )
-    return InputError(source, _place(data, keys), reason, _remedy(reason, keys))
+    return InputError(source, _place(data, keys), reason, _remedy(reason, keys, kind))
 
 
 def _place(data: Any, keys: list[str]) -> str:
@@ -94,18 +106,18 @@ def _place(data: Any, keys: list[str]) -> str:
     return ", ".join(parts) or "whole file"
 
 
-def _remedy(reason: str, keys: list[str]) -> str:
+def _remedy(reason: str, keys: list[str], plan: type[msgspec.Struct]) -> str:
     unknown = re.search(r"unknown field `(.*)`", reason)
     if unknown:
-        return _near(unknown[1], keys)
+        return _near(unknown[1], keys, plan)
     if "Expected a table, got `str`" in reason and keys and keys[-1] in TEXTS:
         return f'give it by language, as {keys[-1]}.en = "…"'
     return REMEDY
 
 
-def _near(name: str, keys: list[str]) -> str:
+def _near(name: str, keys: list[str], plan: type[msgspec.Struct]) -> str:
     words = [key for key in keys if not key.startswith("[")]
-    kind = dict(_tables(StudyPlan)).get(words[-1], StudyPlan) if words else StudyPlan
+    kind = dict(_tables(plan)).get(words[-1], plan) if words else plan
     known = [field.name for field in msgspec.structs.fields(kind)]
     return did_you_mean(name, known)
 
@@ -153,11 +165,12 @@ def write_template(name: str, folder: Path, study_name: str | None = None) -> Pa
             raise InputError(there, "output", "is there already", "name another folder")
     for button, content in buttons.items():
         write_atomic(folder / button, content)
-    write_atomic(path, text if study_name is None else _called(text, study_name))
+    write_atomic(path, text if study_name is None else called(text, study_name))
     return path
 
 
-def _called(text: str, study_name: str) -> str:
+def called(text: str, study_name: str) -> str:
+    """Return the text of a study under another name, cut where that is too long."""
     plain = "".join(c for c in study_name if c.isprintable()).strip()[:LONGEST_NAME].strip()
     if not plain:
         return text

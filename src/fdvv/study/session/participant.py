@@ -151,7 +151,7 @@ class Participant:
             raise ModelError(f"the study has no page {name}")
         if page.when == "consent" and not agreed:
             return self._leave(events.PageAnswered(self._now(), name, agreed=False))
-        self._add(events.PageAnswered(self._now(), name, checked_page(self._plan, page, values)))
+        self._add(events.PageAnswered(self._now(), name, checked_page(self._plan.languages, page, values)))
         return self._advance()
 
     def end_break(self) -> Step:

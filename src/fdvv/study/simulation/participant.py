@@ -74,6 +74,22 @@ class NullRenderer:
         """Do nothing."""
 
 
+def filled_page(page: Page, language: str, random: np.random.Generator) -> dict[str, Value]:
+    """Fill in a page: any choice, any whole number of a range, and that it is simulated."""
+    return {one.name: _filled(one, language, random) for one in page.questions}
+
+
+def _filled(question: Question, language: str, random: np.random.Generator) -> Value:
+    choices = question.choices.get(language) or next(iter(question.choices.values()), ())
+    if choices:
+        return choices[int(random.integers(len(choices)))]
+    if question.low is None and question.high is None:
+        return SAID
+    ends = [end for end in (question.low, question.high) if end is not None]
+    low, high = ends[0], ends[-1]
+    return float(np.clip(np.rint(random.uniform(low, high)), low, high))
+
+
 class SimulatedParticipant:
     """One simulated person in one study. **A proxy**: nothing it says is evidence.
 
@@ -136,17 +152,7 @@ class SimulatedParticipant:
 
     def fill_in(self, page: Page, language: str) -> dict[str, Value]:
         """Fill in a page: any choice, any whole number of a range, and that it is simulated."""
-        return {one.name: self._filled(one, language) for one in page.questions}
-
-    def _filled(self, question: Question, language: str) -> Value:
-        choices = question.choices.get(language) or next(iter(question.choices.values()), ())
-        if choices:
-            return choices[int(self._random.integers(len(choices)))]
-        if question.low is None and question.high is None:
-            return SAID
-        ends = [end for end in (question.low, question.high) if end is not None]
-        low, high = ends[0], ends[-1]
-        return float(np.clip(np.rint(self._random.uniform(low, high)), low, high))
+        return filled_page(page, language, self._random)
 
     def _ranked(self, item: Item) -> list[str]:
         claim = self._plan.claim

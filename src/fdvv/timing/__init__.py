@@ -1,0 +1,1 @@
+"""Studies that time presses of people: the paper's experiment, and the tapping test."""

@@ -1,0 +1,1 @@
+"""Unsealed scores, their statistics, and the report in the paper's form."""

@@ -1,0 +1,1 @@
+"""A timing study in its folder, and how far its people are."""

@@ -1,0 +1,126 @@
+"""A timing study in a folder: declared, frozen, run, unsealed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import ClassVar
+
+from fdvv.errors import FdvvError, InputError
+from fdvv.io.files import read_limited, write_atomic
+from fdvv.model.file import builtin_names
+from fdvv.program.library import names_program
+from fdvv.study.admin.kept import KeptStudy, make_folder
+from fdvv.study.files import layout
+from fdvv.study.files.person_check import SessionReading
+from fdvv.study.files.seal import CODE_COST, PASSPHRASE_COST, Cost
+from fdvv.study.plan.plan_file import STUDY_FILE
+from fdvv.study.plan.trial import StudyTrial
+from fdvv.timing.files.buttons import opened_button
+from fdvv.timing.files.reading import READING
+from fdvv.timing.plan.plan import TimingPlan
+from fdvv.timing.plan.plan_file import check_timing_plan, read_timing_plan
+from fdvv.timing.plan.schedule import draw_validation
+
+
+class TimingStudy(KeptStudy):
+    """A timing study that lies in a folder; no file is held open between two calls.
+
+    Made by `declare` or `open`. What it shares with every study, as pauses and withdrawal, is `KeptStudy`.
+    """
+
+    reading: ClassVar[SessionReading] = READING
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(folder)
+        self._plan: tuple[bytes, TimingPlan] | None = None
+
+    @classmethod
+    def declare(cls, folder: Path, plan_file: Path) -> TimingStudy:
+        """Declare a study in a folder that is new or empty: copy its plan and all files that it names.
+
+        InputError on a plan that cannot be read, or that names a file that is not there. OSError.
+        """
+        text = read_limited(plan_file, layout.LARGEST_bytes, layout.SMALLER).decode(errors="replace")
+        return cls.declare_text(folder, text, Path(plan_file).parent, plan_file)
+
+    @classmethod
+    def declare_text(cls, folder: Path, text: str, beside: Path, source: object = STUDY_FILE) -> TimingStudy:
+        """Declare a study from the text of its plan, whole or not at all. beside : where its files lie."""
+        make_folder(folder, lambda building: _put_plan(building, text, beside, source))
+        return cls(folder)
+
+    @classmethod
+    def open(cls, folder: Path) -> TimingStudy:
+        """Open a study. InputError where there is none."""
+        if not (Path(folder) / STUDY_FILE).is_file():
+            raise InputError(folder, "folder", f"holds no study ({STUDY_FILE})", "name the folder of a study")
+        return cls(folder)
+
+    @property
+    def plan(self) -> TimingPlan:
+        """The plan. InputError where it cannot be read, or is not what was frozen."""
+        data = self.plan_text
+        if self._plan is None or self._plan[0] != data:
+            self._plan = data, read_timing_plan(data, self.folder / STUDY_FILE)
+        return self._plan[1]
+
+    def change_plan(self, text: str, beside: Path | None = None) -> None:
+        """Replace the plan of a study that is not frozen. beside : where files lie that it names."""
+        if self.frozen:
+            raise InputError(self.folder, "study", "is frozen", "declare a new study in another folder")
+        _put_plan(self.folder, text, beside or self.folder, STUDY_FILE)
+
+    def freeze(self, passphrase: str, cost: Cost = PASSPHRASE_COST) -> str:
+        """Freeze the study, and return its fingerprint: from now on every change is noticed.
+
+        passphrase : the key holder's; it is not stored. Sessions are open in this object from then on.
+        InputError on a plan with problems, a study that was frozen before, a short passphrase. BuildError: no
+        PyNaCl. OSError.
+        """
+        plan = self.plan
+        check_timing_plan(plan, self.folder / STUDY_FILE)
+        for problem in button_problems(plan, self.folder):
+            remedy = "change it: it could not be run as it says"
+            raise InputError(self.folder / STUDY_FILE, "plan", problem, remedy)
+        self.require_unfrozen()
+        builtins = sorted({one.button for one in plan.conditions} & set(builtin_names()))
+        return self.freeze_files(named_files(plan), builtins, passphrase, cost)
+
+    def enrol(
+        self, language: str = "", consent: str = "", simulated: bool = False, cost: Cost = CODE_COST
+    ) -> tuple[str, str]:
+        """Enrol a person, see `enrol_person`. Return their name and their code. InputError, OSError."""
+
+        def draw(place: int) -> tuple[StudyTrial, ...]:
+            return draw_validation(self.plan, place, self._secret(simulated))
+
+        return self.enrol_person(draw, self.plan.languages, language, consent, simulated, cost)
+
+    def _secret(self, simulated: bool) -> str:
+        """Return what orders are drawn with. Simulated people have nothing to be blind to."""
+        what = f"orders of conditions, {self.fingerprint}"
+        return what if simulated or self.run_key is None else self.run_key.mark(what)
+
+
+def named_files(plan: TimingPlan) -> tuple[str, ...]:
+    """Return the files that a plan names, as it names them."""
+    named = {one.button for one in plan.conditions if one.button}
+    shipped = {one for one in named if one in builtin_names() or (names_program(one) and "." not in one)}
+    return tuple(sorted(named - shipped))
+
+
+def button_problems(plan: TimingPlan, folder: Path) -> Iterator[str]:
+    """List buttons and programs of a plan that cannot be opened."""
+    for one in plan.conditions:
+        try:
+            if one.button:
+                opened_button(folder, one)
+        except (FdvvError, OSError) as error:
+            yield f"conditions ({one.name!r}): {error}"
+
+
+def _put_plan(folder: Path, text: str, beside: Path, source: object) -> None:
+    """Write a plan, behind all files that it names. InputError where one is not there, OSError."""
+    layout.copy_files(named_files(read_timing_plan(text, source)), Path(beside), folder)
+    write_atomic(folder / STUDY_FILE, text)

@@ -1,0 +1,1 @@
+"""Plan, schedule, events and state of a timing study, as plain records."""

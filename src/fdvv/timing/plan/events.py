@@ -1,0 +1,162 @@
+"""What happens in a timing session, event by event: plain, validation by code only.
+
+With the plan these records determine the state of the session. They do not tell what a code hides.
+"""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal, get_args
+
+import msgspec
+from msgspec import Struct
+
+from fdvv.errors import ModelError
+from fdvv.study.plan.events import (
+    BreakEnded,
+    PageAnswered,
+    ParticipantWithdrew,
+    SessionClosed,
+    SessionResumed,
+)
+from fdvv.task.rounds import RoundTiming
+from fdvv.task.score import Score
+from fdvv.task.task import TaskPress
+from fdvv.timing.plan.schedule import TimingFace
+
+Surface = Literal["page", "device", "table", "simulated"]
+"""What is pressed: a button that this machine simulates, a device, a switch or key, or nothing real."""
+
+
+class _Event(Struct, frozen=True, forbid_unknown_fields=True):
+    """What all events have. word : key of its record in the log. at_s : wall time."""
+
+    word: ClassVar[str]
+    at_s: float
+
+
+class TimingStarted(_Event, frozen=True):
+    """The session started, with its trials. seed : of what the engine draws."""
+
+    word: ClassVar[str] = "began"
+    person: str
+    language: str
+    seed: int
+    trials: tuple[TimingFace, ...]
+    simulated: bool = False
+
+
+class ButtonDesigned(_Event, frozen=True):
+    """The engine, origin, suggested the design of a training trial, which nobody has pressed yet."""
+
+    word: ClassVar[str] = "designed"
+    number: int
+    design: dict[str, float]
+    origin: str
+
+
+class SwitchPlaced(_Event, frozen=True):
+    """The switch or key of a trial is under the hand."""
+
+    word: ClassVar[str] = "placed"
+    number: int
+
+
+class TimedBegun(_Event, frozen=True):
+    """A trial was begun, or went on, for the given time."""
+
+    word: ClassVar[str] = "begun"
+    number: int
+    attempt: int
+    on: Surface
+
+
+class RoundKept(_Event, frozen=True):
+    """One round: a press of pointing, or a second of tapping.
+
+    round : from 1, of those that count. target_s : when the target was seen; None of tapping.
+    activations_s : when the key went down, rising. Both on the clock of timing.source.
+    """
+
+    word: ClassVar[str] = "round"
+    number: int
+    attempt: int
+    round: int
+    target_s: float | None
+    activations_s: tuple[float, ...]
+    timing: RoundTiming
+
+    @property
+    def press(self) -> TaskPress:
+        """Return it as tasks score it."""
+        return TaskPress(self.target_s, self.activations_s)
+
+
+class TimedScored(_Event, frozen=True):
+    """All rounds of a trial are there; what they score."""
+
+    word: ClassVar[str] = "scored"
+    number: int
+    scores: dict[str, Score]
+
+
+class DesignFailed(_Event, frozen=True):
+    """The design of a training trial cannot be rendered or scored; the engine avoids it."""
+
+    word: ClassVar[str] = "failed"
+    number: int
+    reason: str
+
+
+class TimedInterrupted(_Event, frozen=True):
+    """The device went away in a trial. The reason could reveal a code, and is sealed."""
+
+    word: ClassVar[str] = "interrupted"
+    number: int
+
+
+class TimedSkipped(_Event, frozen=True):
+    """A trial of the validation was given up: its button cannot be rendered. Why is sealed."""
+
+    word: ClassVar[str] = "skipped"
+    number: int
+
+
+class TrainingEnded(_Event, frozen=True):
+    """The training is over, and the gap begins."""
+
+    word: ClassVar[str] = "trained"
+
+
+TimingEvent = (
+    TimingStarted
+    | PageAnswered
+    | ButtonDesigned
+    | SwitchPlaced
+    | TimedBegun
+    | RoundKept
+    | TimedScored
+    | DesignFailed
+    | TimedInterrupted
+    | TimedSkipped
+    | TrainingEnded
+    | BreakEnded
+    | SessionClosed
+    | SessionResumed
+    | ParticipantWithdrew
+)
+"""What can happen in a timing session, as its journal keeps it."""
+
+EVENTS: dict[str, type[TimingEvent]] = {kind.word: kind for kind in get_args(TimingEvent)}
+
+
+def timing_record(event: TimingEvent) -> dict[str, Any]:
+    return {event.word: msgspec.to_builtins(event)}
+
+
+def timing_event(record: dict[str, Any]) -> TimingEvent:
+    """Read a journal's record. ModelError where it is none."""
+    ((word, body),) = record.items()
+    try:
+        return msgspec.convert(body, EVENTS[word])
+    except (KeyError, msgspec.ValidationError) as error:
+        raise ModelError(f"no event of a timing session: {error}") from error

@@ -1,0 +1,1 @@
+"""A participant's session: every press is on the disk before it counts."""

@@ -1,0 +1,1 @@
+"""Simulated participants who play a whole timing study. Simulated."""

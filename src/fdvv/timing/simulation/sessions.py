@@ -1,0 +1,137 @@
+"""A whole frozen timing study with simulated participants, the gap included. Simulated."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime
+
+from fdvv.errors import InputError, ModelError
+from fdvv.optimize.people.user import draw_user
+from fdvv.study.simulation.sessions import PAGE_s, SimulatedClock
+from fdvv.timing.files.study import TimingStudy
+from fdvv.timing.plan.plan import DAY_s
+from fdvv.timing.plan.session import ENDS, TimingStep
+from fdvv.timing.session.participant import TimingParticipant
+from fdvv.timing.simulation.people import SimulatedTimer
+
+Progress = Callable[[int, int], None]
+PLACE_s, BETWEEN_s = 20.0, 5.0
+"""To put a switch on the table, and between two trials (assumed)."""
+
+
+@dataclass(frozen=True)
+class SimulatedTiming:
+    """What one simulated participant did. days : of simulated time, from the first page to the last."""
+
+    person: str
+    trials: int
+    rounds: int
+    breaks: int
+    days: float
+
+
+@dataclass(frozen=True)
+class SimulatedTimingStudy:
+    """What a simulation added to a study.
+
+    Attributes
+    ----------
+    sessions : of the people that it added. finished : simulated people of the study that are done, by name.
+    """
+
+    sessions: tuple[SimulatedTiming, ...]
+    finished: tuple[str, ...]
+    simulated: bool = True
+
+
+def simulate_timing(
+    study: TimingStudy,
+    people: int | None = None,
+    seed: int = 0,
+    rig: str = "ideal",
+    progress: Progress = lambda _done, _total: None,
+) -> SimulatedTimingStudy:
+    """Have simulated participants take part until so many are done.
+
+    people : as many as are planned if None; those who are done already count. seed : of who they are and how
+    they press; orders and codes are drawn as for people. rig : what renders buttons. progress : trials done
+    and in all.
+
+    InputError on a study that is not frozen or has people in it, and on programs. On Ctrl-C who has not
+    finished is withdrawn and deleted. OSError.
+    """
+    wanted = study.plan.people if people is None else people
+    if wanted < 1:
+        raise ModelError(f"a study needs at least 1 person, got {wanted}")
+    if any(not person.simulated for person in study.people()):
+        reason = "has people, and cannot have simulated ones beside them"
+        raise InputError(study.folder, "study", reason, "declare another study for them")
+    if any(one.kind == "program" for one in study.plan.conditions):
+        reason = "simulated people press buttons of one force surface only"
+        raise InputError(study.folder, "conditions", reason, "simulate a study without programs")
+    sessions: list[SimulatedTiming] = []
+    missing = wanted - len(finished(study))
+    for done in range(missing):
+
+        def report(part: float, done: int = done) -> None:
+            progress(round(100 * (done + part)), 100 * missing)
+
+        number = len(study.people())
+        sessions.append(_session(study, SimulatedTimer(draw_user(number, seed), seed, rig), report))
+    return SimulatedTimingStudy(tuple(sessions), finished(study))
+
+
+def finished(study: TimingStudy) -> tuple[str, ...]:
+    return tuple(person.name for person in study.people() if person.state == "finished")
+
+
+def _session(study: TimingStudy, timer: SimulatedTimer, report: Callable[[float], None]) -> SimulatedTiming:
+    clock, breaks = SimulatedClock(time.time()), 0
+    start_s = clock()
+    participant, code = TimingParticipant.enrol(study, simulated=True, clock=clock)
+    person = participant.person
+    try:
+        while (step := participant.step()).kind not in ENDS:
+            report(step.progress)
+            breaks += step.kind == "break"
+            if step.kind == "wait":  # they go home, and come back with their card
+                participant.close()
+                clock.skip(until_s(step) - clock())
+                participant = TimingParticipant.resume(study, person, code, clock=clock)
+            else:
+                do_timing_step(participant, timer, step, clock)
+    except KeyboardInterrupt:
+        participant.close()
+        study.withdraw(person, delete=True)
+        raise
+    finally:
+        participant.close()
+    state = participant.state
+    rounds = sum(map(len, state.rounds.values()))
+    return SimulatedTiming(person, state.trials_over, rounds, breaks, (clock() - start_s) / DAY_s)
+
+
+def until_s(step: TimingStep) -> float:
+    """Return the wall time at which a gap is over."""
+    return datetime.fromisoformat(step.due_at).timestamp() + 1.0
+
+
+def do_timing_step(
+    participant: TimingParticipant, timer: SimulatedTimer, step: TimingStep, clock: SimulatedClock
+) -> None:
+    """Do what a step asks for: answer a page, place a switch, play a trial, or wait until a break ends."""
+    if step.kind == "page":
+        clock.skip(PAGE_s)
+        timer.fill_in(participant, step.page)
+    elif step.kind == "place":
+        clock.skip(PLACE_s)
+        participant.place(step.number)
+    elif step.kind == "break":
+        clock.skip(step.left_s)
+        participant.end_break()
+    else:
+        clock.skip(BETWEEN_s)
+        begun = timer.play(participant, step.number)
+        clock.skip(begun.rounds * participant.study.plan.round_s(step.level))
