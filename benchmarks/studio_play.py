@@ -26,7 +26,7 @@ from fdvv.optimize.run.session import Optimization
 
 ZONE_ratio = 100 / 144
 WATCH = """(x_ratio) => {
-  const canvas = document.querySelectorAll('.opt-strip canvas')[1];
+  const canvas = document.querySelectorAll('.strip canvas')[1];
   const lit = () => {
     if (canvas.width < 2) return false;
     const [x, y] = [Math.floor(x_ratio * canvas.width), Math.floor(canvas.height / 2)];

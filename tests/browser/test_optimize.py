@@ -34,7 +34,7 @@ CLOCK_ms = 0.2
 BUTTON_ms = 2.0
 """A press takes the simulated button so long, give or take: its noise, and steps of the run."""
 PRESS_WHEN_SEEN = """(x_ratio) => {
-    const canvas = document.querySelectorAll('.opt-strip canvas')[1];
+    const canvas = document.querySelectorAll('.strip canvas')[1];
     const lit = () => {
         if (canvas.width < 2) return false;
         const [x, y] = [Math.floor(x_ratio * canvas.width), Math.floor(canvas.height / 2)];
@@ -117,7 +117,7 @@ def wait_for_bullet(page: Page) -> None:
     """Wait until the strip shows a bullet."""
     page.wait_for_function(
         """() => {
-            const canvas = document.querySelectorAll('.opt-strip canvas')[1];
+            const canvas = document.querySelectorAll('.strip canvas')[1];
             if (canvas.width < 2) return false;
             const middle = Math.floor(canvas.height / 2);
             const row = canvas.getContext('2d').getImageData(0, middle, canvas.width, 1);

@@ -2,10 +2,10 @@
 
 import { call } from "../../net";
 import type { Offer } from "../../net/messages";
+import { type StripView, stripView } from "../../play/strip";
 import { type Signal, signal, tell } from "../../ui";
 import { Play, SIMULATED } from "./play";
 import { named, type RunStore, scoreText } from "./store";
-import { type StripView, stripView } from "./strip";
 
 const SCORES = "fdvv-scores-shown";
 const STRIP = { pixels: 144, zone_px: 100, zone_half_px: 5, speed_px_s: 100 } as const;

@@ -1,7 +1,7 @@
 /** Tap along with a light: finds screens that are much later than stated. */
 
+import { delays, type FrameClock, setDelays } from "../../play/delays";
 import { onCleanup, type Signal, signal } from "../../ui";
-import { delays, type FrameClock, setDelays } from "./delays";
 import { type Tapped, tapped } from "./taps";
 
 const PERIOD_ms = 800;

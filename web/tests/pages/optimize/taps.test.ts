@@ -2,8 +2,8 @@
 
 // @vitest-environment jsdom
 import { describe, expect, it } from "vitest";
-import { displayDelay, FrameClock, readDelays } from "../../../src/pages/optimize/delays";
 import { AHEAD, tapped } from "../../../src/pages/optimize/taps";
+import { displayDelay, FrameClock, readDelays } from "../../../src/play/delays";
 
 describe("taps along with a flash", () => {
   it("tell how late they are, whatever the number of the flash, one that is far off left out", () => {

@@ -1,7 +1,7 @@
 /** The strip of lights on the screen: a row of pixels, the zone, the bullet. */
 
-import { type Brush, CanvasBrush, palette } from "../../draw";
-import { effect, h, onCleanup } from "../../ui";
+import { type Brush, CanvasBrush, palette } from "../draw";
+import { effect, h, onCleanup } from "../ui";
 import type { Strip } from "./game";
 
 const GAP_ratio = 0.28;
@@ -18,7 +18,7 @@ export interface StripView {
 export function stripView(strip: () => Strip): StripView {
   const [still, moving] = [h("canvas", { "aria-hidden": "true" }), h("canvas", { "aria-hidden": "true" })];
   const label = "A strip of lights: a bullet flies from the left to the marked zone";
-  const element = h("div", { class: "opt-strip", role: "img", "aria-label": label }, still, moving);
+  const element = h("div", { class: "strip", role: "img", "aria-label": label }, still, moving);
   let last: number | null = null;
   const draw = (lit_px: number | null) => {
     last = lit_px;

@@ -49,8 +49,9 @@ const WAIT_ms = [500, 700] as const;
 /** How long after the bullet left the strip a press is waited for. */
 const AFTER_ms = 450;
 
-export function newGame(strip: Strip, rounds: number): Game {
-  return { phase: "wait", strip, rounds, kept: 0, from_ms: null, presses: [] };
+/** kept: rounds of the trial that are on the disk already. */
+export function newGame(strip: Strip, rounds: number, kept = 0): Game {
+  return { phase: "wait", strip, rounds, kept, from_ms: null, presses: [] };
 }
 
 /** A picture is drawn at now_ms. luck: in [0, 1), used where a wait begins. */

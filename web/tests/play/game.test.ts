@@ -13,7 +13,7 @@ import {
   pressed,
   resumed,
   round,
-} from "../../../src/pages/optimize/game";
+} from "../../src/play/game";
 
 const EASY = { pixels: 144, zone_px: 120, zone_half_px: 3, speed_px_s: 100 };
 const HARD = { ...EASY, speed_px_s: 150 };

@@ -1,6 +1,6 @@
 /** Delays between page and person: what is stated until somebody measures it, kept in this browser. */
 
-import { type Signal, signal } from "../../ui";
+import { type Signal, signal } from "../ui";
 import type { InputDevice } from "./game";
 
 /** A delay and how far it may be off, ms. */
