@@ -15,7 +15,8 @@ import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 
 from fdvv.errors import InputError
-from fdvv.studio.api.study import StudyResume, StudyScreen
+from fdvv.studio.api.study import StudyScreen
+from fdvv.studio.participant.messages import StudyResume
 from fdvv.studio.studies import Studies
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.study import Study

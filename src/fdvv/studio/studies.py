@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Lock, RLock
-from typing import TYPE_CHECKING, Literal
+from typing import Literal, Protocol
 
 from msgspec import Struct
 
@@ -28,9 +28,6 @@ from fdvv.study.files.run_key import CLOSED, OPEN_FIRST, RunKey
 from fdvv.study.files.seal import Cost
 from fdvv.study.plan.plan_file import STUDY_FILE
 
-if TYPE_CHECKING:
-    from fdvv.studio.api.study import StudyScreen
-
 DEVICE_SUFFIX = ".device"
 TWIN = "twin"
 PATIENCE_s = 10.0
@@ -47,6 +44,16 @@ class StudiesChanged(Message, tag="changed"):
     """A study is not what it was."""
 
     study: str
+
+
+class ParticipantScreen(Protocol):
+    """A participant's screen as the operator has it."""
+
+    def pause(self, on: bool) -> None: ...
+    def leave(self, reason: str) -> None:
+        """End the session at this screen with a reason."""
+
+    def withdraw(self, delete: bool) -> None: ...
 
 
 @dataclass(eq=False)
@@ -68,7 +75,7 @@ class Studies:
         self.watchers = Watchers[Struct]()
         self._seats = studio.part(Seats)
         self._invitations: dict[str, Invitation] = {}
-        self._screens: dict[tuple[str, str], StudyScreen] = {}
+        self._screens: dict[tuple[str, str], ParticipantScreen] = {}
         self._person_locks: dict[tuple[str, str], Lock] = {}
         self._run_keys: dict[str, RunKey] = {}
         self._tried: dict[str, TemporaryDirectory[str]] = {}
@@ -216,7 +223,7 @@ class Studies:
     def waiting(self, name: str) -> int:
         return sum(seat.free for seat in self._seats.of(name))
 
-    def attach(self, name: str, person: str, screen: StudyScreen) -> None:
+    def attach(self, name: str, person: str, screen: ParticipantScreen) -> None:
         """Register a person's screen and end the session at an earlier one."""
         with self._lock:
             before = self._screens.pop((name, person), None)
@@ -225,7 +232,7 @@ class Studies:
             before.leave("this study continues at another screen")
         self.announce(name)
 
-    def detach(self, name: str, person: str, screen: StudyScreen) -> None:
+    def detach(self, name: str, person: str, screen: ParticipantScreen) -> None:
         """Note that a screen serves a person no more."""
         with self._lock:
             if self._screens.get((name, person)) is screen:
@@ -247,7 +254,7 @@ class Studies:
         finally:
             lock.release()
 
-    def screen(self, name: str, person: str) -> StudyScreen | None:
+    def screen(self, name: str, person: str) -> ParticipantScreen | None:
         with self._lock:
             return self._screens.get((name, person))
 

@@ -11,6 +11,7 @@ from fdvv.program.program import Signal
 from fdvv.studio.api.press_frames import DIGITS, ShakeSignal
 from fdvv.studio.contract import Message, Tell, message_of
 from fdvv.studio.devices import DeviceLocks
+from fdvv.studio.participant.messages import StudyBroke
 from fdvv.studio.studies import TWIN, Studies
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.study import Study
@@ -219,7 +220,3 @@ class StudyReady(Message, tag="ready"):
     number: int
     travel_mm: float
     signals: list[ShakeSignal]
-
-
-class StudyBroke(Message, tag="broke"):
-    """The button fell to zero force and is set up anew: the trial's labels are felt once more."""
