@@ -14,6 +14,7 @@ from fdvv.device.plant import Inputs
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.live.device_key import DeviceKey
 from fdvv.model.file import load_builtin
+from fdvv.program.button import button_program
 from tests.support.pressed_rig import KeyedRig
 from tests.support.scripted_person import ScriptedPerson
 
@@ -47,6 +48,14 @@ def test_the_key_s_times_are_those_of_the_board_s_own_ticks(rig: KeyedRig) -> No
     key.close()
     with pytest.raises(DeviceError, match="open it again"):
         key.render(load_builtin("mx-red"))
+
+
+def test_a_program_is_put_under_the_hand_as_a_model_is(rig: KeyedRig) -> None:
+    key, begun_s = DeviceKey(open_device(f"serial:{rig.path}")), time.monotonic()
+    key.render(button_program(load_builtin("mx-red")))
+    found = key.pressed_s(begun_s, wait_for(rig, 3))
+    assert found == pytest.approx(rig.pressed_s[:3], abs=1e-3 * key.clock_error_ms + TICK_s)
+    key.close()
 
 
 def test_between_two_buttons_there_is_no_force(rig: KeyedRig) -> None:

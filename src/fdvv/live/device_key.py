@@ -18,7 +18,9 @@ from fdvv.device.telemetry import TickColumns
 from fdvv.device.wire import RefusedError
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.model.model import FDVVModel
-from fdvv.program.button import compile_button
+from fdvv.program.button import button_program
+from fdvv.program.compile import compile_program
+from fdvv.program.program import Program
 from fdvv.program.surface import Limits
 from fdvv.protocol.tables import Fault, KeyRequest
 from fdvv.rendering.press_made import clear_latched
@@ -181,14 +183,15 @@ class DeviceKey:
         """Error bound between the device's clock and the host's: the worst since the button came, or now."""
         return self._line.do(lambda: 1e-3 * max(self._error_us, self.device.client.clocks().error_us))
 
-    def render(self, model: FDVVModel) -> None:
-        """Put a button under the hand.
+    def render(self, button: FDVVModel | Program) -> None:
+        """Put a button under the hand: a model's, or a program.
 
         Raises InputError, ModelError on one that the device cannot hold, DeviceError.
         """
         self._check()
         limits = Limits(self.device.settings())
-        image = compile_button(model, limits=limits).image
+        program = button if isinstance(button, Program) else button_program(button)
+        image = compile_program(program, limits).image
         try:
             self._line.do(lambda: self._load(image))
         except DeviceError as error:

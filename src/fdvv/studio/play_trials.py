@@ -7,6 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from typing import Generic, Protocol, TypeVar
 
 from fdvv.device.open import open_device, pressed_by_person
 from fdvv.errors import DeviceError, InputError
@@ -16,11 +17,13 @@ from fdvv.live.press import LiveEventKind, LivePress, PressTimes
 from fdvv.live.press_subject import PressSubject
 from fdvv.live.run import LiveFrame, LiveRun
 from fdvv.live.travel_key import TravelKey
+from fdvv.model.model import FDVVModel
+from fdvv.program.program import Program
 from fdvv.studio.contract import Message, Over, Tell
 from fdvv.studio.devices import DeviceLocks, available_devices, require_listed
-from fdvv.studio.played_trial import PlayDelay, PlayedTrial, PlayKept, PlayRound
+from fdvv.studio.played_trial import PlayDelay, RoundOver
 from fdvv.studio.studio import Studio
-from fdvv.task.rounds import ClockSource
+from fdvv.task.rounds import ClockSource, RoundTiming
 
 log = logging.getLogger("fdvv.studio")
 CLOCK = time.monotonic
@@ -31,13 +34,33 @@ LET_GO_cN = 1.0
 DOWN = (LiveEventKind.ACTUATION, LiveEventKind.LEVEL)
 
 
-class LiveTrial:
+A = TypeVar("A", bound=RoundOver, contravariant=True)
+K = TypeVar("K", covariant=True)
+
+
+class PlayedRounds(Protocol[A, K]):
+    """A trial that keeps its rounds. seed : of everything random in its simulation."""
+
+    seed: int
+
+    def keep(self, ask: A, activations_s: tuple[float, ...], timing: RoundTiming) -> K:
+        """Keep a round with what was pressed in it. InputError."""
+
+    def close(self) -> None:
+        """End this beginning of the trial."""
+
+
+RoundAsk = TypeVar("RoundAsk", bound=RoundOver)
+RoundKept = TypeVar("RoundKept")
+
+
+class LiveTrial(Generic[RoundAsk, RoundKept]):
     """A trial under the finger.
 
-    played : the trial, its rounds and its task. subject : its button, on its rig. tell : to the page.
+    played : the trial, which keeps its rounds. subject : its button, on its rig. tell : to the page.
     """
 
-    def __init__(self, played: PlayedTrial, subject: PressSubject, tell: Tell) -> None:
+    def __init__(self, played: PlayedRounds[RoundAsk, RoundKept], subject: PressSubject, tell: Tell) -> None:
         self.played, self._tell = played, tell
         self._times, self._hand = PressTimes(), BinaryFinger.of(subject)
         self._faulted, self._pressed_s = False, (0.0, 0.0)
@@ -103,12 +126,13 @@ class LiveTrial:
             press.clear_fault()
             self._faulted = False
 
-    def keep(self, ask: PlayRound) -> PlayKept:
+    def keep(self, ask: RoundAsk) -> RoundKept:
+        """Keep a round, the simulated finger's way to the key taken as it was."""
         timing = ask.timing(ClockSource.PAGE, ask.input, self._transport_ms(ask), ask.hand)
         found = self._times.between(ask.start_ms / 1e3, ask.end_ms / 1e3)
         return self.played.keep(ask, tuple(at_s - ask.input.ms / 1e3 for at_s in found), timing)
 
-    def _transport_ms(self, ask: PlayRound) -> float | None:
+    def _transport_ms(self, ask: RoundOver) -> float | None:
         """Return the latency of the round's first press."""
         for at_ms, came_ms in self._came_ms:
             if ask.start_ms <= at_ms <= ask.end_ms and ask.clock_ms is not None:
@@ -167,20 +191,22 @@ class Table:
         self._name = name
 
 
-class DeviceTrial:
+class DeviceTrial(Generic[RoundAsk, RoundKept]):
     """A trial on a device: the page leads no finger and shows nothing but the bullet.
 
-    played : the trial, its rounds and its task. key : of the device, which renders the trial's button.
+    played : the trial, which keeps its rounds. key : of the device. button : that it renders.
 
     Raises InputError, ModelError on a button that the device cannot hold, DeviceError.
     """
 
-    def __init__(self, played: PlayedTrial, key: DeviceKey) -> None:
+    def __init__(
+        self, played: PlayedRounds[RoundAsk, RoundKept], key: DeviceKey, button: FDVVModel | Program
+    ) -> None:
         self._played, self._key = played, key
-        key.render(played.model)
+        key.render(button)
 
-    def keep(self, ask: PlayRound) -> PlayKept:
-        """Bring a round to the disk, and score the trial after the last one.
+    def keep(self, ask: RoundAsk) -> RoundKept:
+        """Keep a round, its presses on the device's own clock.
 
         Raises DeviceError where the device or its line failed, InputError where the clocks are not joined.
         """

@@ -31,10 +31,10 @@ class PlayDelay(Message):
     error_ms: Delay
 
 
-class PlayRound(Message, tag="round"):
-    """A round is over: keep it.
+class RoundOver(Message):
+    """A round is over: what times it, of every task.
 
-    start_ms, end_ms : presses between count. target_ms : when the target was drawn.
+    start_ms, end_ms : presses between count.
     display : from drawing to light. input : from finger to the browser's event.
     clock_ms, clock_error_ms : the server's clock less the page's; None where it is not known yet.
     frame_ms : between two pictures. hand, input : of a device's key "button" and nothing: it tells its own.
@@ -42,7 +42,6 @@ class PlayRound(Message, tag="round"):
 
     number: Count
     start_ms: Time
-    target_ms: Time
     end_ms: Time
     hand: Hand
     display: PlayDelay
@@ -67,6 +66,12 @@ class PlayRound(Message, tag="round"):
             self.frame_ms,
             hand,
         )
+
+
+class PlayRound(RoundOver, tag="round"):
+    """A round is over: keep it. target_ms : when the target was drawn."""
+
+    target_ms: Time
 
 
 class PlayKept(Message, tag="kept"):

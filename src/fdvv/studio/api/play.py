@@ -83,13 +83,16 @@ class PlayPong(Message, tag="pong"):
     server_ms: float
 
 
+PlayTrial = LiveTrial[PlayRound, PlayKept] | DeviceTrial[PlayRound, PlayKept]
+
+
 class PlayChannel:
     """What serves one page: nothing, or a trial."""
 
     def __init__(self, studio: Studio, tell: Tell) -> None:
         self._optimizations, self._tell = studio.part(Optimizations), tell
         self._table = Table(studio, lambda line: tell(Over(line)))
-        self._live: LiveTrial | DeviceTrial | None = None
+        self._live: PlayTrial | None = None
 
     def receive(self, ask: Message) -> None:
         """Do what the page asks; without a trial most asks have come too late and do nothing."""
@@ -140,12 +143,11 @@ class PlayChannel:
             raise
         self._tell(PlayReady(ask.run, ask.trial, played.attempt, played.task.rounds, about, signals))
 
-    def _under(
-        self, played: PlayedTrial, key: DeviceKey | None
-    ) -> tuple[LiveTrial | DeviceTrial, str, list[ShakeSignal]]:
+    def _under(self, played: PlayedTrial, key: DeviceKey | None) -> tuple[PlayTrial, str, list[ShakeSignal]]:
         """Put a trial's button under the hand: on the table, or simulated."""
         if key:
-            return DeviceTrial(played, key), f"{key.device.info().name}, under your own finger", []
+            about = f"{key.device.info().name}, under your own finger"
+            return DeviceTrial(played, key, played.model), about, []
         subject = model_subject(played.model)
         signals = [message_of(ShakeSignal, signal) for signal in subject.signals]
         return LiveTrial(played, subject, self._tell), subject.description, signals
