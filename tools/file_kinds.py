@@ -37,6 +37,8 @@ from fdvv.study.plan.events import Event
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.sweep.plan import SweepPlan
 from fdvv.task.rounds import TaskRound
+from fdvv.timing.plan.events import TimingEvent
+from fdvv.timing.plan.plan import TimingPlan
 from fdvv.vibration.exciter import ExciterRecord, KnownExciter
 from fdvv_rig.selftest.receipt import SelftestReceipt
 
@@ -147,6 +149,12 @@ FILES = (
         "Study", "`study.toml`", "The plan of a blind study. [More](study-file.md).", {"file": StudyPlan}
     ),
     FileKind(
+        "Timing study",
+        "`study.toml`",
+        "The plan of a study that times presses. [More](timing-file.md).",
+        {"file": TimingPlan},
+    ),
+    FileKind(
         "Frozen study",
         "`frozen.json`, `keeper.json`, `counts.json`, `*.head`",
         "What was frozen, the key holder's half of the key, how much was written for everybody, and the "
@@ -176,6 +184,13 @@ FILES = (
             "sealed.jsonl": SealedTrial,
             "session.jsonl": Event,
         },
+    ),
+    FileKind(
+        "Timing participant",
+        "`session.jsonl`",
+        "The chained event log of a participant in a timing study; its other files are those of every study "
+        "([when what is written](../explanation/timing-studies.md)).",
+        {"session.jsonl": TimingEvent},
     ),
     FileKind(
         "Code book",

@@ -9,8 +9,9 @@ import pytest
 from click.testing import CliRunner, Result
 
 from fdvv.cli.main import cli
-from fdvv.cli.study.declare import KINDS
+from fdvv.cli.study.kinds import KINDS
 from fdvv.study.plan.plan_file import template_names
+from fdvv.timing.plan.plan_file import TEMPLATE_NAMES
 
 
 @pytest.fixture(autouse=True)
@@ -29,7 +30,7 @@ def change(before: str, after: str) -> None:
 
 
 def test_every_kind_can_be_begun_checked_and_previewed() -> None:
-    assert set(KINDS) == set(template_names())
+    assert set(KINDS) == {*template_names(), *TEMPLATE_NAMES}
     for kind in KINDS:
         assert invoke("new", kind, "--kind", kind).exit_code == 0
         checked = invoke("check", kind)
@@ -47,8 +48,23 @@ def test_the_papers_study_is_the_default_and_described_in_words() -> None:
         assert words in preview.stdout
 
 
-def test_no_preview_is_wider_than_a_terminal() -> None:
+def test_a_folder_that_is_called_as_a_kind_is_of_that_kind() -> None:
     for kind in KINDS:
+        assert f"its kind is {kind};" in invoke("new", f"in/{kind}").stdout
+    assert "its kind is realism;" in invoke("new", "pilot").stdout
+    assert 'format = "fdvv-timing"' in Path("in/timing/study.toml").read_text()
+
+
+def test_an_unknown_kind_is_refused_with_the_list() -> None:
+    refused = invoke("new", "pilot", "--kind", "timming")
+    assert refused.exit_code == 2
+    assert "realism" in refused.stderr
+    assert "timing" in refused.stderr
+    assert not Path("pilot").exists()
+
+
+def test_no_preview_is_wider_than_a_terminal() -> None:
+    for kind in template_names():
         invoke("new", kind, "--kind", kind)
         assert max(map(len, invoke("preview", kind).stdout.splitlines())) <= 100
 

@@ -37,6 +37,7 @@ BY_HAND = {
     "program-file.md": "Program",
     "recording-file.md": "Recording",
     "study-file.md": "Study",
+    "timing-file.md": "Timing study",
     "answers-file.md": "Code book",
 }
 """Pages that describe a kind of file by hand."""

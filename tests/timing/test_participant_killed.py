@@ -70,7 +70,7 @@ def tell(line: str) -> None:
 
 def live(folder: Path, person: str, code: str, into: int) -> None:
     """Go on with a session, tell every press that is kept, and wait to be killed."""
-    os.fsync = lambda _file: None
+    os.fsync = lambda fd: None
     clock = LongClock()
     with TimingParticipant.resume(attended(folder), person, code, clock=clock) as one:
         while (step := one.step()).kind not in ENDS:
@@ -146,7 +146,6 @@ def check_kills(folder: Path, seed: int, longest_s: float, most: int) -> int:
             break
     hatchery.close()
     assert len(there) == study.plan.trials * study.plan.presses
-    # the last life told what those before it had kept without being heard
     assert attended(folder).verify(passphrase=PASSPHRASE) == ()
     assert attended(folder).person(one.person).state == "finished"
     return lives

@@ -1,4 +1,4 @@
-"""Orders of conditions: balanced over the study, and told by nothing that everybody knows."""
+"""Orders of conditions: balanced over the study, and secret."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fdvv.stats.anova import AnovaEffect
+from fdvv.stats.anova import Anova, AnovaEffect
 from fdvv.stats.effect_size import Estimate
 from fdvv.stats.post_hoc import PairedTest
 
@@ -41,6 +41,32 @@ def sphericity_text(effect: AnovaEffect) -> str:
         return ""
     verdict = "is denied" if found.p < ALPHA else "is not denied"
     return f"Sphericity of {effect.name} {verdict} (Mauchly's W = {found.W:.3g}, {p_text(found.p)})."
+
+
+def anova_sentences(anova: Anova, measure: str) -> tuple[str, ...]:
+    """Report every effect on a measure, significant or not; then sphericity, empty where it says nothing."""
+    sentences = []
+    for effect in anova.effects:
+        what = "interaction" if "×" in effect.name else "main effect"
+        verdict = "is significant" if effect.corrected_p < ALPHA else "is not significant"
+        sentences.append(f"The {what} of {effect.name} on {measure} {verdict}, {effect_text(effect)}.")
+    return (" ".join(sentences), " ".join(filter(None, map(sphericity_text, anova.effects))))
+
+
+def anova_cells(counted: str, anova: Anova) -> tuple[tuple[str, ...], ...]:
+    """Return the rows of a table of effects, see ANOVA_COLUMNS. counted : what was counted as a person."""
+    rows = []
+    for effect in anova.effects:
+        df = f"{effect.effect_df}, {effect.error_df}"
+        cells = (effect.F, effect.p, effect.sphericity.epsilon, effect.corrected_p)
+        figures = (f"{v:.3g}" for v in (*cells, effect.partial_eta2, effect.generalized_eta2))
+        rows.append((f"{effect.name}, {counted}", df, *figures))
+    return tuple(rows)
+
+
+ANOVA_COLUMNS = (
+    "effect, what is counted", "df", "F", "p", "ε", "p corrected", "partial η²", "generalized η²"
+)  # fmt: skip
 
 
 def pair_cells(one: PairedTest) -> tuple[str, ...]:

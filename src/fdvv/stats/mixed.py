@@ -93,7 +93,7 @@ def fit_mixed(
     found = _Profile.at(blocks, spreads, len(y))
     names = ("person", *effects)
     variances = {name: found.residual * float(s) ** 2 for name, s in zip(names, spreads, strict=True)}
-    covariance = found.residual * np.linalg.inv(found.information)
+    covariance = np.asarray(found.residual * np.linalg.inv(found.information), dtype=np.float64)
     variances["residual"] = found.residual
     return MixedFit(found.means, covariance, variances, count, found.criterion)
 
@@ -148,7 +148,7 @@ class _Profile:
             XX, Xy = XX + np.einsum("kmp,kmq->pq", x, x), Xy + np.einsum("kmp,km->p", x, z)
             yy += float(np.sum(z * z))
             log_det += 2 * float(np.sum(np.log(np.diagonal(L, axis1=1, axis2=2))))
-        means = np.linalg.solve(XX, Xy)
+        means = np.asarray(np.linalg.solve(XX, Xy), dtype=np.float64)
         residual = max((yy - float(means @ Xy)) / (n - p), np.finfo(float).tiny)
         criterion = (n - p) * math.log(residual) + log_det + float(np.linalg.slogdet(XX)[1])
         return cls(means, XX, residual, criterion)

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
+from fdvv.cli.study.timing import timing_analyse, timing_export
 from fdvv.errors import InputError
 from fdvv.io.files import read_limited
 from fdvv.study.admin.study import Study
@@ -20,6 +21,7 @@ from fdvv.study.analysis.records import StudyAnalysis
 from fdvv.study.analysis.report import study_summary, write_study_report
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
+from fdvv.timing.plan.plan_file import is_timing
 
 table_options = ui.options(
     click.option(
@@ -62,9 +64,13 @@ def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool,
 
     SOURCE is the folder of an unsealed study, an answers.csv, or any CSV whose columns are mapped.
     Shares with intervals that count people, signed-rank tests by button with their exact p, distances felt,
-    thresholds, and the main claim under every reasonable analysis; with --report as a page with figures.
+    thresholds, and the main claim under every reasonable analysis; with --report as a page with figures. Of a
+    timing study: the paper's analysis of variance and pairs, a mixed model with intervals, and the claim.
     """
     ui.check_output(report, ".html")
+    if source.is_dir() and is_timing(source):
+        timing_analyse(source, report, as_json)
+        return
     read, declared, origin = _opened(source, plan, table)
     found = analysed(read.answers, declared, "" if declared else source.name)
     if report is not None:
@@ -92,6 +98,9 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
     analysis.json holds every figure.
     """
     ui.check_folder(folder)
+    if source.is_dir() and is_timing(source):
+        timing_export(source, folder, as_json)
+        return
     read, declared, _ = _opened(source, plan, table)
     answers = read.answers
     found = analysed(answers, declared, "" if declared else source.name)

@@ -7,6 +7,8 @@ from pathlib import Path
 import click
 
 from fdvv.cli import ui
+from fdvv.cli.study.kinds import KINDS, kind_named, refuse_timing, write_kind
+from fdvv.cli.study.timing import check_timing
 from fdvv.report.report import Section, write_report
 from fdvv.study.admin.preview import (
     preview_dict,
@@ -17,26 +19,30 @@ from fdvv.study.admin.preview import (
     summarise_plan,
 )
 from fdvv.study.admin.review import StudyReview, review_study
-from fdvv.study.plan.plan_file import write_template
-
-KINDS = ("realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase")
+from fdvv.timing.plan.plan_file import is_timing
 
 study_argument = click.argument("study", type=ui.PATH)
 
 
 @click.command()
 @click.argument("folder", type=ui.PATH)
-@ui.choice_option("--kind", KINDS, help="What trials ask; realism is the paper's study.")
-def new(folder: Path, kind: str) -> None:
+@ui.option(
+    "--kind",
+    type=click.Choice(KINDS),
+    help="What people do; by default as the folder is called where that is a kind, else realism, the paper's "
+    "study of what is rendered. timing is the paper's experiment with optimised buttons.",
+)
+def new(folder: Path, kind: str | None) -> None:
     """Begin a study: a folder with a commented study.toml to edit, and the buttons it names.
 
     The study is called as the folder. It holds the paper's design, or a usual one of its kind; what every
     field means is in docs/reference/study-file.md. Nothing counts before fdvv study freeze.
     """
     ui.check_folder(folder)
-    path = write_template(kind, folder, folder.absolute().name)
+    chosen = kind_named(folder, kind)
+    path = write_kind(chosen, folder)
     click.echo(f"written to {path}")
-    click.echo(f"edit it, then: fdvv study check {folder}")
+    click.echo(f"its kind is {chosen}; edit it, then: fdvv study check {folder}")
 
 
 @click.command()
@@ -47,6 +53,9 @@ def check(study: Path, as_json: bool) -> None:
 
     STUDY is a study.toml, or the folder of one. All that is wrong is listed at once.
     """
+    if is_timing(study):
+        check_timing(study, as_json)
+        return
     look = review_study(study)
     if as_json:
         notes = {"notes": [*look.notes, *(() if look.problems else summarise_plan(look.plan).notes)]}
@@ -89,6 +98,7 @@ def preview(study: Path, html: Path | None, as_json: bool) -> None:
     Exit status 1 where the study cannot be run.
     """
     ui.check_output(html, ".html")
+    refuse_timing(study, "preview", "see what it comes to: fdvv study check")
     look = review_study(study)
     if look.problems:
         _print_problems(look)

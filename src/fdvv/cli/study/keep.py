@@ -10,10 +10,15 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
+from fdvv.cli.study.kinds import open_study
+from fdvv.cli.study.timing import timing_status, timing_unseal
 from fdvv.io.files import read_limited
+from fdvv.study.admin.kept import KeptStudy
 from fdvv.study.admin.operator_view import OperatorView, operator_view
 from fdvv.study.admin.study import Study
 from fdvv.study.plan.answers import Answers
+from fdvv.timing.analysis.unseal import unseal_timing
+from fdvv.timing.files.study import TimingStudy
 
 folder_argument = click.argument("folder", type=ui.FOLDER)
 passphrase_option = ui.option(
@@ -37,7 +42,7 @@ def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
     hide, and who opens the sessions whenever fdvv studio was started; nobody can restore it. The fingerprint
     goes into the preregistration.
     """
-    study = Study.open(folder)
+    study = open_study(folder)
     fingerprint = study.freeze(_passphrase(passphrase_file, new=True))
     if as_json:
         ui.print_json({"folder": str(folder), "name": study.plan.name, "fingerprint": fingerprint})
@@ -61,7 +66,7 @@ def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
 @ui.json_option
 def verify(folder: Path, marks: bool, passphrase_file: Path | None, as_json: bool, **held: Any) -> None:
     """Verify that the study in FOLDER is as it was frozen and its logs as written; status 1 if not."""
-    study = Study.open(folder)
+    study = open_study(folder)
     passphrase = _passphrase(passphrase_file) if marks or passphrase_file else ""
     problems = study.verify(passphrase=passphrase, **held)
     if as_json:
@@ -87,7 +92,10 @@ def verify(folder: Path, marks: bool, passphrase_file: Path | None, as_json: boo
 @ui.json_option
 def status(folder: Path, as_json: bool) -> None:
     """Show how far the study in FOLDER is and what was done with it, but not what labels hide."""
-    study = Study.open(folder)
+    study = open_study(folder)
+    if isinstance(study, TimingStudy):
+        timing_status(study, as_json)
+        return
     document = _status(study, operator_view(study, time.time()))
     if as_json:
         ui.print_json(document)
@@ -125,10 +133,14 @@ def unseal(
     """Reveal what the labels hid. This is recorded first, and then nobody can begin any more.
 
     Writes answers.csv, codebook.json, rendered.csv and pages.csv into unsealed/ of the folder; the rules that
-    were frozen with the study say in answers.csv what does not count, and why.
+    were frozen with the study say in answers.csv what does not count, and why. Of a timing study it writes
+    scores.csv, rounds.csv, training.csv and pages.csv.
     """
-    study = Study.open(folder)
-    answers = study.unseal(_passphrase(passphrase_file), who, why, keeper, despite)
+    study, passphrase = open_study(folder), _passphrase(passphrase_file)
+    if isinstance(study, TimingStudy):
+        timing_unseal(study, unseal_timing(study, passphrase, who, why, keeper, despite), as_json)
+        return
+    answers = study.unseal(passphrase, who, why, keeper, despite)
     document = _unsealed(folder, answers)
     if as_json:
         ui.print_json(document)
@@ -152,7 +164,7 @@ def withdraw(folder: Path, person: str, keep: bool, yes: bool, as_json: bool) ->
     FOLDER is the study's, PERSON what fdvv study status calls them.
     What was unsealed of the study is deleted too, for it holds their answers: unseal it again.
     """
-    study = Study.open(folder)
+    study = open_study(folder)
     person = study.person(person).name
     if not (yes or as_json):
         question = f"End {person}'s part?" if keep else f"Delete all that is kept of {person}, for good?"
@@ -172,7 +184,7 @@ def _passphrase(file: Path | None, new: bool = False) -> str:
     return answer
 
 
-def _scheme(study: Study) -> str:
+def _scheme(study: KeptStudy) -> str:
     alone = ", ".join(study.code_alone)
     if alone:
         return f"the code alone of {alone} opens it, for an earlier fdvv enrolled them; keep their cards away"

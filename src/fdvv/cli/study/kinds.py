@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import click
-
 from fdvv.errors import InputError
 from fdvv.study.admin.study import Study
 from fdvv.study.plan.plan_file import write_template
@@ -37,10 +35,3 @@ def refuse_timing(study: Path, command: str, instead: str) -> None:
     """Refuse a command that timing studies have no use for. InputError."""
     if is_timing(study):
         raise InputError(study, command, "is for studies that ask about what is rendered", instead)
-
-
-class StudyKind(click.Choice[str]):
-    """One of the kinds, which a wrong one lists."""
-
-    def __init__(self) -> None:
-        super().__init__(KINDS)

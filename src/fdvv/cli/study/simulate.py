@@ -12,11 +12,14 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import kept_on_interrupt
+from fdvv.cli.study.kinds import refuse_timing
+from fdvv.cli.study.timing import timing_simulate
 from fdvv.errors import ModelError
 from fdvv.study.admin.study import Study
 from fdvv.study.simulation.people import ProxySettings
 from fdvv.study.simulation.sessions import SimulatedStudy, simulate_study
 from fdvv.study.simulation.study_power import StudyPower, study_power
+from fdvv.timing.plan.plan_file import is_timing
 
 MOST_PEOPLE = 500
 
@@ -70,6 +73,7 @@ def power(
     FILE is a study's file, or its folder. The whole study is simulated many times, and the claim is tested in
     each as it will be in the real one. Proxies plan a study; what they say is never evidence.
     """
+    refuse_timing(file, "power", "simulate it, and read its intervals: fdvv study simulate")
     settings = proxy_settings(changes)
     with ui.stages() as tell:
         found = study_power(file, **options, settings=settings, given_JND=difference, progress=tell)
@@ -168,9 +172,13 @@ def simulate(
 
     FOLDER is a study's that has no people. It tries the study out and its analysis, before anybody's time is
     spent; a study with simulated participants takes no people any more. What proxies answer is marked as
-    simulated wherever it is kept or shown, and is never evidence.
+    simulated wherever it is kept or shown, and is never evidence. Of a timing study they train, come back
+    after the gap and press every button on the twin; --fast and --set are for the other kinds.
     """
     settings = proxy_settings(changes)
+    if is_timing(folder):
+        timing_simulate(folder, people, seed, as_json)
+        return
     study = Study.open(folder)
     kept = f"interrupted; who was done is kept in {folder}, the same command goes on"
     with kept_on_interrupt(kept), ui.progress("simulated people", 1) as tell:

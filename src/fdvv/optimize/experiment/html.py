@@ -18,18 +18,19 @@ from fdvv.optimize.run.report import DesignPanel, control_points, plot_designs
 from fdvv.rendering.figures import plot_rendering
 from fdvv.report.prose import (
     ALPHA,
+    ANOVA_COLUMNS,
     PAIR_COLUMNS,
+    anova_cells,
+    anova_sentences,
     button_text,
     effect_text,
     listed,
     pair_cells,
-    sphericity_text,
     stars,
 )
 from fdvv.report.report import Section, Table, render_html, write_report
 from fdvv.report.score_figures import ScoreBars, TrainingScores, plot_score_bars, plot_training
 from fdvv.report.svg import figure_svg
-from fdvv.stats.anova import Anova
 from fdvv.task.pointing import LEVELS_px_s
 
 EXAMPLES = 3
@@ -124,11 +125,12 @@ def _results(result: ExperimentResult, verdict: ExperimentVerdict) -> Section:
         "Without the random design, some of which can hardly be pressed and spread by far the most, the main "
         f"effect of button is {effect_text(switches)}."
     )
+    effects, *spheres = anova_sentences(verdict.anova, "mean asynchrony")
     sentences = (
         *(_means_sentence(verdict, level) for level in LEVELS),
         f"A two-way repeated measures ANOVA was conducted over {verdict.anova.people} people, rounds "
-        f"averaged first. {_anova_sentences(verdict.anova)[0]}",
-        *filter(None, _anova_sentences(verdict.anova)[1:]),
+        f"averaged first. {effects}",
+        *filter(None, spheres),
         f"{_pairs_sentence(verdict)} {_reductions_sentence(verdict)}",
         aside,
         *readings,
@@ -153,21 +155,16 @@ def _means_table(verdict: ExperimentVerdict) -> Table:
 
 
 def _anova_table(verdict: ExperimentVerdict) -> Table:
-    rows = []
+    rows: list[tuple[str, ...]] = []
     readings = [
         ("people", verdict.anova),
         ("people, without random", verdict.switches_anova),
         ("rounds as people", verdict.rounds_anova),
     ]
     for counted, anova in readings:
-        for effect in anova.effects if anova else ():
-            df = f"{effect.effect_df}, {effect.error_df}"
-            cells = (effect.F, effect.p, effect.sphericity.epsilon, effect.corrected_p)
-            figures = (f"{v:.3g}" for v in (*cells, effect.partial_eta2, effect.generalized_eta2))
-            rows.append((f"{effect.name}, {counted}", df, *figures))
-    columns = ("effect, what is counted", "df", "F", "p", "ε", "p corrected", "partial η²", "generalized η²")
+        rows += anova_cells(counted, anova) if anova else ()
     return Table(
-        columns, tuple(rows), "Simulated. Two-way repeated measures ANOVA; ε of Greenhouse and Geisser."
+        ANOVA_COLUMNS, tuple(rows), "Simulated. Two-way repeated measures ANOVA; ε of Greenhouse and Geisser."
     )
 
 
@@ -205,16 +202,6 @@ def _winner(rendered: RenderedWinner) -> Section:
     figure = plot_rendering(rendered_curves(rendered))
     svg = figure_svg(figure, "The design, fresh presses of it, and the model captured of it")
     return Section("The winner on the device", _winner_paragraphs(rendered), (svg,))
-
-
-def _anova_sentences(anova: Anova) -> tuple[str, ...]:
-    """Report every effect, significant or not, and sphericity."""
-    sentences = []
-    for effect in anova.effects:
-        what = "interaction" if "×" in effect.name else "main effect"
-        verdict = "is significant" if effect.corrected_p < ALPHA else "is not significant"
-        sentences.append(f"The {what} of {effect.name} on mean asynchrony {verdict}, {effect_text(effect)}.")
-    return (" ".join(sentences), " ".join(filter(None, map(sphericity_text, anova.effects))))
 
 
 def _pairs_sentence(verdict: ExperimentVerdict) -> str:

@@ -93,7 +93,7 @@ class KeptStudy(KeptFolder):
         keeper : keeper.json, or where it is, if it was moved. InputError on a wrong passphrase, OSError.
         """
         holder = self.key_holder(passphrase, keeper)
-        with self._log() as log:
+        with self.log() as log:
             log.write({"opened": {"when": now(), **self._counted()}})
         self.run_key = holder.run_key
         if (found := read_counts(self.folder)) and found.made_with(self.run_key):
@@ -122,7 +122,7 @@ class KeptStudy(KeptFolder):
         if language not in languages:
             known = ", ".join(languages)
             raise InputError(language, "language", "is not one of the study", f"name one of {known}")
-        with self._log() as log:
+        with self.log() as log:
             self._check_enrolment(log, simulated)
             people = people_of(log.records)
             person, place = f"P{len(people) + 1:02d}", free_place(people)
@@ -176,7 +176,7 @@ class KeptStudy(KeptFolder):
         """Record that a person is done, with the ends of their logs: from now on none of it can be cut."""
         folder = self.person_folder(person)
         ends = {name: read_chained(folder / name).chain for name in (SESSION_FILE, layout.SEALED_FILE)}
-        with self._log() as log:
+        with self.log() as log:
             log.write({"finished": {"when": now(), "person": person, "ends": ends, **self._counted()}})
 
     def _counted(self) -> dict[str, int]:
@@ -198,7 +198,7 @@ class KeptStudy(KeptFolder):
         InputError where the study is not frozen, or on a person who is not in it. OSError.
         """
         self.require_frozen()
-        with self._log() as log:
+        with self.log() as log:
             pause_person(log, person, on)
 
     def withdraw(self, person: str, delete: bool = True) -> None:
@@ -208,7 +208,7 @@ class KeptStudy(KeptFolder):
         unseal it again. Else what they gave until now is kept. A second call does what was left undone.
         InputError where they are in the study at this moment. OSError.
         """
-        with self._log() as log:
+        with self.log() as log:
             state = person_of(log.records, person).state
             own = self.folder / PEOPLE / person
             if (own / SESSION_FILE).exists():
@@ -240,7 +240,8 @@ class KeptStudy(KeptFolder):
             raise InputError(self.folder, "study", problems[0] + more, remedy)
         return holder, {**about, "problems": list(problems)}
 
-    def _log(self) -> ChainedLog:
+    def log(self) -> ChainedLog:
+        """Open the study's log, to read and append; wait while another process writes it. InputError."""
         return open_when_free(self.folder / LOG_FILE)
 
 

@@ -95,7 +95,7 @@ class Study(KeptStudy, StudyFolder):
         InputError on a wrong passphrase, an empty name or reason, a study that is not whole. OSError.
         """
         holder, about = self.require_unsealable(passphrase, who, why, keeper, despite)
-        with self._log() as log:
+        with self.log() as log:
             return unseal_folder(self.folder, self.plan, log, holder, about)
 
 

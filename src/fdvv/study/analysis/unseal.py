@@ -216,7 +216,7 @@ def unseal_folder(
     about : who, why, and what was wrong with the study then. InputError, OSError.
     """
     log.write({"unsealed": {"when": now(), **about}})
-    suspects = _suspects(about.get("problems", ()), people_of(log.records))
+    suspects = suspects_of(about.get("problems", ()), people_of(log.records))
     people = [
         found
         for person in people_of(log.records)
@@ -240,7 +240,7 @@ def unseal_folder(
     return answers
 
 
-def _suspects(problems: object, people: Sequence[Person]) -> set[str]:
+def suspects_of(problems: object, people: Sequence[Person]) -> set[str]:
     """Return the people whose files something is wrong with; where the counts are wrong, everybody."""
     lines = [str(line) for line in problems] if isinstance(problems, list | tuple) else []
     if any(line.startswith(f"{COUNTS_FILE}:") for line in lines):

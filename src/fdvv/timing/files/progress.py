@@ -17,9 +17,9 @@ from fdvv.timing.plan.plan import DAY_s, TimingPlan
 from fdvv.timing.plan.session import TimingState, next_timing_step, utc_text
 from fdvv.timing.session.log import read_timing
 
-Standing = Literal["enrolled", "training", "waiting", "due", "overdue", "validation", "done", "out"]
+PersonPhase = Literal["enrolled", "training", "waiting", "due", "overdue", "validation", "done", "out"]
 """Where a person is: due and overdue have finished the gap and not come back; out: declined or withdrew."""
-DUE: tuple[Standing, ...] = ("due", "overdue")
+DUE: tuple[PersonPhase, ...] = ("due", "overdue")
 
 
 class PersonProgress(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -38,7 +38,7 @@ class PersonProgress(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     language: str
     simulated: bool
     state: PersonState
-    phase: Standing = "enrolled"
+    phase: PersonPhase = "enrolled"
     done: int = 0
     trials: int = 0
     rounds: int = 0
@@ -104,7 +104,7 @@ def _known(about: PersonProgress, plan: TimingPlan, state: TimingState, now_s: f
     )
 
 
-def standing_of(state: TimingState, now_s: float) -> Standing:
+def standing_of(state: TimingState, now_s: float) -> PersonPhase:
     """Return where a person is at a wall time."""
     step, trial = next_timing_step(state, now_s), state.next_trial
     if step.kind in ("declined", "withdrawn"):
