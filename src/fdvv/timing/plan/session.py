@@ -110,7 +110,8 @@ class TimingState:
 
     def waits(self, now_s: float) -> bool:
         """Whether the gap is not over at a wall time."""
-        return self.not_before_s is not None and now_s < self.not_before_s and not self.validated
+        gap = self.plan.gap_days > 0 and self.not_before_s is not None and now_s < self.not_before_s
+        return gap and not self.validated
 
     @property
     def validated(self) -> bool:
