@@ -74,6 +74,21 @@ class PlayRound(RoundOver, tag="round"):
     target_ms: Time
 
 
+class PlayStrip(Message):
+    """The strip of temporal pointing, in pixels from where bullets start."""
+
+    pixels: int
+    zone_px: int
+    zone_half_px: int
+    speed_px_s: float
+
+
+def strip_of(task: TemporalPointing) -> PlayStrip:
+    """Return the strip on which a task is played."""
+    half_px = int(task.zone_px // 2)
+    return PlayStrip(round(task.strip_px), round(task.target_px), half_px, task.speed_px_s)
+
+
 class PlayKept(Message, tag="kept"):
     """A round is on the disk.
 

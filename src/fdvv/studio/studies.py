@@ -14,6 +14,7 @@ from typing import Literal, Protocol
 
 from msgspec import Struct
 
+from fdvv.device.open import pressed_by_person
 from fdvv.errors import InputError
 from fdvv.io.files import write_atomic
 from fdvv.io.memory import hide_memory
@@ -27,6 +28,8 @@ from fdvv.study.files.people import EVERYBODY
 from fdvv.study.files.run_key import CLOSED, OPEN_FIRST, RunKey
 from fdvv.study.files.seal import Cost
 from fdvv.study.plan.plan_file import STUDY_FILE
+from fdvv.timing.files.study import TimingStudy
+from fdvv.timing.plan.plan_file import is_timing
 
 DEVICE_SUFFIX = ".device"
 TWIN = "twin"
@@ -106,7 +109,7 @@ class Studies:
         text = (study.folder / STUDY_FILE).read_text(encoding="utf-8")
         folder = TemporaryDirectory(prefix="fdvv-try-")
         try:
-            copy = Study.declare_text(Path(folder.name) / tried, text, study.folder)
+            copy = type(study).declare_text(Path(folder.name) / tried, text, study.folder)
             copy.freeze(secrets.token_urlsafe(), QUICK)
         except BaseException:
             folder.cleanup()
@@ -123,10 +126,24 @@ class Studies:
         self._keep_key(tried, copy)
         return self._seats.make(tried)
 
-    def study(self, name: str) -> Study:
+    def study(self, name: str) -> AnyStudy:
         """Open a study, with its run key while its sessions are open. InputError."""
-        study = Study.open(self.path(name))
+        study = open_study(self.path(name))
         study.run_key = self._run_keys.get(name)
+        return study
+
+    def labelled(self, name: str) -> Study:
+        """Open a study in which labels are felt. InputError on another kind."""
+        study = self.study(name)
+        if not isinstance(study, Study):
+            raise InputError("study", name, "is a timing study", "open its own screens")
+        return study
+
+    def timing(self, name: str) -> TimingStudy:
+        """Open a timing study. InputError on another kind."""
+        study = self.study(name)
+        if not isinstance(study, TimingStudy):
+            raise InputError("study", name, "is no timing study", "open its own screens")
         return study
 
     def freeze(self, name: str, passphrase: str) -> None:
@@ -144,7 +161,7 @@ class Studies:
         study.open_sessions(passphrase, keeper)
         self._keep_key(name, study)
 
-    def _keep_key(self, name: str, study: Study) -> None:
+    def _keep_key(self, name: str, study: AnyStudy) -> None:
         assert study.run_key is not None
         hide_memory()
         with self._lock:
@@ -178,7 +195,7 @@ class Studies:
         """
         study = self.study(name)
         require_listed("device", device, (TWIN, *known), "choose one of the list")
-        for problem in device_problems(study.plan, study.folder) if device != TWIN else ():
+        for problem in _device_problems(study, device) if device != TWIN else ():
             raise InputError("device", device, problem, "use the twin, or change the plan")
         write_atomic(self.path(name).with_suffix(DEVICE_SUFFIX), f"{device}\n")
         self.announce(name)
@@ -293,7 +310,22 @@ class Studies:
             folder.cleanup()
 
 
-def state_of(study: Study) -> StudyState:
+AnyStudy = Study | TimingStudy
+
+
+def open_study(folder: Path) -> AnyStudy:
+    """Open a study of whatever kind. InputError where there is none."""
+    return TimingStudy.open(folder) if is_timing(folder) else Study.open(folder)
+
+
+def _device_problems(study: AnyStudy, device: str) -> tuple[str, ...]:
+    """List why a device cannot render a study."""
+    if isinstance(study, Study):
+        return tuple(device_problems(study.plan, study.folder))
+    return () if pressed_by_person(device) else ("is pressed by no person",)
+
+
+def state_of(study: AnyStudy) -> StudyState:
     if study.frozen is None:
         return "draft"
     return "unsealed" if any("unsealed" in record for record in study.history()) else "frozen"

@@ -12,7 +12,6 @@ from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.problem import OPEN, Answer, TrialState
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.run.verdict import (
     Kind,
     Retest,
@@ -24,7 +23,7 @@ from fdvv.optimize.run.verdict import (
 from fdvv.optimize.space import Parameter
 from fdvv.studio.contract import Empty, Message, call, error_line, message_of, watch_channel
 from fdvv.studio.optimizations import Optimizations, OptimizeChanged
-from fdvv.studio.played_trial import playable, pointing_of
+from fdvv.studio.played_trial import PlayStrip, playable, pointing_of, strip_of
 from fdvv.task.pointing import TemporalPointing
 from fdvv.task.score import Objective, Score
 
@@ -98,15 +97,6 @@ class OptimizePair(Message):
     answer: Answer | None
 
 
-class OptimizeStrip(Message):
-    """The strip of temporal pointing, in pixels from where bullets start."""
-
-    pixels: int
-    zone_px: int
-    zone_half_px: int
-    speed_px_s: float
-
-
 class OptimizeSimulated(Message):
     """A simulated person who plays: how far, and whether still at it. about : the person."""
 
@@ -149,7 +139,7 @@ class OptimizeDetail(Message):
     rules: list[str]
     objectives: list[Objective]
     rounds: int
-    strip: OptimizeStrip
+    strip: PlayStrip
     trials: list[OptimizeTrial]
     pairs: list[OptimizePair]
     start: dict[str, float] | None
@@ -190,13 +180,6 @@ def run_row(run: int, session: Optimization) -> OptimizeRow:
         made=setup.created,
         problem="",
     )
-
-
-def strip_of(setup: OptimizeSetup) -> OptimizeStrip:
-    """Return the strip of a run's task; that of temporal pointing where it is another task."""
-    task = pointing_of(setup) if playable(setup) else TemporalPointing()
-    half_px = int(task.zone_px // 2)
-    return OptimizeStrip(round(task.strip_px), round(task.target_px), half_px, task.speed_px_s)
 
 
 def trial_list(session: Optimization) -> list[OptimizeTrial]:
@@ -256,7 +239,7 @@ def detail(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeDetail:
             [one.text for one in space.constraints],
             list(session.problem.objectives),
             pointing_of(setup).rounds if playable(setup) else 0,
-            strip_of(setup),
+            strip_of(pointing_of(setup) if playable(setup) else TemporalPointing()),
             trial_list(session),
             pair_list(session),
             session.start,

@@ -12,17 +12,19 @@ from fdvv.errors import FdvvError, InputError
 from fdvv.studio.api.study_steps import text_in
 from fdvv.studio.contract import Empty, Message, call, error_line, message_of, watch_channel
 from fdvv.studio.devices import available_devices, device_names
-from fdvv.studio.studies import TRIED, TWIN, Studies, StudiesChanged, StudyState, state_of
+from fdvv.studio.studies import TRIED, TWIN, AnyStudy, Studies, StudiesChanged, StudyState, state_of
 from fdvv.studio.studio import Studio
+from fdvv.studio.timing_admin import people_of, standing_text, timing_sentence
 from fdvv.study.admin.operator_view import PersonView, operator_view
 from fdvv.study.admin.review import review_study
 from fdvv.study.admin.standing import Kind, draft_sentence, standing
-from fdvv.study.admin.study import Study
 from fdvv.study.analysis.analyse import analyse
 from fdvv.study.analysis.read_answers import read_answers
 from fdvv.study.analysis.report import study_html
 from fdvv.study.files.counts import COUNTED
 from fdvv.study.files.people import EVERYBODY
+from fdvv.timing.files.progress import PersonProgress
+from fdvv.timing.files.study import TimingStudy
 
 Name = Annotated[str, Meta(max_length=60)]
 Line = Annotated[str, Meta(max_length=1000)]
@@ -185,7 +187,7 @@ ON_THE_TABLE = ("host", "serial:")
 """How devices are called that keep the labels of a trial ready side by side."""
 
 
-def study_row(name: str, study: Study) -> StudiesRow:
+def study_row(name: str, study: AnyStudy) -> StudiesRow:
     plan = study.plan
     title = text_in(plan.title, plan.languages[0])
     return StudiesRow(name, title, plan.kind, state_of(study), len(study.people()), plan.people, "")
@@ -199,13 +201,12 @@ def detail(studies: Studies, ask: StudiesAsk) -> StudiesDetail:
 def study_detail(studies: Studies, name: str) -> StudiesDetail:
     study = studies.study(name)
     frozen = study.frozen
-    people = operator_view(study, time.time()).people if frozen else ()
     paused = study.paused
     return StudiesDetail(
         study_row(name, study),
         study.fingerprint,
         when(frozen.when) if frozen else "",
-        [_person(one, studies.screen(name, one.person) is not None, one.person in paused) for one in people],
+        _people(studies, name, study) if frozen else [],
         studies.waiting(name),
         EVERYBODY in paused,
         [history_line(record) for record in study.history() if COUNTED not in record],
@@ -213,6 +214,21 @@ def study_detail(studies: Studies, name: str) -> StudiesDetail:
         frozen is not None and (study.sessions_open or not study.needs_run_key),
         list(study.code_alone) if frozen else [],
     )
+
+
+def _people(studies: Studies, name: str, study: AnyStudy) -> list[StudiesPerson]:
+    paused = study.paused
+    here = {one.name for one in study.people() if studies.screen(name, one.name)}
+    if isinstance(study, TimingStudy):
+        return [_timed_person(one, one.person in here, one.person in paused) for one in people_of(study)]
+    people = operator_view(study, time.time()).people
+    return [_person(one, one.person in here, one.person in paused) for one in people]
+
+
+def _timed_person(one: PersonProgress, here: bool, paused: bool) -> StudiesPerson:
+    note = SIMULATED if one.simulated else ""
+    where = standing_text(one)
+    return StudiesPerson(one.person, one.language, where, one.done, one.trials, here, paused, note)
 
 
 def history_line(record: Mapping[str, Any]) -> str:
@@ -250,6 +266,8 @@ TEMPLATE_DESCRIPTIONS = {
     "preference": "which of two is liked better",
     "mushra": "several are rated beside a reference, itself and anchors hidden among them",
     "staircase": "how small a difference is just felt",
+    "timing": "which button times a press best, after a search for one's own; the paper's",
+    "tapping": "how fast one can tap on each",
 }
 
 
@@ -291,6 +309,8 @@ def rehearse(studies: Studies, ask: StudiesAsk) -> StudiesSeat:
 @call("studies.standing")
 def study_standing(studies: Studies, ask: StudiesAsk) -> StudiesStanding:
     study = studies.study(ask.study)
+    if isinstance(study, TimingStudy):
+        return StudiesStanding(*timing_sentence(study))
     if study.frozen is None:
         return StudiesStanding(*draft_sentence(study.plan, review_study(study.folder).problems))
     return StudiesStanding(*standing(study))
@@ -332,14 +352,14 @@ def verify(studies: Studies, ask: StudiesAsk) -> StudiesVerified:
 
 @call("studies.unseal")
 def unseal(studies: Studies, ask: StudiesUnseal) -> StudiesUnsealed:
-    answers = studies.study(ask.study).unseal(ask.passphrase, ask.who, ask.why)
+    answers = studies.labelled(ask.study).unseal(ask.passphrase, ask.who, ask.why)
     studies.announce(ask.study)
     return StudiesUnsealed(len(answers.person), int((~answers.counts).sum()), UNSEALED)
 
 
 @call("studies.report")
 def report(studies: Studies, ask: StudiesAsk) -> StudiesReport:
-    study = studies.study(ask.study)
+    study = studies.labelled(ask.study)
     if state_of(study) != "unsealed":
         raise InputError("study", ask.study, "is sealed", "unseal it when the last person is done")
     found = analyse(read_answers(study.folder / UNSEALED / ANSWERS), study.plan)

@@ -93,7 +93,7 @@ class StudyScreen(SeatedScreen[Participant]):
 
     def enrolled(self, name: str, language: str) -> tuple[Participant, str]:
         """Enrol a new person in a study; return their code too. InputError, OSError."""
-        study = self._studies.study(name)
+        study = self._studies.labelled(name)
         stage = self._stages.first(study)
         participant, code = Participant.enrol(study, language, stage)
         self._stage = stage
@@ -101,7 +101,7 @@ class StudyScreen(SeatedScreen[Participant]):
 
     def resumed(self, name: str, person: str, code: str) -> Participant:
         """Resume the session of a person. InputError, OSError."""
-        study = self._studies.study(name)
+        study = self._studies.labelled(name)
         stage = self._stages.first(study)
         participant = Participant.resume(study, person, code, stage)
         self._stage = stage

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from fdvv.errors import InputError
@@ -14,8 +15,9 @@ from fdvv.report.report import Section
 from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.studies import TEMPLATE_DESCRIPTIONS, Name, StudiesAsk, Text
 from fdvv.studio.contract import Empty, Message, Offer, call, error_line
-from fdvv.studio.studies import Studies
+from fdvv.studio.studies import AnyStudy, Studies
 from fdvv.studio.studio import Studio
+from fdvv.studio.timing_admin import study_problems, text_problems, timing_sections
 from fdvv.study.admin.preview import preview_sections
 from fdvv.study.admin.review import review_study
 from fdvv.study.admin.study import Study
@@ -27,6 +29,8 @@ from fdvv.study.plan.plan_file import (
     template_text,
     write_template,
 )
+from fdvv.timing.files.study import TimingStudy
+from fdvv.timing.plan.plan_file import TEMPLATE_NAMES, timing_template
 
 
 class StudiesOffers(Message):
@@ -88,12 +92,20 @@ def preview_section(one: Section) -> StudiesSection:
 
 @call("studies.offers")
 def offers(_studio: Studio, _ask: Empty) -> StudiesOffers:
-    return StudiesOffers([Offer(name, TEMPLATE_DESCRIPTIONS.get(name, "")) for name in template_names()])
+    names = (*template_names(), *TEMPLATE_NAMES)
+    return StudiesOffers([Offer(name, TEMPLATE_DESCRIPTIONS.get(name, "")) for name in names])
 
 
 @call("studies.create")
 def create(studio: Studio, ask: StudiesCreate) -> StudiesAsk:
-    text, studies = template_text(ask.template), studio.part(Studies)  # a wrong name leaves no folder
+    studies = studio.part(Studies)
+    if ask.template in TEMPLATE_NAMES:
+        with tempfile.TemporaryDirectory() as building:
+            path = timing_template(ask.template, Path(building), ask.name)
+            TimingStudy.declare(studies.path(ask.name), path)
+        studies.announce(ask.name)
+        return StudiesAsk(ask.name)
+    text = template_text(ask.template)  # a wrong name leaves no folder
     if ask.button is not None:
         text = with_button(text, studio.catalog.model(ask.button).name, OWN)
     with tempfile.TemporaryDirectory() as building:
@@ -134,25 +146,35 @@ def plan(studies: Studies, ask: StudiesAsk) -> StudiesPlan:
 def write(studies: Studies, ask: StudiesWrite) -> StudiesPlan:
     study = studies.study(ask.study)
     if not ask.keep:
-        return StudiesPlan(ask.study, ask.text, _problems(ask.text), [])
+        return StudiesPlan(ask.study, ask.text, _problems(study, ask.text), [])
     study.change_plan(ask.text)
     studies.announce(ask.study)
     return _reviewed_plan(ask.study, study)
 
 
-def _problems(text: str) -> tuple[str, ...]:
+def _problems(study: AnyStudy, text: str) -> tuple[str, ...]:
     try:
+        if isinstance(study, TimingStudy):
+            return text_problems(text)
         return plan_problems(read_plan_text(text, STUDY_FILE))
     except InputError as error:
         return (error_line(error),)
 
 
-def _reviewed_plan(name: str, study: Study) -> StudiesPlan:
+def _reviewed_plan(name: str, study: AnyStudy) -> StudiesPlan:
     """Return a declaration with its preview, read with all files it names."""
     text = (study.folder / STUDY_FILE).read_text(encoding="utf-8", errors="replace")
     try:
-        look = review_study(study.folder)
+        problems, sections = _reviewed(study)
     except InputError as error:
         return StudiesPlan(name, text, (error_line(error),), [])
-    sections = [] if look.problems else [preview_section(one) for one in preview_sections(look)]
-    return StudiesPlan(name, text, look.problems, sections)
+    return StudiesPlan(name, text, problems, [preview_section(one) for one in sections])
+
+
+def _reviewed(study: AnyStudy) -> tuple[tuple[str, ...], Sequence[Section]]:
+    """Return what is wrong with a plan, and what it comes to where nothing is. InputError."""
+    if isinstance(study, TimingStudy):
+        problems = study_problems(study)
+        return problems, [] if problems else timing_sections(study.plan)
+    look = review_study(study.folder)
+    return look.problems, [] if look.problems else preview_sections(look)
