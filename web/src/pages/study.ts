@@ -4,15 +4,14 @@ import { mount, unmount } from "svelte";
 import type { Page } from "../app/types";
 import { seat } from "../net";
 import { onCleanup } from "../ui";
-import StudyScreen from "./study/StudyScreen.svelte";
-import { StudySession } from "./study/session";
+import StudyEntry from "./study/StudyEntry.svelte";
 import "./study/study.css";
 
 export const page: Page = {
   title: "Study",
   mount(target, { id, query }) {
-    const session = new StudySession(id, seat() || (query.get("seat") ?? ""));
-    const made = mount(StudyScreen, { target, props: { session } });
+    const props = { study: id, seat: seat() || (query.get("seat") ?? "") };
+    const made = mount(StudyEntry, { target, props });
     onCleanup(() => void unmount(made));
   },
 };

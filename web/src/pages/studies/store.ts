@@ -2,8 +2,10 @@
 
 import { Followed } from "../../app/followed";
 import { call, type LiveChannel, live } from "../../net";
-import type { StudiesDetail, StudiesStanding } from "../../net/messages";
+import type { StudiesDetail, StudiesStanding, TimingPerson } from "../../net/messages";
 import { onCleanup, type Signal, signal, tell } from "../../ui";
+
+const TIMED: readonly string[] = ["timing", "tapping"];
 
 export class StudyStore extends Followed<StudiesDetail> {
   /** Whether the text of the plan has changes that are not kept. */
@@ -13,6 +15,11 @@ export class StudyStore extends Followed<StudiesDetail> {
   /** How far it is, in a sentence. */
   readonly standing: Signal<StudiesStanding | null> = signal<StudiesStanding | null>(null);
 
+  /** Of a timing study: how far each person is, by name. */
+  readonly progress: Signal<ReadonlyMap<string, TimingPerson>> = signal<ReadonlyMap<string, TimingPerson>>(
+    new Map(),
+  );
+
   constructor(readonly study: string) {
     super(async () => {
       const [detail, standing] = await Promise.all([
@@ -20,6 +27,10 @@ export class StudyStore extends Followed<StudiesDetail> {
         call("studies.standing", { study }),
       ]);
       this.standing.set(standing);
+      if (TIMED.includes(detail.row.kind) && detail.row.state !== "draft") {
+        const { people } = await call("timing.progress", { study });
+        this.progress.set(new Map(people.map((one) => [one.person, one])));
+      }
       return detail;
     });
     watchStudies((changed) => (changed === null || changed === study) && void this.refresh());

@@ -279,8 +279,17 @@ export function word(
   key: Word,
   places: Readonly<Record<string, string | number>> = {},
 ): string {
-  const words = ALL[language] ?? ALL[language.split("-")[0] ?? ""] ?? EN;
-  return words[key].replace(/\{(\w+)\}/g, (_, name: string) => String(places[name] ?? ""));
+  return filled(chosen(ALL, language, EN)[key], places);
+}
+
+/** Return what there is of a language, or of the one without its country, else the other one. */
+export function chosen<T>(all: Readonly<Record<string, T>>, language: string, other: T): T {
+  return all[language] ?? all[language.split("-")[0] ?? ""] ?? other;
+}
+
+/** Fill in the places of a text. */
+export function filled(text: string, places: Readonly<Record<string, string | number>>): string {
+  return text.replace(/\{(\w+)\}/g, (_, name: string) => String(places[name] ?? ""));
 }
 
 /** Return what a language is called by those who speak it. */
