@@ -16,6 +16,7 @@ from playwright.sync_api import expect
 from tests.browser.accessibility import audit
 from tests.browser.boxes import faults, record
 from tests.browser.dropping import drop
+from tests.browser.timing_screens import PRESS_WHEN_SEEN, Timer, timing_text
 from tests.studio.running import RunningStudio
 from tests.support.buttons import write_cycle
 
@@ -273,6 +274,81 @@ def test_a_study_is_whole_with_its_form_and_before_it_is_frozen(look: tuple[Page
         expect(page.get_by_role("alertdialog")).to_be_visible()
 
     assert at_every_size(page) + at_every_size(page, asked) + taken(logged) == []
+
+
+def asked(page: Page, name: str, /, **question: object) -> dict[str, object]:
+    """Ask the studio as its page does."""
+    found = page.evaluate(
+        """async ([name, question]) => (await fetch(`./api/studies.${name}`, {method: "POST",
+        headers: {"content-type": "application/json"}, body: JSON.stringify(question)})).json()""",
+        [name, question],
+    )
+    assert "error" not in found, found
+    return dict(found)
+
+
+def seated(page: Page, study: str, text: str) -> Timer:
+    """Return somebody who sat down in a new timing study, before the first page of it."""
+    asked(page, "create", name=study, template="timing")
+    asked(page, "write", study=study, text=text, keep=True)
+    asked(page, "freeze", study=study, passphrase="correct horse battery staple")
+    seat = asked(page, "seat", study=study)["seat"]
+    timer = Timer(page.context.new_page())
+    record(timer.page)
+    timer.page.goto(f"{page.url.partition('#')[0].partition('?')[0]}?seat={seat}#/study/{study}")
+    timer.page.click(".study-main .button.main")
+    timer.page.click(".study-main .button.main")  # the card is noted
+    timer.page.evaluate(PRESS_WHEN_SEEN)
+    return timer
+
+
+@pytest.mark.timeout(300)
+def test_the_screens_of_a_timing_study_are_whole(look: tuple[Page, list[str]]) -> None:
+    page, logged = look
+    go(page, "home")
+    timer = seated(page, "trained", timing_text(1, 2, gap_days=7.0))
+    screen = timer.page
+    screen.wait_for_selector("h1:has-text('Before we begin')")
+    found = at_every_size(screen)
+    timer.agree()
+    screen.wait_for_selector(".timed .button.main:focus")
+    found += at_every_size(screen)
+    timer.begin()
+    screen.keyboard.press("Escape")
+    screen.wait_for_selector(".line >> text=You paused")
+    found += at_every_size(screen)
+    screen.keyboard.press("Enter")
+    screen.wait_for_selector("h1:has-text('The first part is done')")
+    found += at_every_size(screen)
+    go(page, "studies/trained")
+    expect(page.locator("tr[data-person=P01]")).to_contain_text("due from")
+    found += at_every_size(page)
+    screen.close()
+    assert found + taken(logged) == []
+
+
+@pytest.mark.timeout(300)
+def test_what_lies_on_the_table_is_asked_for_on_a_whole_screen(look: tuple[Page, list[str]]) -> None:
+    page, logged = look
+    go(page, "home")
+    timer = seated(page, "untrained", timing_text(0, 2))
+    timer.agree()
+    while not timer.page.locator(".study-sheet[data-key=F13]").count():
+        timer.prepare()
+        at = timer.page.inner_text(".study-at")
+        timer.begin()
+        timer.page.wait_for_selector(f".study-at:not(:has-text('{at}'))", timeout=30_000)
+    found = at_every_size(timer.page)
+
+    def mistaken(_page: Page) -> None:
+        timer.hit("Space")
+        expect(timer.page.locator(".other")).to_contain_text("does not count")
+
+    found += at_every_size(timer.page, mistaken)
+    timer.place()
+    found += at_every_size(timer.page)
+    timer.page.close()
+    assert found + taken(logged) == []
 
 
 @pytest.mark.parametrize("kind", PLANTED)
