@@ -273,6 +273,20 @@ def test_the_operator_sees_how_far_and_when_but_no_condition(
     assert ask("studies.verify")["problems"] == []
 
 
+def test_what_the_codes_hid_is_opened_for_the_key_holder_and_reported(
+    study: TimingStudy, screen: Screen, ask: Callable[..., Any]
+) -> None:
+    for _ in range(4):
+        screen.trial()
+    found = ask("studies.unseal", passphrase=PASSPHRASE, who="A", why="a test")
+    assert (found["rows"], found["excluded"]) == (3, 0)
+    assert ask("studies.detail")["row"]["state"] == "unsealed"
+    report = ask("studies.report")
+    assert report["name"] == f"{NAME}-report.html"
+    assert all(name in report["html"] for name in ("MX Red", "MX Brown", "own keyboard", study.fingerprint))
+    assert ask("studies.standing")["sentence"] == "The study is open; it claims nothing, so read its report."
+
+
 def test_a_pause_of_the_operator_begins_no_trial_and_loses_no_round(
     study: TimingStudy, screen: Screen, ask: Callable[..., Any]
 ) -> None:

@@ -6,7 +6,12 @@ import time
 
 from fdvv.report.report import Section, Table
 from fdvv.study.admin.standing import Kind
+from fdvv.study.files.layout import UNSEALED
 from fdvv.study.plan.plan_file import STUDY_FILE
+from fdvv.timing.analysis.analyse import TimingAnalysis, analyse_timing
+from fdvv.timing.analysis.report import timing_html
+from fdvv.timing.analysis.scores import SCORES_FILE, read_scores
+from fdvv.timing.analysis.sentences import verdict_sentence
 from fdvv.timing.files.progress import PersonProgress, timing_progress
 from fdvv.timing.files.study import TimingStudy, button_problems
 from fdvv.timing.plan.plan import TimingPlan
@@ -46,7 +51,7 @@ def timing_sentence(study: TimingStudy) -> tuple[str, Kind]:
     if study.frozen is None:
         return _draft_sentence(study)
     if any("unsealed" in record for record in study.history()):
-        return "The study is open: save its report.", ""
+        return _found_sentence(study)
     people, planned = [one for one in people_of(study) if one.phase != "out"], study.plan.people
     done = sum(one.phase == "done" for one in people)
     if done >= planned:
@@ -55,6 +60,25 @@ def timing_sentence(study: TimingStudy) -> tuple[str, Kind]:
     waiting = sum(one.phase == "waiting" for one in people)
     more = [f"{count} {what}" for count, what in ((waiting, "wait"), (due, "due to come back")) if count]
     return f"{done} of {planned} participants done{''.join(f', {one}' for one in more)}.", ""
+
+
+def _found_sentence(study: TimingStudy) -> tuple[str, Kind]:
+    found = analysed(study)
+    if study.plan.claim is None:
+        return "The study is open; it claims nothing, so read its report.", ""
+    sentence = verdict_sentence(found)
+    return f"{sentence[0].upper()}{sentence[1:]}", "good" if found.holds else "warning"
+
+
+def analysed(study: TimingStudy) -> TimingAnalysis:
+    """Return what an unsealed study found. InputError."""
+    return analyse_timing(read_scores(study.folder / UNSEALED / SCORES_FILE, study.plan))
+
+
+def report_html(study: TimingStudy, name: str) -> str:
+    """Return the report of an unsealed study. InputError, BuildError."""
+    origin = f"Study {name}, frozen as {study.fingerprint}."
+    return timing_html(analysed(study), study.folder / UNSEALED, origin)
 
 
 def _draft_sentence(study: TimingStudy) -> tuple[str, Kind]:

@@ -14,7 +14,7 @@ from fdvv.studio.contract import Empty, Message, call, error_line, message_of, w
 from fdvv.studio.devices import available_devices, device_names
 from fdvv.studio.studies import TRIED, TWIN, AnyStudy, Studies, StudiesChanged, StudyState, state_of
 from fdvv.studio.studio import Studio
-from fdvv.studio.timing_admin import people_of, standing_text, timing_sentence
+from fdvv.studio.timing_admin import people_of, report_html, standing_text, timing_sentence
 from fdvv.study.admin.operator_view import PersonView, operator_view
 from fdvv.study.admin.review import review_study
 from fdvv.study.admin.standing import Kind, draft_sentence, standing
@@ -23,6 +23,7 @@ from fdvv.study.analysis.read_answers import read_answers
 from fdvv.study.analysis.report import study_html
 from fdvv.study.files.counts import COUNTED
 from fdvv.study.files.people import EVERYBODY
+from fdvv.timing.analysis.unseal import unseal_timing
 from fdvv.timing.files.progress import PersonProgress
 from fdvv.timing.files.study import TimingStudy
 
@@ -352,16 +353,22 @@ def verify(studies: Studies, ask: StudiesAsk) -> StudiesVerified:
 
 @call("studies.unseal")
 def unseal(studies: Studies, ask: StudiesUnseal) -> StudiesUnsealed:
-    answers = studies.labelled(ask.study).unseal(ask.passphrase, ask.who, ask.why)
+    study, about = studies.study(ask.study), (ask.passphrase, ask.who, ask.why)
+    if isinstance(study, TimingStudy):
+        counts = [row.counts for row in unseal_timing(study, *about).rows]
+    else:
+        counts = study.unseal(*about).counts.tolist()
     studies.announce(ask.study)
-    return StudiesUnsealed(len(answers.person), int((~answers.counts).sum()), UNSEALED)
+    return StudiesUnsealed(len(counts), counts.count(False), UNSEALED)
 
 
 @call("studies.report")
 def report(studies: Studies, ask: StudiesAsk) -> StudiesReport:
-    study = studies.labelled(ask.study)
+    study = studies.study(ask.study)
     if state_of(study) != "unsealed":
         raise InputError("study", ask.study, "is sealed", "unseal it when the last person is done")
+    if isinstance(study, TimingStudy):
+        return StudiesReport(f"{ask.study}-report.html", report_html(study, ask.study))
     found = analyse(read_answers(study.folder / UNSEALED / ANSWERS), study.plan)
     footer = f"Study {ask.study}, frozen as {study.fingerprint}."
     return StudiesReport(f"{ask.study}-report.html", study_html(found, study.plan, footer))
