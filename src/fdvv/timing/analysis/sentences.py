@@ -66,7 +66,7 @@ def next_sentence(found: TimingAnalysis) -> str:
     scores = found.scores
     people, planned = len(scores.people), scores.plan.people
     if found.simulated:
-        return "Nothing here is evidence. Declare the study anew, freeze it, and invite people in the studio."
+        return "Nothing here is evidence. Declare the study anew, freeze it, and invite people."
     if people < planned:
         return f"{people} of {planned} planned people are in: this is a look in between, not the result."
     if found.holds:

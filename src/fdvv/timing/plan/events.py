@@ -62,7 +62,10 @@ class SwitchPlaced(_Event, frozen=True):
 
 
 class TimedBegun(_Event, frozen=True):
-    """A trial was begun, or went on, for the given time."""
+    """A trial was begun, or went on.
+
+    attempt : 1, and one more each time it went on or was begun again. on : what is pressed.
+    """
 
     word: ClassVar[str] = "begun"
     number: int
@@ -73,8 +76,9 @@ class TimedBegun(_Event, frozen=True):
 class RoundKept(_Event, frozen=True):
     """One round: a press of pointing, or a second of tapping.
 
-    round : from 1, of those that count. target_s : when the target was seen; None of tapping.
-    activations_s : when the key went down, rising. Both on the clock of timing.source.
+    attempt : of the trial, as it was begun. round : from 1, of those that count. target_s : when the target
+    was seen; None of tapping. activations_s : when the key went down, rising. Both on the clock of
+    timing.source.
     """
 
     word: ClassVar[str] = "round"
