@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from fdvv.errors import DeviceError
 from fdvv.live.press import LiveEventKind, LivePress
-from fdvv.live.press_subject import model_subject
-from fdvv.live.run import LiveFrame, LiveRun, RealTimeClock
+from fdvv.live.press_subject import PressSubject, model_subject, program_subject
+from fdvv.live.press_trace import PressTrace
+from fdvv.live.run import LiveFrame, LiveRun, RealTimeClock, stirs
 from fdvv.model.file import load_builtin
+from fdvv.program.library import MAKERS, load_shipped
+from fdvv.protocol.tables import Mode
 
 
 class Seen:
@@ -42,10 +47,21 @@ class Seen:
     def kinds(self) -> list[LiveEventKind]:
         return [event.kind for frame in self.frames for event in frame.events]
 
+    def wait_until_still(self) -> float:
+        """Wait until no frame has come for 0.3 s; return the simulated time of the last tick."""
+        count, pause = -1, threading.Event()
+        while count != len(self.frames):
+            count = len(self.frames)
+            pause.wait(0.3)
+        return float(self.frames[-1].columns.t_s[-1])
 
-def start_run(seen: Seen, silent_s: float = 60.0) -> LiveRun:
-    press = LivePress(model_subject(load_builtin("mx-clear")))
-    return LiveRun(press, seen.show, seen.add_line, seen.add_line, silent_s=silent_s)
+
+def start_run(
+    seen: Seen, silent_s: float = 60.0, rest_after_s: float = math.inf, subject: PressSubject | None = None
+) -> LiveRun:
+    press = LivePress(subject or model_subject(load_builtin("mx-clear")))
+    show, line = seen.show, seen.add_line
+    return LiveRun(press, show, line, line, silent_s=silent_s, rest_after_s=rest_after_s)
 
 
 def test_time_that_cannot_be_kept_up_with_is_dropped_and_counted() -> None:
@@ -141,3 +157,93 @@ def test_an_impossible_request_is_reported_and_the_rest_goes_on() -> None:
     seen.wait_for(lambda: len(seen.frames) > count)
     run.close()
     assert seen.lines == ["it cannot be done"]
+
+
+def test_where_nothing_goes_on_time_stops_until_something_is_asked() -> None:
+    seen, began_s = Seen(), time.monotonic()
+    run = start_run(seen, rest_after_s=0.2)
+    run.ask(lambda press: press.lead(-0.3))  # above the cap
+    seen.wait_for(lambda: seen.frames)
+    last_s = seen.wait_until_still()
+    count, before = len(seen.frames), seen.frames[-1]
+    run.here()
+    time.sleep(0.2)
+    assert len(seen.frames) == count, "a page that watches is no reason to go on"
+    run.ask(lambda press: press.lead(8.0), 5)
+    seen.wait_for(lambda: LiveEventKind.ACTUATION in seen.kinds)
+    run.close()
+    passed_s = time.monotonic() - began_s
+    first = seen.frames[count]
+    assert first.columns.t_s[0] - last_s == pytest.approx(1e-4), "the rest was not simulated"
+    assert first.columns.finger_mm[0] == pytest.approx(before.columns.finger_mm[-1], abs=0.05), "no jump"
+    assert first.dropped_s == before.dropped_s, "it was not too slow either"
+    assert 0.2 < first.zero_s - before.zero_s < passed_s, "simulated time still makes a time of the clock"
+    assert first.sequence in (0, 5)
+    assert seen.frames[-1].sequence == 5
+
+
+def test_a_finger_that_holds_the_cap_is_simulated_on() -> None:
+    seen = Seen()
+    run = start_run(seen, rest_after_s=0.2)
+    run.ask(lambda press: press.lead(8.0))
+    seen.wait_for(lambda: LiveEventKind.ACTUATION in seen.kinds)
+    held_s = seen.frames[-1].columns.t_s[-1]
+    seen.wait_for(lambda: seen.frames[-1].columns.t_s[-1] > held_s + 0.6)
+    run.close()
+
+
+def test_a_trace_is_replayed_to_its_end_and_then_time_stops() -> None:
+    seen = Seen()
+    run = start_run(seen, rest_after_s=0.2)
+    time_s = np.linspace(0.0, 1.6, 161)
+    late = PressTrace("late", "", time_s, np.where(time_s > 1.2, 3.0, 0.0))
+    run.ask(lambda press: press.replay(late))
+    seen.wait_for(lambda: LiveEventKind.PRESSED in seen.kinds)
+    assert seen.wait_until_still() > 1.6
+    run.close()
+
+
+def test_a_rest_that_a_hidden_page_ends_lifts_the_finger() -> None:
+    seen = Seen()
+    run = start_run(seen, rest_after_s=0.2)
+    run.ask(lambda press: press.lead(-0.3))
+    seen.wait_for(lambda: seen.frames)
+    last_s = seen.wait_until_still()
+    run.pause()
+    time.sleep(0.2)
+    run.here()
+    seen.wait_for(lambda: seen.frames[-1].columns.t_s[-1] > last_s + 0.1)
+    run.close()
+    assert seen.frames[-1].columns.finger_mm[-1] < -1.0
+
+
+def test_a_program_that_acts_by_time_alone_never_rests() -> None:
+    seen = Seen()
+    run = start_run(seen, rest_after_s=0.2, subject=program_subject(load_shipped("returning-later")))
+    seen.wait_for(lambda: seen.frames and seen.frames[-1].columns.t_s[-1] > 0.8)
+    run.close()
+
+
+def test_programs_that_act_by_time_alone_are_known() -> None:
+    timed = {name for name in MAKERS if program_subject(load_shipped(name)).has_timers}
+    assert timed == {"dwell-ticks", "fast-tapping", "returning-later"}
+    assert not model_subject(load_builtin("mx-clear")).has_timers
+
+
+def test_a_coil_that_cools_is_simulated_until_the_whole_force_is_back() -> None:
+    press = LivePress(model_subject(load_builtin("mx-clear")))
+    columns, _ = press.advance(0.02)
+    still = LiveFrame(columns, (), 0, 0.0, 0.0, 0.0)
+    warm = replace(still, columns=replace(columns, mode=np.full_like(columns.mode, Mode.DERATED)))
+    assert (stirs(still), stirs(warm)) == (False, True)
+
+
+def test_a_press_that_nobody_has_touched_rests_sooner() -> None:
+    seen = Seen()
+    run = start_run(seen, rest_after_s=3600.0)
+    seen.wait_for(lambda: seen.frames)
+    seen.wait_until_still()
+    run.here()
+    run.ask(lambda press: press.lead(8.0))
+    seen.wait_for(lambda: LiveEventKind.ACTUATION in seen.kinds)
+    run.close()

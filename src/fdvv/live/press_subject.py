@@ -87,6 +87,7 @@ class PressSubject:
     states : names by the number that the firmware tells.
     signals : what the vibration board plays, by slot.
     press, release : the force as it is meant in the start state.
+    has_timers : it does something by time alone, with nobody at it.
     """
 
     name: str
@@ -106,6 +107,7 @@ class PressSubject:
     press: ProgramSurface
     release: ProgramSurface
     loop: ForceLoopGains | None = None
+    has_timers: bool = False
 
     @property
     def displacement_mm(self) -> FloatArray:
@@ -254,12 +256,19 @@ def _subject(
         program.signals,
         *_surfaces(program),
         tuning.loop,
+        _has_timers(program),
     )
 
 
 def _surfaces(program: Program) -> tuple[ProgramSurface, ProgramSurface]:
     start = program.state(program.start)
     return program.surface(start.press), program.surface(start.release)
+
+
+def _has_timers(program: Program) -> bool:
+    ways = (way for state in program.states for way in state.transitions)
+    waits = any(When.AFTER in {one.when for one in way.conditions} for way in ways)
+    return waits or any(state.repeat_ms or state.bias_ms for state in program.states)
 
 
 def _marks(program: Program) -> tuple[PressMark, ...]:

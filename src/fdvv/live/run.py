@@ -7,8 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from threading import Condition, Thread
 
+import numpy as np
+
 from fdvv.errors import FdvvError
 from fdvv.live.press import LiveEvent, LivePress
+from fdvv.protocol.tables import Mode
 from fdvv.twin.interactive import InteractiveTicks
 
 LONGEST_s = 0.1
@@ -39,6 +42,15 @@ STEP_s = 0.004
 
 FRAME_s = 1 / 60
 
+REST_AFTER_s = 5.0
+"""Time stops where nothing happened for so long; pictures of the last seconds show nothing either."""
+
+FRESH_s = 1.0
+"""The same of a press that nobody has touched yet: no picture shows a past."""
+
+STILL_mm = 0.02
+"""A cap that moves by less in a frame is not seen to move."""
+
 SILENT_s = 3.0
 """A page that is silent for this long is taken as closed."""
 
@@ -65,6 +77,15 @@ class LiveFrame:
     zero_s: float
 
 
+def stirs(seen: LiveFrame) -> bool:
+    """Return whether something went on: an event, a touch, a motion of the cap, cooling before more force."""
+    columns = seen.columns
+    if seen.events or not columns.t_s.size:
+        return bool(seen.events)
+    moved = columns.force_cN.any() or np.ptp(columns.displacement_mm) > STILL_mm
+    return bool(moved or columns.mode[-1] == Mode.DERATED)
+
+
 class LiveRun:
     """Runs a live press while a page watches.
 
@@ -76,9 +97,13 @@ class LiveRun:
     failed : called once with one line if the press cannot go on.
     clock : monotonic, s.
     silent_s : a page that is silent for this long is taken as closed.
+    rest_after_s : time stops after so long without input, touch, motion and events, after FRESH_s if there
+        were none yet.
 
     It runs until close(), pauses with the finger lifted when no page watches, and resumes with the next
-    call. All methods may be called from any thread.
+    call. It also stops where nothing goes on, until something is asked: a page that is left open costs
+    nothing. A program that does something by time alone never stops. All methods may be called from any
+    thread.
     """
 
     def __init__(
@@ -89,13 +114,16 @@ class LiveRun:
         failed: Callable[[str], None],
         clock: Callable[[], float] = time.monotonic,
         silent_s: float = SILENT_s,
+        rest_after_s: float = REST_AFTER_s,
     ) -> None:
         self._press, self._show, self._clock, self._silent_s = press, show, clock, silent_s
+        self._rest_after_s = rest_after_s
         self._refused, self._failed = refused, failed
         self._changed = Condition()
         self._requests: list[Callable[[LivePress], None]] = []
         self._sequence, self._over, self._looking = 0, False, True
         self._dropped_s, self._shown_sequence = 0.0, 0
+        self._stirred_s = clock() + FRESH_s - rest_after_s
         self._heard_s = clock()
         self._thread = Thread(target=self._run, name="live press", daemon=True)
         self._thread.start()
@@ -132,19 +160,24 @@ class LiveRun:
     def _run(self) -> None:
         try:
             while not self._over:
-                self._look()
+                rests = self._look()
                 with self._changed:
-                    self._changed.wait_for(lambda: self._over or self._looking)
+                    if rests:
+                        self._changed.wait_for(lambda: self._over or self._requests or not self._looking)
+                    else:
+                        self._changed.wait_for(lambda: self._over or self._looking)
+                        self._stirred_s = self._clock()  # the finger is on its way up
         except FdvvError as error:
             self._failed(str(error))
         except Exception:
             self._failed("the live press failed; the studio's terminal tells why")
             raise
 
-    def _look(self) -> None:
-        """Simulate in real time while a page watches; then lift the finger."""
+    def _look(self) -> bool:
+        """Simulate in real time until it rests; without a page, lift the finger. Return whether it rests."""
         pace, gathered = RealTimeClock(self._clock), _Gathered(self._clock())
-        while self._goes_on():
+        rests = False
+        while not rests and self._goes_on():
             due_s, lost_s = pace.due()
             self._dropped_s += lost_s
             gathered.led |= self._run_requests()
@@ -153,15 +186,25 @@ class LiveRun:
             gathered.zero_s = (pace.last_s or 0.0) - self._press.due_s
             if gathered.due(self._clock()):
                 gathered = self._frame(gathered)
+                rests = self._rests()
         if gathered.columns:
             self._frame(gathered)
-        self._press.lift()
+        if not rests:
+            self._press.lift()
+        return rests
 
     def _frame(self, gathered: _Gathered) -> _Gathered:
         """Show a frame, and start the next."""
         now_s = self._clock()
-        self._show(gathered.frame(self._shown_sequence, self._dropped_s, now_s))
+        seen = gathered.frame(self._shown_sequence, self._dropped_s, now_s)
+        if stirs(seen):
+            self._stirred_s = now_s
+        self._show(seen)
         return _Gathered(now_s)
+
+    def _rests(self) -> bool:
+        busy = self._press.replaying or self._press.subject.has_timers
+        return not busy and self._clock() - self._stirred_s > self._rest_after_s
 
     def _goes_on(self) -> bool:
         """Wait for the next step; return False once no page watches."""
@@ -180,6 +223,8 @@ class LiveRun:
                 work(self._press)
             except FdvvError as error:
                 self._refused(str(error))
+        if requests:
+            self._stirred_s = self._clock()
         return bool(requests)
 
 
