@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import jsonschema
+import numpy as np
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 from tools import make_programs, make_schema
 
 from fdvv.errors import InputError, ModelError
@@ -145,3 +147,19 @@ def test_a_surface_is_bilinear_and_holds_its_edges() -> None:
     assert surface.force_at_cN(1.0, 50.0) == 17.5
     assert surface.force_at_cN(9.0, 900.0) == 40.0
     assert surface.force_at_cN(-1.0, 0.0) == 0.0
+
+
+@given(
+    st.lists(st.integers(0, 400), min_size=1, max_size=6, unique=True).map(sorted),
+    st.integers(0, 2**32 - 1),
+    st.floats(-5.0, 500.0),
+)
+def test_a_surface_is_bilinear_along_a_stroke(velocities: list[int], seed: int, velocity_mm_s: float) -> None:
+    rng = np.random.default_rng(seed)
+    places = np.cumsum(rng.uniform(0.01, 1.0, 5))
+    table = rng.uniform(-50.0, 150.0, (len(velocities), places.size))
+    surface = Surface("any", tuple(places), tuple(map(tuple, table)), tuple(map(float, velocities)))
+    along = np.append(rng.uniform(-1.0, 6.0, 20), places)
+    columns = [np.interp(along, places, row) for row in table]
+    wanted = [np.interp(velocity_mm_s, velocities, column) for column in np.transpose(columns)]
+    np.testing.assert_allclose(surface.force_along_cN(along, velocity_mm_s), wanted, atol=1e-10)

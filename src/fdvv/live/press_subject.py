@@ -116,9 +116,8 @@ class PressSubject:
 
     def meant_cN(self, velocity_mm_s: float) -> tuple[FloatArray, FloatArray]:
         """Return press and release as they are meant in a press at a speed, (n,) each."""
-        places = self.displacement_mm.tolist()
         press, release = (
-            np.array([surface.force_at_cN(place, velocity_mm_s) for place in places])
+            surface.force_along_cN(self.displacement_mm, velocity_mm_s)
             for surface in (self.press, self.release)
         )
         return press, release

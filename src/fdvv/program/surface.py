@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -76,10 +77,19 @@ class Surface:
         forces: FloatArray = np.interp(displacement_mm, self.displacement_mm, self.force_cN[row])
         return forces
 
+    def force_along_cN(self, displacement_mm: FloatArray, velocity_mm_s: float = 0.0) -> FloatArray:
+        """Evaluate the surface along displacements at one velocity, in their shape."""
+        velocities = self.velocity_mm_s
+        fast = bisect_right(velocities, velocity_mm_s)
+        if fast in (0, len(velocities)):
+            return self.row_cN(max(0, fast - 1), displacement_mm)
+        slow_cN, fast_cN = (self.row_cN(row, displacement_mm) for row in (fast - 1, fast))
+        span_mm_s = velocities[fast] - velocities[fast - 1]
+        return slow_cN + (fast_cN - slow_cN) / span_mm_s * (velocity_mm_s - velocities[fast - 1])
+
     def force_at_cN(self, displacement_mm: float, velocity_mm_s: float = 0.0) -> float:
         """Evaluate the surface at one place."""
-        rows = [self.row_cN(i, np.array([displacement_mm]))[0] for i in range(len(self.velocity_mm_s))]
-        return float(np.interp(velocity_mm_s, self.velocity_mm_s, rows))
+        return float(self.force_along_cN(np.array([displacement_mm]), velocity_mm_s)[0])
 
 
 def check_name(name: str) -> None:
