@@ -15,6 +15,7 @@ from fdvv.errors import DeviceError, InputError
 from fdvv.live.binary_finger import BinaryFinger
 from fdvv.live.press import LivePress
 from fdvv.live.press_subject import model_subject
+from fdvv.live.run import FRESH_s
 from fdvv.protocol.tables import Fault
 from fdvv.study.plan.plan import Stimulus
 from fdvv.study.stimulus.renderer import stimulus_model
@@ -102,6 +103,15 @@ def test_a_screen_receives_travel_key_and_sound_and_nothing_else(stage: TwinRend
     assert max(frame.key for frame in screen.frames) == 1
     clicks = [click for frame in screen.frames for click in frame.clicks]
     assert [stage.sounds[click.sound].duration_s for click in clicks] == [0.016, 0.016]
+
+
+def test_a_label_that_nobody_presses_is_shown_on_whatever_it_hides(
+    stage: TwinRenderer, screen: Screen
+) -> None:
+    stage.show("A")
+    screen.wait_for(lambda: screen.frames)
+    begun_s = screen.frames[0].t_s[0]
+    screen.wait_for(lambda: screen.frames[-1].t_s[-1] > begun_s + FRESH_s + 0.3)
 
 
 def test_what_is_known_before_a_press_is_the_same_whichever_label_hides_what() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -192,6 +193,7 @@ class TwinRenderer(TwinLabels):
             lambda line: self._end(label, line),
             self._clock,
             self._silent_s,
+            math.inf,  # when frames come must not say which button it is: some programs could never rest
         )
 
     def _seen(self, label: str, press: LivePress, seen: LiveFrame) -> None:
