@@ -23,7 +23,7 @@ import sys
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from http.client import HTTPConnection
+from http.client import HTTPConnection, HTTPResponse
 from itertools import cycle
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -87,12 +87,19 @@ class Asker:
 
     def ask(self, name: str, question: Mapping[str, object]) -> dict[str, object]:
         """Return the answer of a call."""
-        self._connection.request("POST", f"/api/{name}", json.dumps(question), self._headers)
-        answer = self._connection.getresponse()
+        try:
+            answer = self._send(name, question)
+        except ConnectionError:  # the studio closes connections that ask nothing for seconds
+            self._connection.close()
+            answer = self._send(name, question)
         found: dict[str, object] = json.loads(answer.read())
         if answer.status != 200:
             raise RuntimeError(f"{name} was answered with {answer.status}: {found}")
         return found
+
+    def _send(self, name: str, question: Mapping[str, object]) -> HTTPResponse:
+        self._connection.request("POST", f"/api/{name}", json.dumps(question), self._headers)
+        return self._connection.getresponse()
 
 
 class Client(Thread):
