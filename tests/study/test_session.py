@@ -347,7 +347,7 @@ PAGE = Page(name="you", when="before", title={"en": "You"}, questions=QUESTIONS)
 
 def test_a_choice_is_kept_in_the_first_language_and_what_may_be_left_out_is_nothing() -> None:
     plan = plan_of(languages=("en", "de"))
-    kept = checked_page(plan, PAGE, {"hand": "rechts", "age": 30})
+    kept = checked_page(plan.languages, PAGE, {"hand": "rechts", "age": 30})
     assert kept == {"hand": "right", "age": 30.0, "remark": None}
 
 
@@ -366,4 +366,4 @@ def test_a_choice_is_kept_in_the_first_language_and_what_may_be_left_out_is_noth
 )
 def test_what_a_page_does_not_ask_may_not_be_answered(values: dict[str, Any]) -> None:
     with pytest.raises(InputError):
-        checked_page(plan_of(), PAGE, values)
+        checked_page(plan_of().languages, PAGE, values)
