@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.study.admin.operator_view import operator_view
 from fdvv.study.admin.study import Study
+from fdvv.study.plan.plan import Stimulus, Thresholds
+from fdvv.study.plan.threshold_trials import practice_change, trial_change
 from fdvv.study.plan.trial import TrialAnswer
 from fdvv.study.session.participant import Participant
+from fdvv.thresholds.belief import Trial
 from tests.support.study_people import (
     CONSENT,
     PASSPHRASE,
@@ -287,3 +292,52 @@ def test_the_operators_view_tells_where_everybody_is(tmp_path: Path) -> None:
     assert (second.kind, second.page) == ("page", "consent")
     one.close()
     two.close()
+
+
+def test_thresholds_resume_with_the_change_that_the_answers_so_far_ask_for(tmp_path: Path) -> None:
+    text = STAIRCASE[: STAIRCASE.index("[[items]]")].replace('"staircase"', '"thresholds"')
+    text += '[[items]]\nname = "Clear"\nstimuli = [\n    {{ name = "standard", button = "mx-clear" }},\n'
+    text += '    {{ name = "comparison", button = "mx-clear" }},\n]\n{tables}'
+    study = frozen_study(
+        tmp_path / "study", text=text, rounds=1, practice=1, tables="[thresholds]\ntrials = 6\n"
+    )
+    changes: list[tuple[float, ...]] = []
+
+    def keep(labels: Mapping[str, Stimulus]) -> None:
+        (more,) = (one for one in labels.values() if one.name == "comparison")
+        changes.append((more.force_ratio - 1, more.snap_ratio - 1, more.vibration_ratio - 1))
+
+    def answered(one: Participant, stage: StillStage, right: bool) -> None:
+        number = one.step().number
+        one.show_trial(number)
+        (stronger,) = (label for label, what in stage.labels.items() if what.name == "comparison")
+        one.answer(number, TrialAnswer(stronger if right else "AB".replace(stronger, "")))
+
+    stage = StillStage(on_prepare=keep)
+    one, code = enrolled(study, stage)
+    rights = [True, True, False, True, True, False, True]
+    for count, right in enumerate(rights):
+        if count == 4:
+            one.show_trial(one.step().number)
+            one._session.close()  # as a process that is killed does
+            stage = StillStage(on_prepare=keep)
+            one = Participant.resume(study, "P01", code, stage)
+            assert one.step().again
+        answered(one, stage, right)
+    assert one.step().kind == "done"
+    one.close()
+    # the trial of the crash was shown twice, with one and the same change
+    assert changes[4] == changes[5]
+    rule = Thresholds(trials=6)
+    assert changes[0] == pytest.approx(practice_change(rule, 0))
+    shown = [*changes[1:5], *changes[6:]]
+    history: list[Trial] = []
+    for change, right in zip(shown, rights[1:], strict=True):
+        wanted = trial_change(rule, history)
+        assert change == pytest.approx(wanted)
+        history.append((wanted, right))
+    # what is analysed is what was sealed
+    answers = study.unseal(PASSPHRASE, who="me", why="a test")
+    assert answers.change is not None
+    np.testing.assert_allclose(answers.change, shown)
+    assert answers.correct.tolist() == [float(right) for right in rights[1:]]

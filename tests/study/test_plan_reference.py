@@ -18,6 +18,7 @@ from fdvv.study.plan.plan import (
     Staircase,
     Stimulus,
     StudyPlan,
+    Thresholds,
 )
 from fdvv.study.plan.plan_file import template_names
 from fdvv.study.plan.plan_words import word_languages
@@ -31,6 +32,7 @@ PARTS: dict[str, type[msgspec.Struct]] = {
     "Page": Page,
     "Question": Question,
     "Staircase": Staircase,
+    "Thresholds": Thresholds,
     "Exclusion": Exclusion,
     "Claim": Claim,
 }

@@ -16,9 +16,11 @@ from fdvv.study.analysis.analyse import analyse as analysed
 from fdvv.study.analysis.code_book import write_answers
 from fdvv.study.analysis.columns import ColumnMap
 from fdvv.study.analysis.export import analysis_dict, write_analysis
+from fdvv.study.analysis.jnds import standards_of
 from fdvv.study.analysis.read_answers import AnswersTable, read_table
 from fdvv.study.analysis.records import StudyAnalysis
 from fdvv.study.analysis.report import study_summary, write_study_report
+from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
 from fdvv.timing.plan.plan_file import is_timing
@@ -26,8 +28,8 @@ from fdvv.timing.plan.plan_file import is_timing
 table_options = ui.options(
     click.option(
         "--kind", default="",
-        help="Of the study: realism, abx, 2afc, 2ac, preference, mushra, staircase or timing; by default "
-             "that of the folder.",
+        help="Of the study: realism, abx, 2afc, 2ac, preference, mushra, staircase, thresholds or timing; "
+             "by default that of the folder.",
     ),
     click.option(
         "--stimuli", default="", metavar="A,B",
@@ -72,7 +74,7 @@ def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool,
         timing_analyse(source, report, as_json)
         return
     read, declared, origin = _opened(source, plan, table)
-    found = analysed(read.answers, declared, "" if declared else source.name)
+    found = _analysed(read.answers, declared, source)
     if report is not None:
         write_study_report(report, found, declared, origin)
     if as_json:
@@ -103,7 +105,7 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
         return
     read, declared, _ = _opened(source, plan, table)
     answers = read.answers
-    found = analysed(answers, declared, "" if declared else source.name)
+    found = _analysed(answers, declared, source)
     files = [*write_answers(folder, found.screening.answers, declared), *write_analysis(folder, found)]
     if as_json:
         files_json = [str(path) for path in files]
@@ -114,6 +116,11 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
     click.echo(f"{ui.counted(len(answers.person), 'trial')}{simulated}")
     for path in files:
         click.echo(str(path))
+
+
+def _analysed(answers: Answers, declared: StudyPlan | None, source: Path) -> StudyAnalysis:
+    standards = standards_of(declared, source) if declared and source.is_dir() else {}
+    return analysed(answers, declared, "" if declared else source.name, standards)
 
 
 def _columns(read: AnswersTable) -> dict[str, Any]:

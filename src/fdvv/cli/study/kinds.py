@@ -10,7 +10,7 @@ from fdvv.study.plan.plan_file import write_template
 from fdvv.timing.files.study import TimingStudy
 from fdvv.timing.plan.plan_file import TEMPLATE_NAMES, is_timing, timing_template
 
-KINDS = ("realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase", *TEMPLATE_NAMES)
+KINDS = ("realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase", "thresholds", *TEMPLATE_NAMES)
 DEFAULT = "realism"
 
 

@@ -19,6 +19,7 @@ from fdvv.study.admin.operator_view import PersonView, operator_view
 from fdvv.study.admin.review import review_study
 from fdvv.study.admin.standing import Kind, draft_sentence, standing
 from fdvv.study.analysis.analyse import analyse
+from fdvv.study.analysis.jnds import standards_of
 from fdvv.study.analysis.read_answers import read_answers
 from fdvv.study.analysis.report import study_html
 from fdvv.study.files.counts import COUNTED
@@ -267,6 +268,7 @@ TEMPLATE_DESCRIPTIONS = {
     "preference": "which of two is liked better",
     "mushra": "several are rated beside a reference, itself and anchors hidden among them",
     "staircase": "how small a difference is just felt",
+    "thresholds": "how small a difference of force, snap and vibration is just felt, in few trials",
     "timing": "which button times a press best, after a search for one's own; the paper's",
     "tapping": "how fast one can tap on each",
 }
@@ -369,7 +371,8 @@ def report(studies: Studies, ask: StudiesAsk) -> StudiesReport:
         raise InputError("study", ask.study, "is sealed", "unseal it when the last person is done")
     if isinstance(study, TimingStudy):
         return StudiesReport(f"{ask.study}-report.html", report_html(study, ask.study))
-    found = analyse(read_answers(study.folder / UNSEALED / ANSWERS), study.plan)
+    answers = read_answers(study.folder / UNSEALED / ANSWERS)
+    found = analyse(answers, study.plan, standards=standards_of(study.plan, study.folder))
     footer = f"Study {ask.study}, frozen as {study.fingerprint}."
     return StudiesReport(f"{ask.study}-report.html", study_html(found, study.plan, footer))
 

@@ -15,7 +15,7 @@ from fdvv.report.report import Section, Table, render_html
 from fdvv.stats.orders import williams_orders
 from fdvv.study.admin.review import StudyReview
 from fdvv.study.plan import plan_words
-from fdvv.study.plan.plan import StudyPlan
+from fdvv.study.plan.plan import ADAPTIVE, StudyPlan
 from fdvv.study.plan.schedule import item_orders
 
 TRIAL_s = {
@@ -26,6 +26,7 @@ TRIAL_s = {
     "2ac": 25.0,
     "preference": 30.0,
     "staircase": 15.0,
+    "thresholds": 15.0,
 }
 """What a trial takes; all but the paper's assumed."""
 
@@ -110,9 +111,9 @@ def _notes(plan: StudyPlan, places: tuple[int, int] | None) -> Iterator[str]:
         )
     if not any(page.when == "consent" for page in plan.pages):
         yield "there is no consent page"
-    if plan.claim is None and plan.kind != "staircase":
+    if plan.claim is None and plan.kind not in ADAPTIVE:
         yield "there is no claim: what is tested is then chosen after the answers are seen"
-    if plan.rounds == 2 and plan.kind not in ("mushra", "staircase"):
+    if plan.rounds == 2 and plan.kind not in ("mushra", *ADAPTIVE):
         yield "with two rounds, who sees through a label of the first knows that of the second"
     if plan.practice == 0:
         yield "there is no practice: first trials differ from later ones"
@@ -126,7 +127,7 @@ def preview_sections(review: StudyReview) -> tuple[Section, ...]:
     """Return a study in sections of text and tables. For a plan without problems."""
     plan, summary = review.plan, summarise_plan(review.plan)
     notes = (*review.notes, *summary.notes)
-    trial = (plan_words.task_text(plan), *plan_words.staircase_texts(plan))
+    trial = (plan_words.task_text(plan), *plan_words.adaptive_texts(plan))
     return (
         Section("A person", _person(plan, summary), (), (_pages(plan),) if plan.pages else ()),
         Section("A trial", trial, (), (_questions(plan),)),

@@ -18,10 +18,11 @@ from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.program.surface import Limits
 from fdvv.study.files.layout import BUTTONS, kept_path, named_files
-from fdvv.study.plan.plan import Item, Stimulus, StudyPlan
+from fdvv.study.plan.plan import ADAPTIVE, Item, Stimulus, StudyPlan
 from fdvv.study.plan.plan_check import plan_problems
 from fdvv.study.plan.plan_file import read_plan
 from fdvv.study.plan.staircase import LARGEST_ratio
+from fdvv.study.plan.threshold_trials import grown_stimulus, largest_change
 from fdvv.study.stimulus.program import trial_program
 from fdvv.study.stimulus.renderer import prepare_stimulus, stimulus_actuation, stimulus_model
 
@@ -42,7 +43,7 @@ class StudyReview:
     plan, folder : of the study.
     problems : for which it cannot be run as it says. notes : what may not be meant.
     differences_cN : by item, how far apart its renderings are: rms of press and release over the paper's
-        speeds, of the two that are nearest; none where they cannot be opened, or for staircases.
+        speeds, of the two that are nearest; none where they cannot be opened, or a threshold is sought.
     models : what of its stimuli could be opened.
     """
 
@@ -77,15 +78,23 @@ def review_plan(plan: StudyPlan, folder: Path) -> StudyReview:
             continue
         try:
             models = {s: opened.get(s) or _opened(s, folder) for s in item.rendered}
+            _check_growth(plan, item, folder)
         except FdvvError as error:
             problems.append(f"items ({item.name!r}): {error}")
             continue
         opened |= models
-        if plan.kind != "staircase":
+        if plan.kind not in ADAPTIVE:
             problems += _alike(item, models)
             differences[item.name] = least_difference_cN([models[s] for s in item.stimuli])
         notes += _doubts(item, differences.get(item.name))
     return StudyReview(plan, folder, tuple(dict.fromkeys(problems)), tuple(notes), differences, opened)
+
+
+def _check_growth(plan: StudyPlan, item: Item, folder: Path) -> None:
+    """Raise InputError on a button that cannot grow as far as thresholds may ask of it."""
+    if plan.kind == "thresholds":
+        for stimulus in _strongest(plan, item):
+            stimulus_model(stimulus, folder)
 
 
 def least_difference_cN(models: list[FDVVModel]) -> float:
@@ -185,7 +194,9 @@ def device_problems(plan: StudyPlan, folder: Path, limits: Limits | None = None)
 
 def _strongest(plan: StudyPlan, item: Item) -> tuple[Stimulus, ...]:
     rendered = item.rendered
-    # a staircase makes its second stimulus stronger, up to this: then it must still be renderable
+    # the second stimulus grows, up to this: then it must still be renderable
+    if plan.kind == "thresholds" and plan.thresholds and len(item.stimuli) > 1:
+        return (rendered[0], grown_stimulus(rendered[1], largest_change(plan.thresholds)), *rendered[2:])
     if plan.kind == "staircase" and len(item.stimuli) > 1:
         force_ratio = rendered[1].force_ratio * (1.0 + LARGEST_ratio)
         rendered = (rendered[0], structs.replace(rendered[1], force_ratio=force_ratio), *rendered[2:])

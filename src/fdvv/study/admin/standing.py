@@ -13,7 +13,7 @@ from fdvv.study.analysis.read_answers import read_answers
 from fdvv.study.analysis.sentences import claim_sentence
 from fdvv.study.files.layout import UNSEALED
 from fdvv.study.files.people import people_of
-from fdvv.study.plan.plan import StudyPlan
+from fdvv.study.plan.plan import ADAPTIVE, StudyPlan
 
 SHARE = 0.7
 """Of answers for the claim, in truth: what a study is sized for."""
@@ -33,7 +33,7 @@ def planned_power(plan: StudyPlan) -> float | None:
 
     from fdvv.stats.share import binomial_p
 
-    if plan.claim is None or plan.claim.measure != "choice" or plan.kind in ("mushra", "staircase"):
+    if plan.claim is None or plan.claim.measure != "choice" or plan.kind in ("mushra", *ADAPTIVE):
         return None
     n = max(2, round(plan.people * plan.trials / (1 + (plan.trials - 1) * ALIKE)))
     counts = np.arange(math.floor(n / 2) + 1, n + 1)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
 from fdvv.stats.rank_tests import signed_rank
 from fdvv.study.analysis.choices import choice_results
 from fdvv.study.analysis.columns import TIMING
+from fdvv.study.analysis.jnds import jnd_results, jnds_over_people
 from fdvv.study.analysis.levels import threshold_over_people, threshold_results, timing_results
 from fdvv.study.analysis.multiverse import Multiverse, multiverse
 from fdvv.study.analysis.ratings import button_tests, names_of, rated_results, scale_results
@@ -23,16 +27,22 @@ from fdvv.study.plan.claim import (
     usual_claim,
 )
 from fdvv.study.plan.plan import Claim, StudyPlan
+from fdvv.thresholds.observer import Dimension
 
 FEW_PEOPLE = 6
 """People below which the exact signed-rank test cannot be significant at .05, whatever they say."""
 
 
-def analyse(answers: Answers, plan: StudyPlan | None = None, title: str = "") -> StudyAnalysis:
+def analyse(
+    answers: Answers,
+    plan: StudyPlan | None = None,
+    title: str = "",
+    standards: Mapping[str, Mapping[Dimension, float]] = MappingProxyType({}),
+) -> StudyAnalysis:
     """Analyse answers as their kind asks for.
 
     plan : whose claim is the main one, and whose rules leave people out; without one the kind's usual claim
-        and the usual rules. title : of the study; by default the plan's.
+        and the usual rules. title : of the study; by default the plan's. standards : of `standards_of`.
 
     What too few or broken answers do not allow is left out and noted. InputError where nothing was answered.
     """
@@ -45,6 +55,7 @@ def analyse(answers: Answers, plan: StudyPlan | None = None, title: str = "") ->
     registered = bool(plan and plan.claim)
     choices = _choices(found, claim, notes)
     thresholds = threshold_results(found, plan.staircase if plan else None)
+    jnds = jnd_results(found, plan.thresholds if plan else None)
     return StudyAnalysis(
         title=title or (next(iter(plan.title.values()), plan.name) if plan else "Answers"),
         kind=found.kind,
@@ -61,6 +72,9 @@ def analyse(answers: Answers, plan: StudyPlan | None = None, title: str = "") ->
         by_button=choices[1:],
         thresholds=thresholds,
         threshold=threshold_over_people(thresholds),
+        jnds=jnds,
+        jnd=jnds_over_people(jnds),
+        standards=standards,
         timing=timing_results(found, notes) if found.kind == TIMING else None,
         multiverse=_multiverse(found, claim, registered, notes) if screening.people_counted > 1 else None,
         notes=(*_warnings(screening), *dict.fromkeys(notes)),

@@ -18,6 +18,7 @@ from fdvv.study.files.layout import read_record
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.trial import EQUAL
+from fdvv.thresholds.observer import DIMENSIONS
 
 CODE_BOOK_FILE = "codebook.json"
 KIND = Kind("fdvv-codebook", 1, "a code book", "write it with fdvv study export")
@@ -82,7 +83,7 @@ def code_book(answers: Answers, plan: StudyPlan | None = None) -> CodeBook:
         kind=answers.kind,
         stimuli=answers.stimuli,
         simulated=answers.simulated,
-        columns=(*_fixed(answers), *_ratings(answers, plan)),
+        columns=(*_fixed(answers), *_changes(answers), *_ratings(answers, plan)),
     )
 
 
@@ -118,6 +119,15 @@ def _fixed(answers: Answers) -> tuple[CodedColumn, ...]:
             "0 or 1",
             values={"1": "a simulated participant: a proxy, no evidence", "0": "a person"},
         ),
+    )
+
+
+def _changes(answers: Answers) -> tuple[CodedColumn, ...]:
+    if answers.change is None:
+        return ()
+    return tuple(
+        CodedColumn(f"{one}_ratio", f"{one}_ratio", f"{one} added to the comparison", "number", "1")
+        for one in DIMENSIONS
     )
 
 
@@ -160,6 +170,7 @@ def answers_csv(answers: Answers) -> str:
         missing if answers.time_s is None else answers.time_s,
         np.full(n, "") if answers.excluded is None else answers.excluded,
         np.full(n, int(answers.simulated)),
+        *(() if answers.change is None else answers.change.T),
         *(column for rating in answers.ratings.values() for column in rating.T),
     ]
     cells = [[cell_text(one) for one in column.tolist()] for column in columns]

@@ -13,13 +13,15 @@ from fdvv.errors import InputError
 from fdvv.study.analysis.code_book import CodeBook, rating_column
 from fdvv.study.plan.plan import StudyKind
 from fdvv.study.plan.trial import EQUAL
+from fdvv.thresholds.observer import DIMENSIONS
 
 TIMING = "timing"
 """A kind of answers that no plan declares: scores in a unit of time, by button and level, for an ANOVA."""
 
 KINDS = (*get_args(StudyKind), TIMING)
 TEXTS = ("person", "item", "choice", "excluded", "stimulus", "is_chosen")
-NUMBERS = ("round", "correct", "ratio", "time_s", "simulated")
+CHANGES = tuple(f"{one}_ratio" for one in DIMENSIONS)
+NUMBERS = ("round", "correct", "ratio", "time_s", "simulated", *CHANGES)
 ROLES = (*TEXTS, *NUMBERS)
 MISSING = frozenset({"", "na", "n/a", "nan", "null", "none", "."})
 """Words for a missing value, in any case of letters."""

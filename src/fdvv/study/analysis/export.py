@@ -14,15 +14,28 @@ from fdvv.io.documents import finite
 from fdvv.io.files import write_atomic
 from fdvv.study.analysis.code_book import cell_text, csv_text
 from fdvv.study.analysis.columns import TIMING
+from fdvv.study.analysis.jnds import UNITS
 from fdvv.study.analysis.multiverse import Multiverse
 from fdvv.study.analysis.ratings import complete_rows, names_of, people_means
-from fdvv.study.analysis.records import ClaimResult, RatedResult, StudyAnalysis, ThresholdResult, TimingResult
+from fdvv.study.analysis.records import (
+    ClaimResult,
+    JndResult,
+    RatedResult,
+    StudyAnalysis,
+    ThresholdResult,
+    TimingResult,
+)
 from fdvv.study.plan.trial import EQUAL
 
 PROXY = "simulated participants: a proxy, no evidence"
 """Notice wherever simulated answers are shown."""
 
-PEOPLE_FILE, ANALYSIS_FILE = "people.csv", "analysis.json"
+PEOPLE_FILE, ANALYSIS_FILE, JNDS_FILE = "people.csv", "analysis.json", "jnds.csv"
+JNDS = (
+    *("person", "button", "dimension", "jnd_ratio", "low_ratio", "high_ratio", "log_error", "trials"),
+    *("jnd", "unit", "simulated"),
+)
+"""Columns of jnds.csv."""
 
 
 def analysis_dict(found: StudyAnalysis) -> dict[str, Any]:
@@ -43,6 +56,9 @@ def analysis_dict(found: StudyAnalysis) -> dict[str, Any]:
         "rated": [_rated(one) for one in found.rated],
         "threshold": found.threshold and asdict(found.threshold),
         "thresholds": [_threshold(one) for one in found.thresholds],
+        "jnd": {name: asdict(one) for name, one in found.jnd.items()},
+        "jnds": [_jnd(one) for one in found.jnds],
+        "standards": {button: dict(sizes) for button, sizes in found.standards.items()},
         "timing": found.timing and _timing(found.timing),
         "multiverse": found.multiverse and _multiverse(found.multiverse),
         "people": [asdict(one) for one in found.people],
@@ -95,6 +111,19 @@ def _threshold(found: ThresholdResult) -> dict[str, Any]:
     }
 
 
+def _jnd(found: JndResult) -> dict[str, Any]:
+    return {
+        "person": found.person,
+        "button": found.button,
+        "trials": found.trials,
+        "correct": found.correct,
+        "jnds": {name: asdict(one) for name, one in found.jnds.items()},
+        "surfaces": [
+            {"across": one.across, "up": one.up, "points": one.points.tolist()} for one in found.surfaces
+        ],
+    }
+
+
 def _timing(found: TimingResult) -> dict[str, Any]:
     return {
         "measure": found.measure,
@@ -119,12 +148,31 @@ def _multiverse(found: Multiverse) -> dict[str, Any]:
     }
 
 
-def write_analysis(folder: Path, found: StudyAnalysis) -> tuple[Path, Path]:
-    """Write people.csv and analysis.json into a folder, each whole or not at all; return both. OSError."""
+def write_analysis(folder: Path, found: StudyAnalysis) -> tuple[Path, ...]:
+    """Write people.csv and analysis.json into a folder, and jnds.csv where JNDs were measured; return them.
+
+    Each is written whole or not at all. OSError.
+    """
     table, figures = folder / PEOPLE_FILE, folder / ANALYSIS_FILE
     write_atomic(table, people_csv(found))
     write_atomic(figures, json.dumps(finite(analysis_dict(found)), indent=1, allow_nan=False) + "\n")
-    return table, figures
+    if not found.jnds:
+        return table, figures
+    write_atomic(folder / JNDS_FILE, jnds_csv(found))
+    return table, figures, folder / JNDS_FILE
+
+
+def jnds_csv(found: StudyAnalysis) -> str:
+    """Write a row for each person, button and dimension: the JND as a ratio, and in its unit."""
+    rows = []
+    for one in found.jnds:
+        for name, jnd in one.jnds.items():
+            size = found.standards.get(one.button, {}).get(name)
+            absolute = ("", "") if size is None else (cell_text(size * jnd.ratio), UNITS[name])
+            numbers = (jnd.ratio, jnd.low, jnd.high, jnd.log_error, float(jnd.trials))
+            cells = (one.person, one.button, name, *map(cell_text, numbers), *absolute)
+            rows.append((*cells, cell_text(float(found.simulated))))
+    return csv_text(JNDS, rows)
 
 
 def people_csv(found: StudyAnalysis) -> str:

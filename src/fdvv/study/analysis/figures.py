@@ -15,10 +15,11 @@ from fdvv.report.score_figures import ScoreBars, plot_score_bars
 from fdvv.study.analysis.answer_figures import PALE, ForestRow, plot_forest, plot_rating_bars, say_proxy
 from fdvv.study.analysis.multiverse import Multiverse
 from fdvv.study.analysis.ratings import people_means
-from fdvv.study.analysis.records import StudyAnalysis, ThresholdResult, TimingResult
+from fdvv.study.analysis.records import JndResult, StudyAnalysis, ThresholdResult, TimingResult
 from fdvv.study.analysis.sentences import name_rows
 from fdvv.study.analysis.words import button_name
 from fdvv.study.plan.answers import Answers
+from fdvv.thresholds.observer import Dimension
 from fdvv.units import FloatArray
 
 if TYPE_CHECKING:
@@ -136,6 +137,45 @@ def plot_tracks(tracks: Sequence[ThresholdResult], simulated: bool = False, by_b
     fig.supxlabel("trial (count)", fontsize=10)
     fig.supylabel("force added (%)", fontsize=10)
     return axes
+
+
+@style.in_house_style
+def plot_surfaces(found: Sequence[JndResult], simulated: bool = False) -> Any:
+    """Draw just noticeable changes of two dimensions together, a panel for each pair of dimensions.
+
+    A line is one person at one button; of one alone the 95 % interval is shaded. Returns the axes.
+    """
+    if not found or not found[0].surfaces:
+        raise ModelError("a figure of surfaces needs two dimensions")
+    count = len(found[0].surfaces)
+    fig = style.new_figure(max(3.8, 3.3 * count), 3.4)
+    axes = fig.subplots(1, count, squeeze=False)[0]
+    for place, ax in enumerate(axes):
+        for one in found:
+            points = 100 * one.surfaces[place].points
+            ax.plot(*points[:, :, 0].T, color=style.PALETTE[0], alpha=1.0 if len(found) == 1 else 0.6)
+            if len(found) == 1:
+                outline = np.concatenate([points[:, :, 1], points[::-1, :, 2]])
+                ax.fill(*outline.T, color=style.PALETTE[0], alpha=0.15, linewidth=0)
+        ax.set_xlim(left=0)
+        ax.set_ylim(bottom=0)
+        ax.set_xlabel(f"{found[0].surfaces[place].across} (%)")
+        ax.set_ylabel(f"{found[0].surfaces[place].up} (%)")
+    say_proxy(axes[0], simulated)
+    return axes
+
+
+def draw_jnds(found: StudyAnalysis, name: Dimension) -> Any:
+    """Draw the JND of every person in one dimension, and that over people."""
+    several = len(found.buttons) > 1
+    rows = []
+    for one in found.jnds:
+        jnd, who = one.jnds[name], f"{one.person}, {one.button}" if several else one.person
+        rows.append(ForestRow(who, 100 * jnd.ratio, 100 * jnd.low, 100 * jnd.high))
+    mean = found.jnd[name]
+    rows.append(ForestRow("all people", 100 * mean.mean, 100 * mean.low, 100 * mean.high, True))
+    title = f"{name} added that three of four notice (%)"
+    return plot_forest(rows, title, "just noticeable differences", None, found.simulated)
 
 
 def _staircase_name(one: ThresholdResult, by_button: bool) -> str:

@@ -14,7 +14,7 @@ from fdvv.errors import InputError
 from fdvv.io.files import read_limited
 from fdvv.io.text import decode_lines, sniff_separator
 from fdvv.study.analysis.code_book import ANSWERS_FILE, CODE_BOOK_FILE, read_code_book, unescaped
-from fdvv.study.analysis.columns import NO, TIMING, YES, ColumnMap, Layout, Row, layout_of, places_of
+from fdvv.study.analysis.columns import CHANGES, NO, TIMING, YES, ColumnMap, Layout, Row, layout_of, places_of
 from fdvv.study.analysis.infer_columns import Inferred, infer
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.trial import EQUAL
@@ -28,7 +28,7 @@ UNSEALED = "unsealed"
 """Folder below a study's where unsealing puts answers."""
 
 TrialKey = tuple[str, str, int, int]
-"""Person, item, round and, of a staircase, whose rounds have many trials, the line."""
+"""Person, item, round and, of staircases and thresholds, whose rounds have many trials, the line."""
 
 
 @dataclass
@@ -41,6 +41,7 @@ class _Trial:
     choice: str = ""
     correct: float = np.nan
     ratio: float = np.nan
+    change: tuple[float, ...] = (np.nan,) * len(CHANGES)
     time_s: float = np.nan
     excluded: str = ""
     ratings: dict[tuple[str, str], float] = field(default_factory=dict)
@@ -152,8 +153,8 @@ def _take(
     stimulus = row.word(roles.get("stimulus"))
     seen = rounds[person, item, stimulus] = rounds.get((person, item, stimulus), -1) + 1
     number = row.number(roles.get("round"))
-    # a round of a staircase has many trials, as many as it takes
-    step = not np.isnan(row.number(roles.get("ratio")))
+    # a round of a staircase or of thresholds has many trials
+    step = any(not np.isnan(row.number(roles.get(name))) for name in ("ratio", *CHANGES))
     key = (person, item, seen if np.isnan(number) else int(number), row.line if step else 0)
     if key in trials and not layout.long:
         reason = f"{person} has a second row of {item}, round {key[2]}"
@@ -169,6 +170,7 @@ def _fill(row: Row, layout: Layout, trial: _Trial, stimulus: str) -> None:
     for name in ("correct", "ratio", "time_s"):
         if name in roles:
             setattr(trial, name, row.number(roles[name]))
+    trial.change = tuple(row.number(roles.get(name)) for name in CHANGES)
     if "correct" in roles and trial.correct not in (0.0, 1.0) and not np.isnan(trial.correct):
         raise row.wrong(roles["correct"], f"{trial.correct:g} is neither 1 nor 0", "code it so")
     trial.excluded = _reason(row.cells[roles["excluded"]]) if "excluded" in roles else trial.excluded
@@ -224,7 +226,10 @@ def _answers(
         for rating in layout.ratings
     }
     ratio, time_s = (_numbers(trials, name) for name in ("ratio", "time_s"))
-    kind = column_map.kind or _kind(ratings, ratio, set(names[:, 2].tolist()), stimuli, path)
+    change = np.array([one.change for one in trials], dtype=np.float64)
+    grown = not np.isnan(change).all()
+    choices = set(names[:, 2].tolist())
+    kind = column_map.kind or ("thresholds" if grown else _kind(ratings, ratio, choices, stimuli, path))
     return Answers(
         kind,
         stimuli,
@@ -238,6 +243,7 @@ def _answers(
         time_s=None if np.isnan(time_s).all() else time_s,
         excluded=names[:, 3],
         simulated=column_map.simulated,
+        change=change if grown else None,
     )
 
 

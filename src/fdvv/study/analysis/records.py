@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from fdvv.stats.anova import Anova
@@ -16,6 +16,8 @@ from fdvv.stats.thurstone import DPrime
 from fdvv.study.analysis.multiverse import Multiverse
 from fdvv.study.plan.answers import Screening
 from fdvv.study.plan.plan import Claim
+from fdvv.thresholds.estimate import JndEstimate
+from fdvv.thresholds.observer import Dimension
 from fdvv.units import FloatArray
 
 UNITS = ("s", "ms", "us")
@@ -193,6 +195,33 @@ class ThresholdResult:
     threshold: Estimate
 
 
+@dataclass(frozen=True, eq=False)
+class JndSurface:
+    """Just noticeable changes of two dimensions together. points : as of `ThresholdEstimate.surface`."""
+
+    across: Dimension
+    up: Dimension
+    points: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class JndResult:
+    """What the trials of one person and button say.
+
+    Attributes
+    ----------
+    jnds : of the dimensions that were measured. surfaces : of every pair of them. trials, correct : that
+        count, and the part that was right.
+    """
+
+    person: str
+    button: str
+    jnds: Mapping[Dimension, JndEstimate]
+    surfaces: tuple[JndSurface, ...]
+    trials: int
+    correct: float
+
+
 @dataclass(frozen=True)
 class PersonResult:
     """What one person did: trials planned, answered and left out, and what they say.
@@ -241,7 +270,8 @@ class StudyAnalysis:
     simulated : no person took part: a proxy, no evidence.
     tests : ratings by button. scales : ratings as ordered categories. rated : MUSHRA. preference : all
         buttons. by_button : each. thresholds : of staircases; threshold : over people.
-        timing : by ANOVA. notes : what could not be computed, and why.
+        timing : by ANOVA. jnds : of people and buttons; jnd : over people, by dimension. standards : by
+        button and dimension what a JND is a part of, cN or m/s². notes : what could not be computed, and why.
     """
 
     title: str
@@ -260,5 +290,8 @@ class StudyAnalysis:
     thresholds: tuple[ThresholdResult, ...] = ()
     threshold: Spread | None = None
     timing: TimingResult | None = None
+    jnds: tuple[JndResult, ...] = ()
+    jnd: Mapping[Dimension, Spread] = field(default_factory=dict)
+    standards: Mapping[str, Mapping[Dimension, float]] = field(default_factory=dict)
     multiverse: Multiverse | None = None
     notes: tuple[str, ...] = ()

@@ -87,6 +87,7 @@ def method_paragraphs(found: StudyAnalysis) -> tuple[str, ...]:
         "tests": found.tests or found.rated or found.preference,
         "shares": found.preference,
         "thresholds": found.thresholds,
+        "jnds": found.jnds,
         "timing": found.timing,
         "multiverse": found.multiverse,
     }
@@ -110,6 +111,7 @@ def study_html(found: StudyAnalysis, plan: StudyPlan | None = None, footer: str 
         *_ratings(found, plan),
         *_choices(found),
         *_thresholds(found),
+        *_jnds(found),
         *_timing(found),
         *_people(found),
         *_multiverse(found),
@@ -135,6 +137,7 @@ def study_summary(found: StudyAnalysis) -> str:
     texts += [sentences.choice_sentence(found.preference)] if found.preference else []
     texts += [sentences.rated_sentence(found.rated[0])] if found.rated else []
     texts += sentences.threshold_sentences(found)[:1]
+    texts += sentences.jnd_sentences(found)
     texts += sentences.timing_sentences(found.timing)[:1] if found.timing else []
     texts += [sentences.multiverse_sentences(found.multiverse)[0]] if found.multiverse else []
     proxy = [f"{PROXY.capitalize()}."] if found.simulated and texts else []
@@ -197,6 +200,18 @@ def _thresholds(found: StudyAnalysis) -> list[Section]:
         "threshold.",
     )
     return [Section("Thresholds", texts, svgs, (tables.thresholds_table(found),))]
+
+
+def _jnds(found: StudyAnalysis) -> list[Section]:
+    if not found.jnds:
+        return []
+    svgs = [figure_svg(figures.draw_jnds(found, name), f"JND of {name}") for name in found.jnd]
+    texts = list(sentences.jnd_sentences(found))
+    if found.jnds[0].surfaces:
+        surfaces = figures.plot_surfaces(found.jnds, found.simulated)
+        svgs.append(figure_svg(surfaces, "Just noticeable changes of two at once"))
+        texts.append("In the last figure a line joins all changes of two at once that are just noticed.")
+    return [Section("Just noticeable differences", tuple(texts), tuple(svgs), (tables.jnds_table(found),))]
 
 
 def _timing(found: StudyAnalysis) -> list[Section]:

@@ -36,6 +36,9 @@ ALPHA = 0.05
 
 HALF = 0.5
 
+WIDE = 4.0
+"""Ends of an interval over each other beyond which a JND is hardly known: a factor of two either way."""
+
 
 def claim_sentence(found: ClaimResult) -> str:
     claim, test = found.claim, found.test
@@ -206,6 +209,36 @@ def threshold_sentences(found: StudyAnalysis) -> tuple[str, ...]:
     if without:
         texts.append(f"{many(without, 'staircase')} reversed too seldom to give a threshold.")
     return tuple(texts)
+
+
+def jnd_sentences(found: StudyAnalysis) -> tuple[str, ...]:
+    """Return how small a difference is noticed, and what to do next; nothing where none was measured."""
+    if not found.jnds:
+        return ()
+    parts = []
+    for name, one in found.jnd.items():
+        low, high = one.low, one.high
+        if math.isnan(low):  # one person: how well that person is known
+            low, high = found.jnds[0].jnds[name].low, found.jnds[0].jnds[name].high
+        parts.append(f"{name} by {percent(one.mean, 1)} ({fixed(100 * low, 1)} to {percent(high, 1)})")
+    people = next(iter(found.jnd.values())).people
+    what = f"geometric mean of {people_text(people)}, 95 % interval" if people > 1 else "95 % interval"
+    return f"Three of four comparisons notice {listed(parts)} more ({what}).", _next_of(found)
+
+
+def _next_of(found: StudyAnalysis) -> str:
+    wide = {name: max(one.jnds[name].high / one.jnds[name].low for one in found.jnds) for name in found.jnd}
+    widest = max(wide, key=lambda name: wide[name])
+    sd = {name: one.sd for name, one in found.jnd.items() if not math.isnan(one.sd)}
+    if wide[widest] > WIDE:
+        return (
+            f"Next: more trials a person, for {widest} is known least (in one person within a factor of "
+            f"{fixed(wide[widest], 1)})."
+        )
+    if not sd:
+        return "Next: measure more people; one person says nothing of how people differ."
+    most = max(sd, key=lambda name: sd[name])
+    return f"Next: use these figures; people differ most in {most} (SD {fixed(sd[most])} of its logarithm)."
 
 
 def multiverse_sentences(found: Multiverse) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ import math
 
 from fdvv.report.prose import pair_cells
 from fdvv.report.report import Table
+from fdvv.study.analysis.jnds import UNITS
 from fdvv.study.analysis.records import ButtonTest, RatedResult, StudyAnalysis, TimingResult
 from fdvv.study.analysis.sentences import name_rows
 from fdvv.study.analysis.words import button_name, fixed, percent, rule_text, short_p, span
@@ -91,6 +92,21 @@ def thresholds_table(found: StudyAnalysis) -> Table:
     )  # fmt: skip
     caption = "Threshold: geometric mean of the ratios at which a staircase turned round."
     return Table(("person", "button", "trials", "threshold (%)", "95 % (%)"), rows, caption)
+
+
+def jnds_table(found: StudyAnalysis) -> Table:
+    rows = []
+    for one in found.jnds:
+        for name, jnd in one.jnds.items():
+            size = found.standards.get(one.button, {}).get(name)
+            unit = "" if size is None else f"{fixed(size * jnd.ratio, 2)} of {fixed(size, 1)} {UNITS[name]}"
+            share = fixed(100 * jnd.ratio, 1), span(jnd.low, jnd.high, 1, 100.0)
+            rows.append((one.person, one.button, name, str(jnd.trials), *share, unit))
+    caption = (
+        "JND: the change that three of four comparisons notice, as a part of the standard's; of force at the "
+        "peak, of the fall behind it, of the vibration's largest amplitude. Trials: with this change alone."
+    )
+    return Table(("person", "button", "of", "trials", "JND (%)", "95 % (%)", "JND"), tuple(rows), caption)
 
 
 def timing_tables(found: TimingResult) -> tuple[Table, ...]:

@@ -82,6 +82,7 @@ class UnsealedTrial:
     answer: TrialAnswer | None
     rendered: tuple[Rendered, ...] = ()
     excluded: str = ""
+    change: tuple[float, ...] = ()
 
     @property
     def choice(self) -> str:
@@ -157,11 +158,12 @@ def _row(
     damaged: bool,
 ) -> UnsealedTrial:
     ratio = (sealed.ratio if sealed else trial.ratio) if plan.kind == "staircase" else math.nan
+    change = sealed.change if sealed else ()
     if answer is None:
         return UnsealedTrial(person, trial, ratio, None)
     rendered = sealed.rendered if sealed else ()
     reason = "the person's files were changed" if damaged else trial_reason(plan.exclusion, rendered)
-    return UnsealedTrial(person, trial, ratio, answer, rendered, reason)
+    return UnsealedTrial(person, trial, ratio, answer, rendered, reason, change)
 
 
 def answers_of(plan: StudyPlan, people: Sequence[UnsealedPerson]) -> Answers:
@@ -181,9 +183,14 @@ def answers_of(plan: StudyPlan, people: Sequence[UnsealedPerson]) -> Answers:
         time_s=np.array([row.answer.time_s if row.answer else math.nan for row in rows], float),
         excluded=_words([row.excluded for row in rows]),
         simulated=any(one.person.simulated for one in people),
+        change=np.array([_change(row) for row in rows], float).reshape(-1, 3) if plan.thresholds else None,
     )
     labels = [row.answer.choice if row.answer else "" for row in rows]
     return exclude_people(answers, labels, plan.exclusion)
+
+
+def _change(row: UnsealedTrial) -> tuple[float, ...]:
+    return row.change if row.answer and row.change else (math.nan,) * 3
 
 
 def stimuli_in_order(plan: StudyPlan) -> tuple[str, ...]:

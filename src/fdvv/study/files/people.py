@@ -61,11 +61,12 @@ class Schedule(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class SealedTrial(Struct, frozen=True, forbid_unknown_fields=True):
-    """What was rendered in a trial. ratio : of its staircase there."""
+    """What was rendered in a trial. ratio : of its staircase there. change : of thresholds."""
 
     number: int
     ratio: float
     rendered: tuple[Rendered, ...]
+    change: tuple[float, ...] = ()
 
 
 class LockedSchedule(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -1,1 +1,1 @@
-"""Plans, schedules, staircases and simulated participants, as plain records."""
+"""Plans, schedules, staircases, thresholds and simulated participants, as plain records."""

@@ -31,7 +31,8 @@ class Answers:
     choice : (n,) of str: a stimulus's name, "equal", or "" where missing or not asked.
     correct : (n,) 1, 0, or nan where there is no right answer, or none was given.
     ratings : by name, (n, stimuli), nan where missing.
-    ratio : (n,) staircase level, nan elsewhere. time_s : (n,) nan where unknown.
+    ratio : (n,) staircase level, nan elsewhere. change : (n, 3) of force, snap and vibration where thresholds
+        are measured; None elsewhere. time_s : (n,) nan where unknown.
     excluded : (n,) of str: why a row does not count; "" where it does.
     simulated : the answers are those of simulated participants.
 
@@ -50,11 +51,12 @@ class Answers:
     time_s: FloatArray | None = None
     excluded: np.ndarray | None = None
     simulated: bool = False
+    change: FloatArray | None = None
 
     def __post_init__(self) -> None:
         n = len(self.person)
         columns = [self.item, self.round, self.choice, self.correct, *self.ratings.values()]
-        columns += [one for one in (self.ratio, self.time_s, self.excluded) if one is not None]
+        columns += [one for one in (self.ratio, self.time_s, self.excluded, self.change) if one is not None]
         if any(len(one) != n for one in columns):
             raise ModelError(f"columns of answers differ in length from its {n} persons")
 

@@ -8,7 +8,7 @@ from msgspec import structs
 from fdvv.errors import ModelError
 from fdvv.stats.rank_tests import signed_ranks
 from fdvv.study.plan.answers import Answers, means_by
-from fdvv.study.plan.plan import Claim
+from fdvv.study.plan.plan import ADAPTIVE, Claim
 from fdvv.study.plan.trial import EQUAL
 from fdvv.units import FloatArray
 
@@ -21,19 +21,19 @@ SMALLEST_p = 0.1
 
 def is_about_right(answers: Answers) -> bool:
     """Return whether the answers of a study are right or wrong rather than a liking."""
-    forced = answers.kind in ("abx", "2afc", "staircase")
+    forced = answers.kind in ("abx", "2afc", *ADAPTIVE)
     return forced and bool(np.isfinite(answers.correct).any())
 
 
 def usual_claim(answers: Answers) -> Claim | None:
     """Return the claim of a study that declared none: the second stimulus over the first.
 
-    None where nothing was compared in that way: staircases, timing, or more than two stimuli.
+    None where nothing was compared in that way: staircases, thresholds, timing, or more than two stimuli.
     """
-    if is_about_right(answers) and answers.kind != "staircase":
+    if is_about_right(answers) and answers.kind not in ADAPTIVE:
         first, second = (*answers.stimuli, "", "")[:2]
         return Claim(more=second or "right", less=first or "wrong", measure=CORRECT)
-    if len(answers.stimuli) != 2 or answers.kind in ("staircase", "timing"):
+    if len(answers.stimuli) != 2 or answers.kind in (*ADAPTIVE, "timing"):
         return None
     measures = [CHOICE] if np.any(answers.choice != "") else list(answers.ratings)
     return Claim(more=answers.stimuli[1], less=answers.stimuli[0], measure=measures[0]) if measures else None

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from msgspec import Meta, Struct
+from msgspec import Meta, Struct, structs
 
-StudyKind = Literal["realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase"]
+from fdvv.thresholds.observer import DIMENSIONS, Dimension
+from fdvv.thresholds.prior import ThresholdPrior
+
+StudyKind = Literal["realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase", "thresholds"]
 """realism: the paper's task. A reference X is named; which of A and B is closer to it, or neither? abx: X
 *is* A or B. 2afc: which of two holds what is asked for? 2ac: the same, or no difference. preference: which of
 two is liked better. mushra: every rendering is rated beside a named reference, itself and the anchors hidden
-among them. staircase: 2afc whose comparison approaches the standard down to the discrimination threshold."""
+among them. staircase: 2afc whose comparison approaches the standard down to the discrimination threshold.
+thresholds: 2afc whose comparison has more force, snap or vibration, by what is expected to say most."""
+
+ADAPTIVE: tuple[StudyKind, ...] = ("staircase", "thresholds")
+"""Kinds that find a threshold: a comparison follows the answers, and nothing is claimed."""
 
 Count = Annotated[int, Meta(ge=0, le=10_000)]
 Name = Annotated[str, Meta(min_length=1, max_length=60)]
@@ -26,7 +33,8 @@ class Stimulus(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     rendered : "FDVV": the whole model. "FD": one curve for all speeds and no vibration, the paper's rival.
     actuation : file beside the study that a rig was compensated with; "": the twin renders the model ideally,
         a device its own forces uncompensated.
-    force_ratio : by which all forces are multiplied; a staircase sets it.
+    force_ratio, snap_ratio, vibration_ratio : by which all forces, the fall of force of the snap and all
+        vibrations are multiplied (fdvv.model.grown); staircases and thresholds set them.
     """
 
     name: Name
@@ -34,6 +42,13 @@ class Stimulus(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     rendered: Literal["FDVV", "FD"] = "FDVV"
     actuation: str = ""
     force_ratio: Annotated[float, Meta(gt=0, le=10)] = 1.0
+    snap_ratio: Annotated[float, Meta(gt=0, le=10)] = 1.0
+    vibration_ratio: Annotated[float, Meta(gt=0, le=10)] = 1.0
+
+    @property
+    def unchanged(self) -> Stimulus:
+        """The same rendering with all its ratios at 1."""
+        return structs.replace(self, force_ratio=1.0, snap_ratio=1.0, vibration_ratio=1.0)
 
 
 class Item(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -123,6 +138,47 @@ class Staircase(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     dropped: Annotated[int, Meta(ge=0, le=10)] = 2
 
 
+class OfDimensions(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A ratio for each dimension in which a button can grow.
+
+    Attributes
+    ----------
+    force : of all forces. snap : of the fall of force from peak to valley. vibration : of its amplitude.
+    """
+
+    force: Annotated[float, Meta(gt=0, le=4)]
+    snap: Annotated[float, Meta(gt=0, le=4)]
+    vibration: Annotated[float, Meta(gt=0, le=4)]
+
+    @property
+    def all(self) -> tuple[float, float, float]:
+        return self.force, self.snap, self.vibration
+
+
+class Thresholds(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """How just noticeable differences are measured, trial by trial (fdvv.thresholds).
+
+    Attributes
+    ----------
+    dimensions : in which the comparison grows. trials : of each item and person. combined : in every third
+        trial several dimensions grow, so that it is measured how they add up.
+    expected_ratio, spread : JND expected beforehand, and the standard deviation of its natural logarithm.
+    largest_ratio : by which a comparison may grow.
+    """
+
+    dimensions: tuple[Dimension, ...] = DIMENSIONS
+    trials: Annotated[int, Meta(ge=6, le=400)] = 54
+    combined: bool = False
+    expected_ratio: OfDimensions = OfDimensions(force=0.12, snap=0.5, vibration=0.4)
+    spread: Annotated[float, Meta(gt=0, le=3)] = 0.7
+    largest_ratio: OfDimensions = OfDimensions(force=1.0, snap=2.0, vibration=3.0)
+
+    @property
+    def prior(self) -> ThresholdPrior:
+        """What is assumed of a person before the first trial."""
+        return ThresholdPrior(jnd_ratio=self.expected_ratio.all, jnd_spread=self.spread)
+
+
 class Exclusion(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Rules, fixed before the first person, by which a trial or a person does not count.
 
@@ -173,7 +229,7 @@ class StudyPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     break_every_min, break_min : the first trial boundary after so long begins a break of so long.
     languages : the first is the default. pages : outside the trials, in order.
     switch_s : every change of what is rendered takes as long, whichever it is. ties : the answer "equal" is
-        offered where the kind allows it. staircase, exclusion, claim : see there.
+        offered where the kind allows it. staircase, thresholds, exclusion, claim : see there.
     """
 
     format: Literal["fdvv-study"] = "fdvv-study"
@@ -195,11 +251,18 @@ class StudyPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     pages: tuple[Page, ...] = ()
     switch_s: Annotated[float, Meta(ge=0, le=30)] = 0.6
     staircase: Staircase | None = None
+    thresholds: Thresholds | None = None
     exclusion: Exclusion = Exclusion()
     claim: Claim | None = None
 
     @property
     def trials(self) -> int:
         """How many trials a person has at most, practice left out."""
-        block = self.staircase.trials if self.kind == "staircase" and self.staircase else 1
-        return len(self.items) * self.rounds * block
+        return len(self.items) * self.rounds * self.block
+
+    @property
+    def block(self) -> int:
+        """How many trials an item has in each round, at most."""
+        if self.kind == "thresholds":
+            return (self.thresholds or Thresholds()).trials
+        return (self.staircase or Staircase()).trials if self.kind == "staircase" else 1

@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 import msgspec
 
 from fdvv.model.file import MODEL_SUFFIX, builtin_names
-from fdvv.study.plan.plan import Item, Stimulus, StudyPlan
+from fdvv.study.plan.plan import ADAPTIVE, Item, Stimulus, StudyPlan
 from fdvv.study.plan.plan_words import word_languages
 from fdvv.study.plan.schedule import LABELS
 from fdvv.study.plan.text_check import (
@@ -46,9 +46,10 @@ def _kind(plan: StudyPlan) -> Iterator[str]:
             yield f"items ({item.name!r}), reference: {plan.kind} has none: {reason}"
     if plan.kind == "mushra" and not plan.ratings:
         yield "ratings: mushra only rates; write [[ratings]], with points = 101 for a slider"
-    if plan.kind == "staircase" and plan.ratings:
-        yield "ratings: a staircase asks which one is stronger and nothing else"
     yield from _staircase(plan)
+    yield from _thresholds(plan)
+    if plan.kind in ADAPTIVE:
+        yield from _adaptive(plan)
     if plan.kind == "2ac" and not plan.ties:
         yield 'ties: 2ac asks "or no difference"; without ties it is kind = "2afc"'
 
@@ -62,12 +63,38 @@ def _staircase(plan: StudyPlan) -> Iterator[str]:
         yield "staircase: there is none; write [staircase]"
     elif plan.staircase.dropped > plan.staircase.reversals - 2:
         yield "staircase: dropped must leave at least 2 of the reversals"
+
+
+def _thresholds(plan: StudyPlan) -> Iterator[str]:
+    rule = plan.thresholds
+    if plan.kind != "thresholds":
+        if rule:
+            yield f"thresholds: {plan.kind} has none"
+        return
+    if rule is None:
+        yield "thresholds: there is none; write [thresholds]"
+        return
+    if not rule.dimensions:
+        yield "thresholds, dimensions: there is none; name force, snap or vibration"
+    yield from twice_problems("thresholds, dimensions", rule.dimensions)
+    for name in rule.dimensions:
+        expected, largest = getattr(rule.expected_ratio, name), getattr(rule.largest_ratio, name)
+        if largest < expected:
+            yield f"thresholds, largest_ratio: {name} {largest:g} is below the expected JND of {expected:g}"
+    if plan.rounds != 1:
+        yield "rounds: thresholds have one; ask for more trials instead"
+
+
+def _adaptive(plan: StudyPlan) -> Iterator[str]:
+    article = "a staircase" if plan.kind == "staircase" else "a study of thresholds"
+    if plan.ratings:
+        yield f"ratings: {article} asks which one is stronger and nothing else"
     if plan.claim:
-        yield "claim: a staircase finds a threshold and decides nothing; leave it out"
+        yield f"claim: {article} finds a threshold and decides nothing; leave it out"
     for item in plan.items:
-        same = {msgspec.structs.replace(s, name="same", force_ratio=1.0) for s in item.stimuli}
-        if len(same) > 1 or any(s.force_ratio != 1.0 for s in item.stimuli):
-            reason = "both stimuli must be the same rendering; the staircase makes the second one stronger"
+        same = {msgspec.structs.replace(s.unchanged, name="same") for s in item.stimuli}
+        if len(same) > 1 or any(s != s.unchanged for s in item.stimuli):
+            reason = f"both stimuli must be the same rendering; {article} makes the second one stronger"
             yield f"items ({item.name!r}): {reason}"
 
 
@@ -141,7 +168,7 @@ def _item(plan: StudyPlan, item: Item) -> Iterator[str]:
     for stimulus in item.rendered:
         yield from _stimulus(f"{place}, {stimulus.name!r}", stimulus)
     seen: dict[Stimulus, str] = {}
-    for stimulus in item.stimuli if plan.kind != "staircase" else ():
+    for stimulus in () if plan.kind in ADAPTIVE else item.stimuli:
         same = msgspec.structs.replace(stimulus, name="same")
         if same in seen:
             yield f"{place}: {seen[same]!r} and {stimulus.name!r} are one and the same rendering"

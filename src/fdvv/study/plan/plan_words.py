@@ -11,9 +11,13 @@ from fdvv.force_text import force_text
 from fdvv.study.plan.plan import Item, Question, Rating, Stimulus, StudyPlan
 from fdvv.study.plan.schedule import LABELS
 from fdvv.study.plan.staircase import target_share
+from fdvv.thresholds.observer import DIMENSIONS
 
 KINDS_WITH_TIES = ("realism", "2ac", "preference")
 """In which "equal" may be answered; in the others one must be named, or only ratings are given."""
+
+JND_share = 0.75
+"""Of the comparisons that notice one just noticeable difference."""
 
 TASKS = {
     "realism": "X is {x}. A and B hide {names}; which is closer to X?",
@@ -23,6 +27,7 @@ TASKS = {
     "preference": "A and B hide {names}; neither is right.",
     "mushra": "X is {first}, openly. {labels} hide {names}, and each is rated.",
     "staircase": "A and B hide {names}; {last} has more force, and must be named.",
+    "thresholds": "A and B hide {names}; {last} has more of something, and must be named.",
 }
 
 
@@ -106,8 +111,10 @@ def question_line(question: Question, language: str) -> str:
 
 def stimulus_text(stimulus: Stimulus) -> str:
     text = f"{stimulus.button}, {stimulus.rendered}"
-    if stimulus.force_ratio != 1.0:
-        text += f", {stimulus.force_ratio:g} times the force"
+    for name in DIMENSIONS:
+        ratio = getattr(stimulus, f"{name}_ratio")
+        if ratio != 1.0:
+            text += f", {ratio:g} times the {name}"
     return text + (f", compensated by {stimulus.actuation}" if stimulus.actuation else "")
 
 
@@ -144,7 +151,8 @@ def claim_text(plan: StudyPlan) -> str:
     claim = plan.claim
     if claim is None:
         rule = plan.staircase
-        found = f"; thresholds are found at {100 * target_share(rule):.1f} % correct" if rule else ""
+        share = target_share(rule) if rule else JND_share if plan.thresholds else None
+        found = "" if share is None else f"; thresholds are found at {100 * share:.1f} % correct"
         return f"None{found}."
     if claim.measure != "choice":
         text = f"{claim.more} is rated above {claim.less} in {claim.measure}"
@@ -155,7 +163,21 @@ def claim_text(plan: StudyPlan) -> str:
     return f"{text}; two-sided, at a level of {claim.alpha:g}."
 
 
-def staircase_texts(plan: StudyPlan) -> Iterator[str]:
+def adaptive_texts(plan: StudyPlan) -> Iterator[str]:
+    """Return how a threshold is approached; nothing of plans that approach none."""
+    yield from _staircase_texts(plan)
+    rule = plan.thresholds
+    if rule:
+        largest = (f"{100 * getattr(rule.largest_ratio, one):g} % more {one}" for one in rule.dimensions)
+        several = ", in every third trial in several" if rule.combined and len(rule.dimensions) > 1 else ""
+        yield (
+            f"{rule.trials} trials. The comparison grows in one of {', '.join(rule.dimensions)}{several}, "
+            "each time by what is expected to say most of the just noticeable differences; at most by "
+            f"{', '.join(largest)}."
+        )
+
+
+def _staircase_texts(plan: StudyPlan) -> Iterator[str]:
     rule = plan.staircase
     if rule:
         steps = ", then ".join(f"{step:g}" for step in rule.steps_ratio)

@@ -10,6 +10,7 @@ import numpy as np
 
 from fdvv.stats.orders import williams_orders
 from fdvv.study.plan.plan import Item, Staircase, StudyPlan
+from fdvv.study.plan.threshold_trials import practice_change
 from fdvv.study.plan.trial import StudyTrial
 
 LABELS = "ABCDEFGHIJKLMNOPQRSTUVW"
@@ -28,7 +29,8 @@ def draw_schedule(plan: StudyPlan, person_index: int, random: np.random.Generato
         schedule could work out the next.
 
     A staircase has ``staircase.trials`` trials for every item and round, of which those behind its end are
-    not shown; their ratio is filled in when their turn comes.
+    not shown, and thresholds have ``thresholds.trials``; their ratio, or change, is filled in when their turn
+    comes.
 
     Notes
     -----
@@ -88,7 +90,7 @@ def item_orders(
 
 
 def _assignments(plan: StudyPlan, item: Item, random: np.random.Generator) -> list[list[Assignment]]:
-    size = (plan.staircase or Staircase()).trials if plan.kind == "staircase" else 1
+    size = plan.block
     count = size * plan.rounds
     names = [stimulus.name for stimulus in item.stimuli]
     if len(names) != 2:
@@ -109,7 +111,7 @@ def _pairs(
     """Draw pairs: of two stimuli, what A and B hide; in ABX, what X is, and which of A and B is the same."""
     first, second = names
     sides = balanced(count, random)  # where the second stimulus, or in ABX what X is, hides
-    right = plan.kind in ("2afc", "2ac", "staircase")
+    right = plan.kind in ("2afc", "2ac", "staircase", "thresholds")
     if plan.kind != "abx":
         hides = [{"A": second, "B": first}, {"A": first, "B": second}]
         return [(hides[side], "AB"[side] if right else "") for side in sides]
@@ -134,5 +136,6 @@ def _practice(plan: StudyPlan, random: np.random.Generator) -> list[StudyTrial]:
         names = [stimulus.name for stimulus in item.stimuli]
         labels, right = _pairs(plan, names, 1, random)[0] if len(names) == 2 else _permuted(names, random)
         ratio = (plan.staircase or Staircase()).start_ratio if plan.kind == "staircase" else 0.0
-        found.append(StudyTrial(i, item.name, 0, labels, True, right, ratio))
+        change = practice_change(plan.thresholds, i) if plan.thresholds else ()
+        found.append(StudyTrial(i, item.name, 0, labels, True, right, ratio, change))
     return found

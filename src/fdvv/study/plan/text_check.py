@@ -12,7 +12,10 @@ from fdvv.study.plan.plan import Page, Question
 
 LANGUAGE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]{2,8})*")
 COLUMN = re.compile(r"[^\W\d]\w{0,39}")
-TAKEN = {"choice", "correct", "excluded", "item", "kind", "number", "person", "ratio", "round", "time_s"}
+TAKEN = {
+    *("choice", "correct", "excluded", "item", "kind", "number", "person", "ratio", "round", "time_s"),
+    *("force_ratio", "snap_ratio", "vibration_ratio"),
+}
 """Columns that every file of answers has."""
 Text = tuple[str, Mapping[str, object], bool]
 

@@ -17,6 +17,7 @@ class StudyTrial(Struct, frozen=True, forbid_unknown_fields=True):
     labels : what each label hides, by stimulus name; with "X" where X is rendered and hidden.
     correct : the label that is right where there is one ("A" or "B"), else "".
     ratio : of force added to the comparison of a staircase; 0 elsewhere. Filled in when its turn comes.
+    change : of force, snap and vibration added to the comparison where thresholds are measured, likewise.
     """
 
     number: int
@@ -26,6 +27,7 @@ class StudyTrial(Struct, frozen=True, forbid_unknown_fields=True):
     practice: bool = False
     correct: str = ""
     ratio: float = 0.0
+    change: tuple[float, ...] = ()
 
 
 class TrialAnswer(Struct, frozen=True, forbid_unknown_fields=True):

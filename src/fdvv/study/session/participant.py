@@ -6,8 +6,6 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Self
 
-from msgspec import structs
-
 from fdvv.errors import DeviceError, ModelError
 from fdvv.study.admin.study import Study
 from fdvv.study.files.seal import KeyHolder
@@ -21,7 +19,8 @@ from fdvv.study.session.trial import (
     ReconnectableRenderer,
     RendererLostError,
     TrialWatch,
-    staircase_ratio,
+    has_ended,
+    trial_due,
 )
 from fdvv.study.stimulus.renderer import StimulusRenderer
 
@@ -106,10 +105,9 @@ class Participant:
         self._watch.begin()
         # before it is prepared: how long that takes could reveal what is rendered
         self._add(events.TrialShown(self._now(), number, attempt, simulated))
-        ratio = self._ratio(number)
-        if ratio is None:
+        trial = trial_due(self._plan, self._session.trials, self.state, number)
+        if trial is None:
             raise ModelError(f"the staircase of trial {number} has ended")
-        trial = structs.replace(self._session.trials[number], ratio=ratio)
         self._use(trial, lambda: self._renderer.prepare(trial))
         self._trial = trial
         self._watch.begin()
@@ -193,7 +191,7 @@ class Participant:
     def _advance(self) -> Step:
         """Pass over the trials of staircases that have converged, and log where all is done."""
         while trial := self.state.next_trial:
-            if self._ratio(trial.number) is not None:
+            if not has_ended(self._plan, self._session.trials, self.state, trial.number):
                 break
             self._add(events.StaircaseConverged(self._now(), trial.item, trial.round))
         step = self.step()
@@ -211,9 +209,6 @@ class Participant:
         self._closed = True
         self._session.close()
         self._renderer.drop()
-
-    def _ratio(self, number: int) -> float | None:
-        return staircase_ratio(self._plan, self._session.trials, self.state, number)
 
     def _open(self, number: int | None = None) -> StudyTrial:
         """Return the trial that is shown. ModelError where it is another, or none."""

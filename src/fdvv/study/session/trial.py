@@ -12,11 +12,13 @@ import numpy as np
 
 from fdvv.errors import DeviceError, ModelError
 from fdvv.study.files.people import SealedTrial
-from fdvv.study.plan.plan import Stimulus, StudyPlan
+from fdvv.study.plan.plan import Stimulus, StudyPlan, Thresholds
 from fdvv.study.plan.session import SessionState
 from fdvv.study.plan.staircase import staircase_state
+from fdvv.study.plan.threshold_trials import grown_stimulus, replayed_change
 from fdvv.study.plan.trial import Rendered, StudyTrial, TrialAnswer
 from fdvv.study.stimulus.renderer import StimulusRenderer
+from fdvv.thresholds.belief import Change
 
 GONE = "the device went away; connect it again: the trial goes on"
 """All that is reported: the reason could reveal what was rendered, and is sealed."""
@@ -34,7 +36,8 @@ _LARGEST, _FAULTS, _FAULT = 99_999.0, 6, 40
 def trial_stimuli(plan: StudyPlan, trial: StudyTrial) -> dict[str, Stimulus]:
     """Return the stimulus of each label, in the labels' order; X too where it is rendered. **Secret.**
 
-    The comparison of a staircase, its second stimulus, is stronger by the trial's ratio.
+    The comparison of a staircase, its second stimulus, is stronger by the trial's ratio; where thresholds are
+    measured, by its change.
     """
     item = next((item for item in plan.items if item.name == trial.item), None)
     if item is None:
@@ -44,6 +47,8 @@ def trial_stimuli(plan: StudyPlan, trial: StudyTrial) -> dict[str, Stimulus]:
         second = item.stimuli[1]
         ratio = second.force_ratio * (1.0 + trial.ratio)
         named[second.name] = msgspec.structs.replace(second, force_ratio=ratio)
+    if plan.kind == "thresholds":
+        named[item.stimuli[1].name] = grown_stimulus(item.stimuli[1], trial.change)
     found = {label: named[name] for label, name in trial.labels.items()}
     reference = item.reference or (item.stimuli[0] if plan.kind == "mushra" else None)
     if reference and "X" not in found:
@@ -70,6 +75,33 @@ def staircase_ratio(
             assert ratio is not None
             history.append((ratio, answered.answer.choice == one.correct))
     return staircase_state(plan.staircase, history).ratio
+
+
+def trial_due(
+    plan: StudyPlan, schedule: Sequence[StudyTrial], state: SessionState, number: int
+) -> StudyTrial | None:
+    """Return a trial with what the answers so far make of it; None where its staircase has ended."""
+    trial = schedule[number]
+    if plan.kind == "thresholds" and plan.thresholds and not trial.practice:
+        return msgspec.structs.replace(trial, change=_change(plan.thresholds, schedule, state, trial))
+    ratio = staircase_ratio(plan, schedule, state, number)
+    return None if ratio is None else msgspec.structs.replace(trial, ratio=ratio)
+
+
+def has_ended(plan: StudyPlan, schedule: Sequence[StudyTrial], state: SessionState, number: int) -> bool:
+    """Return whether a trial's staircase has ended."""
+    return plan.kind == "staircase" and staircase_ratio(plan, schedule, state, number) is None
+
+
+def _change(
+    rule: Thresholds, schedule: Sequence[StudyTrial], state: SessionState, trial: StudyTrial
+) -> Change:
+    answers = []
+    for one in schedule:
+        answered = state.answers.get(one.number)
+        if answered and not one.practice and one.item == trial.item:
+            answers.append(answered.answer.choice == one.correct)
+    return replayed_change(rule, answers)
 
 
 def sealed_bytes(trial: SealedTrial) -> bytes:
@@ -135,14 +167,14 @@ class ReconnectableRenderer:
             rendered = self._use(lambda renderer: renderer.rendered())
         except RendererLostError as error:
             return self.lost(trial, str(error))
-        return SealedTrial(trial.number, trial.ratio, rendered)
+        return SealedTrial(trial.number, trial.ratio, rendered, trial.change)
 
     def lost(self, trial: StudyTrial, reason: str) -> SealedTrial:
         """Return the record of a trial whose renderer was lost, with the reason."""
         faults = ("device lost", reason)
         stimuli = trial_stimuli(self._plan, trial).items()
         rendered = tuple(Rendered(label, one.name, faults=faults) for label, one in stimuli)
-        return SealedTrial(trial.number, trial.ratio, rendered)
+        return SealedTrial(trial.number, trial.ratio, rendered, trial.change)
 
     def replace(self, renderer: StimulusRenderer) -> None:
         self.drop()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.study.plan.plan import StudyKind
+from fdvv.study.plan.plan import ADAPTIVE, StudyKind
 from fdvv.study.simulation.people import SimulatedPeople
 from fdvv.units import FloatArray
 
@@ -16,10 +16,10 @@ EQUAL_INDEX = -1
 SLIDER = 101
 """Points of a scale from 0 to 100; others begin at 1."""
 
-NO_REFERENCE: tuple[StudyKind, ...] = ("2afc", "2ac", "preference", "staircase")
+NO_REFERENCE: tuple[StudyKind, ...] = ("2afc", "2ac", "preference", *ADAPTIVE)
 """Kinds whose renderings are held against each other alone."""
 
-FORCED: tuple[StudyKind, ...] = ("abx", "2afc", "staircase")
+FORCED: tuple[StudyKind, ...] = ("abx", "2afc", *ADAPTIVE)
 """Kinds in which "equal" is no answer."""
 
 PREFERENCE_TASTE_ratio = 1.0

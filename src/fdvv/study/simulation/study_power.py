@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 
 from fdvv.errors import InputError
-from fdvv.study.plan.plan import Claim, Item, Stimulus, StudyPlan
+from fdvv.study.plan.plan import ADAPTIVE, Claim, Item, Stimulus, StudyPlan
 from fdvv.study.plan.plan_file import check_plan, read_plan
 from fdvv.study.simulation.people import ProxySettings
 from fdvv.study.simulation.perception import HapticFeatures, Senses, haptic_features, perceived_difference
@@ -47,8 +47,9 @@ def claim_of(plan: StudyPlan) -> Claim:
 
     Raises InputError where there is no claim, or none that can be upheld.
     """
-    if plan.kind == "staircase":
-        reason = "a staircase finds a threshold and claims nothing"
+    if plan.kind in ADAPTIVE:
+        what = "a staircase" if plan.kind == "staircase" else "a study of thresholds"
+        reason = f"{what} finds a threshold and claims nothing"
         raise InputError(plan.name, "claim", reason, "try it out with fdvv study simulate")
     if plan.claim is None and plan.kind == "abx":
         less, more = plan.items[0].stimuli

@@ -13,10 +13,11 @@ from typing import Protocol
 
 import numpy as np
 
-from fdvv.errors import DeviceError, InputError
+from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.live.press import LiveEvent, LiveEventKind, LivePress, PACE_mm_s
 from fdvv.live.press_subject import IDEAL_RIG, TABLES_RIG, PressSubject, learned_subject, model_subject
 from fdvv.model.file import builtin_names, load_builtin, load_model
+from fdvv.model.grown import grown
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.actuation_file import load_actuation
@@ -98,7 +99,7 @@ class ConstantTimeSwitch:
 
 
 def stimulus_model(stimulus: Stimulus, folder: Path) -> FDVVModel:
-    """Return the model that a stimulus intends: its button, reduced to FD if it says so, forces in ratio.
+    """Return the model that a stimulus intends: its button, reduced to FD if it says so, grown in its ratios.
 
     folder : of the study; a button that is not built in is a file in it or in its ``buttons``.
     Raises InputError.
@@ -108,19 +109,14 @@ def stimulus_model(stimulus: Stimulus, folder: Path) -> FDVVModel:
     else:
         model = load_model(study_file(folder, stimulus.button))
     model = fd_only(model) if stimulus.rendered == "FD" else model
-    return in_ratio(model, stimulus.force_ratio)
+    try:
+        return _grown(model, stimulus.force_ratio, stimulus.snap_ratio, stimulus.vibration_ratio)
+    except ModelError as error:
+        remedy = "choose another button, or leave this dimension out"
+        raise InputError(stimulus.name, stimulus.button, str(error), remedy) from error
 
 
-@lru_cache(maxsize=256)
-def in_ratio(model: FDVVModel, force_ratio: float) -> FDVVModel:
-    """Multiply all forces of a model; vibrations stay, and what was measured of spread is left out."""
-    if force_ratio == 1.0:
-        return model
-    curves = tuple(
-        replace(curve, control_points_cN=force_ratio * curve.control_points_cN, spread=None)
-        for curve in model.curves
-    )
-    return replace(model, curves=curves)
+_grown = lru_cache(maxsize=256)(grown)
 
 
 def check_label(label: str, labels: Mapping[str, object]) -> None:
@@ -166,28 +162,30 @@ _ideal = lru_cache(maxsize=256)(model_subject)
 
 
 def stimulus_actuation(stimulus: Stimulus, folder: Path, model: FDVVModel) -> CompensationResult:
-    """Return the compensation of a rig for a stimulus, its forces in the stimulus's ratio.
+    """Return the compensation of a rig for a stimulus, grown in the stimulus's ratios.
 
-    What compensation added stays as it was learned; only the model's own part of the force is multiplied.
+    What compensation added stays as it was learned; only the model's own part of the force grows.
     Raises InputError.
     """
     learned = load_actuation(study_file(folder, stimulus.actuation))
     if abs(learned.travel_mm - model.travel_mm) > 1e-6:
         reason = f"was learned for a travel of {learned.travel_mm:g} mm, {model.name} has {model.travel_mm:g}"
         raise InputError(stimulus.actuation, "$.travel_mm", reason, "learn it again for this button")
-    if stimulus.force_ratio == 1.0:
+    if stimulus == stimulus.unchanged:
         return learned
     surface = learned.surface
     step_mm = float(surface.displacement_mm[1] - surface.displacement_mm[0])
-    own = ForceSurface.of_model(model, surface.velocity_mm_s, step_mm)
-    part = 1 - 1 / stimulus.force_ratio
-    if own.press_cN.shape != surface.press_cN.shape:
-        reason = "its places are none that a force ratio can be put on"
+    before, after = (
+        ForceSurface.of_model(one, surface.velocity_mm_s, step_mm)
+        for one in (stimulus_model(stimulus.unchanged, folder), model)
+    )
+    if after.press_cN.shape != surface.press_cN.shape:
+        reason = "its places are none that a ratio can be put on"
         raise InputError(stimulus.actuation, "$.displacement_mm", reason, "learn it again for this button")
     scaled = replace(
         surface,
-        press_cN=surface.press_cN + part * own.press_cN,
-        release_cN=surface.release_cN + part * own.release_cN,
+        press_cN=surface.press_cN + after.press_cN - before.press_cN,
+        release_cN=surface.release_cN + after.release_cN - before.release_cN,
     )
     return replace(learned, outcome=replace(learned.outcome, surface=scaled))
 
