@@ -137,11 +137,16 @@ def _word(record: type[Any], name: str, own_type: bool) -> str:
 
 
 def _own(record: type[Any]) -> tuple[Text | None, dict[str, str], str]:
-    """Return a record's text, the meanings that its source states, and its docstring."""
+    """Return a record's text, the meanings that its source and its bases state, and their docstrings."""
     by_dataclass = (record.__doc__ or "").startswith(f"{record.__name__}(")
     doc = "" if by_dataclass else inspect.cleandoc(record.__doc__ or "")
     text, entries = read(doc, _names(record))
-    return text, _beside_fields(record) | entries, doc
+    entries = _beside_fields(record) | entries
+    for base in record.__mro__[1:]:
+        if issubclass(base, msgspec.Struct) and base.__struct_fields__:
+            shared = inspect.cleandoc(base.__doc__ or "")
+            entries, doc = read(shared, _names(record))[1] | entries, f"{doc} {shared}"
+    return text, entries, doc
 
 
 def _names(record: type[Any]) -> tuple[str, ...]:

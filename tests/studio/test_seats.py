@@ -87,9 +87,9 @@ def test_every_call_answers_403_to_a_seat(tablet: TestClient, word: str, name: s
     assert tablet.post(f"/api/{name}", json=question, headers=bearer).status_code == 403
 
 
-@pytest.mark.parametrize("channel", sorted(set(load_parts().channels) - {"study"}))
+@pytest.mark.parametrize("channel", sorted(set(load_parts().channels) - {"study", "timing"}))
 @pytest.mark.parametrize("query", [True, False])
-def test_a_seat_has_one_channel(tablet: TestClient, word: str, channel: str, query: bool) -> None:
+def test_a_seat_has_only_the_channels_of_participants(tablet: TestClient, word: str, channel: str, query: bool) -> None:
     with tablet.websocket_connect(f"{LIVE}?seat={word}" if query else LIVE) as socket:
         socket.send_json({"channel": channel, "body": {"type": "watch"}})
         with pytest.raises(WebSocketDisconnect) as refused:

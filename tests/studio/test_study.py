@@ -438,7 +438,7 @@ def test_a_study_is_declared_from_every_template_changed_and_checked(
         return client.post(f"/api/studies.{name}", json=question).json()
 
     names = [one["name"] for one in post("offers")["templates"]]
-    assert len(names) == 7
+    assert len(names) == 10
     for name in names:
         assert post("create", name=f"of-{name}", template=name) == {"study": f"of-{name}"}
         found = post("plan", study=f"of-{name}")

@@ -9,6 +9,7 @@ from typing import get_args
 import msgspec
 import pytest
 
+from fdvv.study.plan.plan import Page, Question
 from fdvv.timing.plan.plan import Condition, ConditionKind, TimingClaim, TimingPlan, TrainingPlan
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "timing-file.md"
@@ -17,6 +18,8 @@ PARTS: dict[str, type[msgspec.Struct]] = {
     "Condition": Condition,
     "Training": TrainingPlan,
     "Claim": TimingClaim,
+    "Page": Page,
+    "Question": Question,
 }
 
 

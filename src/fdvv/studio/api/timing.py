@@ -28,7 +28,8 @@ class TimingPerson(Message):
 
     phase : where they are. rounds : presses, or seconds of tapping, that are kept.
     due_at : from when they may come back. overdue_at : from when they are late. reminder : to be sent to
-        them; empty where none is due.
+        them; empty where none is due. resumptions : how often they came back. interruptions : how often a
+        device went away. problem : why their record cannot be read, or empty.
     """
 
     person: str
