@@ -89,7 +89,9 @@ def test_every_call_answers_403_to_a_seat(tablet: TestClient, word: str, name: s
 
 @pytest.mark.parametrize("channel", sorted(set(load_parts().channels) - {"study", "timing"}))
 @pytest.mark.parametrize("query", [True, False])
-def test_a_seat_has_only_the_channels_of_participants(tablet: TestClient, word: str, channel: str, query: bool) -> None:
+def test_a_seat_has_only_the_channels_of_participants(
+    tablet: TestClient, word: str, channel: str, query: bool
+) -> None:
     with tablet.websocket_connect(f"{LIVE}?seat={word}" if query else LIVE) as socket:
         socket.send_json({"channel": channel, "body": {"type": "watch"}})
         with pytest.raises(WebSocketDisconnect) as refused:
@@ -176,3 +178,12 @@ def test_a_broken_file_of_seats_costs_invitations_only(tmp_path: Path) -> None:
     (tmp_path / "studies" / "mine.seats").write_text("{")
     seats = Seats(Studio(tmp_path))
     assert seats.find(seats.make("mine")) is not None
+
+
+def test_a_seat_is_confined_on_the_channel_of_timing_studies_too(
+    tablet: TestClient, word: str, studies: Studies
+) -> None:
+    question = {"type": "look", "study": NAME, "seat": studies.invite(NAME), "holder": secrets.token_hex(8)}
+    with tablet.websocket_connect(f"{LIVE}?seat={word}") as socket:
+        socket.send_json({"channel": "timing", "body": question})
+        assert "is another one's" in str(socket.receive_json())
