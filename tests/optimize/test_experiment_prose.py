@@ -35,7 +35,7 @@ def test_an_effect_tells_corrected_freedom_epsilon_and_size() -> None:
 
 
 def test_sphericity_is_reported_where_it_applies() -> None:
-    assert sphericity_text(effect()) == "Sphericity of button is denied (Mauchly's W = 0.02, p = .001)."
+    assert sphericity_text(effect()) == "Sphericity of button is rejected (Mauchly's W = 0.02, p = .001)."
     assert sphericity_text(effect(1)) == ""
 
 

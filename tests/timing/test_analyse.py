@@ -97,7 +97,7 @@ def test_the_report_has_the_papers_figures_beside_its_own_and_marks_what_is_simu
     plan = TimingStudy.open(timing_template("timing", tmp_path / "s").parent).plan
     found = analyse_timing(made_scores(plan, 10, 15.0, simulated=True))
     html = timing_html(found, tmp_path, "a test")
-    for words in ("Simulated:", "this study, simulated: mean (ms)", "65.8", "108.22", "F(5, 95) = 10.724"):
+    for words in ("Simulated:", "Simulated. Mean asynchrony beside", "65.8", "108.22", "F(5, 95) = 10.724"):
         assert words in html
     assert "Simulated. Contrasts of the mixed model." in html
     measured = timing_html(analyse_timing(made_scores(plan, 10, 15.0)), tmp_path, "a test")

@@ -39,7 +39,7 @@ def sphericity_text(effect: AnovaEffect) -> str:
     found = effect.sphericity
     if found.W is None or found.p is None:
         return ""
-    verdict = "is denied" if found.p < ALPHA else "is not denied"
+    verdict = "is rejected" if found.p < ALPHA else "is not rejected"
     return f"Sphericity of {effect.name} {verdict} (Mauchly's W = {found.W:.3g}, {p_text(found.p)})."
 
 

@@ -91,7 +91,7 @@ def _draw_bars(ax: Axes, panel: ScoreBars) -> None:
     for place, column in zip(places, panel.scores.T, strict=True):
         ax.plot(place + aside, column, ".", color=style.QUIET, markersize=3.5, alpha=0.8, zorder=2.0)
     ax.errorbar(places, means, panel.spread, fmt="none", ecolor=style.INK, capsize=4.0, elinewidth=1.2)
-    ax.set_xticks(places, [style.name_text(name) for name in panel.names])
+    ax.set_xticks(places, [style.name_text(name).replace(" ", "\n") for name in panel.names])
     ax.grid(axis="x", visible=False)
 
 

@@ -182,15 +182,14 @@ def _anova_tables(found: TimingAnalysis) -> tuple[Table, ...]:
 
 def _beside_paper(found: TimingAnalysis) -> Section:
     rows = tuple(_paper_cells(found, one) for one in found.means)
-    here = "this study, simulated" if found.simulated else "this study"
     columns = (
         "button and level",
-        f"{here}: mean (ms)",
-        "SD of people (ms)",
-        "SD of rounds (ms)",
-        "lost presses (%)",
+        "mean (ms)",
+        "SD of people",
+        "SD of rounds",
+        "lost (%)",
         "paper: mean (ms)",
-        "paper: STD (ms)",
+        "paper: STD",
     )
     text = (
         f"The paper's figures are cited from {paper.SOURCE}. Its main effect of button is "

@@ -97,4 +97,5 @@ def gap_sentence(found: TimingAnalysis) -> str:
     if not days:
         return ""
     simulated = "simulated " if found.simulated else ""
-    return f"The validation was {min(days):.1f} to {max(days):.1f} {simulated}days after the training."
+    span = " to ".join(dict.fromkeys(f"{day:.1f}" for day in (min(days), max(days))))
+    return f"The validation was {span} {simulated}days after the training."
