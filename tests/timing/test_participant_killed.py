@@ -159,4 +159,5 @@ def test_a_killed_session_keeps_every_press_it_acknowledged(tmp_path: Path) -> N
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 def test_no_press_is_lost_at_many_random_moments(tmp_path: Path) -> None:
-    assert check_kills(tmp_path / "study", 2, 0.05, 12) >= 25
+    """The wait before each end is short, or a quick machine is done with its presses after few of them."""
+    assert check_kills(tmp_path / "study", 2, 0.01, 12) >= 25
