@@ -327,30 +327,6 @@ def test_the_screens_of_a_timing_study_are_whole(look: tuple[Page, list[str]]) -
     assert found + taken(logged) == []
 
 
-@pytest.mark.timeout(300)
-def test_what_lies_on_the_table_is_asked_for_on_a_whole_screen(look: tuple[Page, list[str]]) -> None:
-    page, logged = look
-    go(page, "home")
-    timer = seated(page, "untrained", timing_text(0, 2))
-    timer.agree()
-    while not timer.page.locator(".study-sheet[data-key=F13]").count():
-        timer.prepare()
-        at = timer.page.inner_text(".study-at")
-        timer.begin()
-        timer.page.wait_for_selector(f".study-at:not(:has-text('{at}'))", timeout=30_000)
-    found = at_every_size(timer.page)
-
-    def mistaken(_page: Page) -> None:
-        timer.hit("Space")
-        expect(timer.page.locator(".other")).to_contain_text("does not count")
-
-    found += at_every_size(timer.page, mistaken)
-    timer.place()
-    found += at_every_size(timer.page)
-    timer.page.close()
-    assert found + taken(logged) == []
-
-
 @pytest.mark.parametrize("kind", PLANTED)
 def test_a_planted_fault_is_found(look: tuple[Page, list[str]], kind: str) -> None:
     page, _ = look
