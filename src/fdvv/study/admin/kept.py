@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import secrets
 import shutil
+from abc import abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+from typing import Self
 
 import fdvv
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal
-from fdvv.io.files import make_private, sync_folder, write_atomic
+from fdvv.io.files import make_private, read_limited, sync_folder, write_atomic
 from fdvv.rendering.session import now
 from fdvv.study.files import layout
 from fdvv.study.files.chained_log import ChainedLog, open_when_free, read_chained
@@ -38,6 +40,45 @@ from fdvv.study.plan.trial import StudyTrial
 
 class KeptStudy(KeptFolder):
     """What every kind of study does with its folder; no file is held open between two calls."""
+
+    @classmethod
+    @abstractmethod
+    def files_named(cls, text: str, source: object) -> Sequence[str]:
+        """Return the files that the text of a plan names, as it names them. InputError."""
+
+    @classmethod
+    def declare(cls, folder: Path, plan_file: Path) -> Self:
+        """Declare a study in a folder that is new or empty: copy its plan and all files that it names.
+
+        InputError on a plan that cannot be read, or that names a file that is not there. OSError.
+        """
+        text = read_limited(plan_file, layout.LARGEST_bytes, layout.SMALLER).decode(errors="replace")
+        return cls.declare_text(folder, text, Path(plan_file).parent, plan_file)
+
+    @classmethod
+    def declare_text(cls, folder: Path, text: str, beside: Path, source: object = STUDY_FILE) -> Self:
+        """Declare a study from the text of its plan, whole or not at all. beside : where its files lie."""
+        make_folder(folder, lambda building: cls._put_plan(building, text, beside, source))
+        return cls(folder)
+
+    @classmethod
+    def open(cls, folder: Path) -> Self:
+        """Open a study. InputError where there is none."""
+        if not (Path(folder) / STUDY_FILE).is_file():
+            raise InputError(folder, "folder", f"holds no study ({STUDY_FILE})", "name the folder of a study")
+        return cls(folder)
+
+    def change_plan(self, text: str, beside: Path | None = None) -> None:
+        """Replace the plan of a study that is not frozen. beside : where files lie that it names."""
+        if self.frozen:
+            raise InputError(self.folder, "study", "is frozen", "declare a new study in another folder")
+        self._put_plan(self.folder, text, beside or self.folder, STUDY_FILE)
+
+    @classmethod
+    def _put_plan(cls, folder: Path, text: str, beside: Path, source: object) -> None:
+        """Write a plan, behind all files that it names. InputError where one is not there, OSError."""
+        layout.copy_files(cls.files_named(text, source), Path(beside), folder)
+        write_atomic(folder / STUDY_FILE, text)
 
     def freeze_files(self, names: Sequence[str], builtins: Iterable[str], passphrase: str, cost: Cost) -> str:
         """Freeze a plan that was checked, the files that it names, and built-in buttons by name.

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from fdvv.errors import InputError
-from fdvv.io.files import read_limited, write_atomic
-from fdvv.study.admin.kept import KeptStudy, make_folder
+from fdvv.study.admin.kept import KeptStudy
 from fdvv.study.admin.review import review_plan, twin_problems
 from fdvv.study.analysis.unseal import unseal_folder
 from fdvv.study.files import layout
@@ -29,32 +29,8 @@ class Study(KeptStudy, StudyFolder):
     """
 
     @classmethod
-    def declare(cls, folder: Path, plan_file: Path) -> Study:
-        """Declare a study in a folder that is new or empty: copy its plan and all files that it names.
-
-        InputError on a plan that cannot be read, or that names a file that is not there. OSError.
-        """
-        text = read_limited(plan_file, layout.LARGEST_bytes, layout.SMALLER).decode(errors="replace")
-        return cls.declare_text(folder, text, Path(plan_file).parent, plan_file)
-
-    @classmethod
-    def declare_text(cls, folder: Path, text: str, beside: Path, source: object = STUDY_FILE) -> Study:
-        """Declare a study from the text of its plan, whole or not at all. beside : where its files lie."""
-        make_folder(folder, lambda building: _put_plan(building, text, beside, source))
-        return cls(folder)
-
-    @classmethod
-    def open(cls, folder: Path) -> Study:
-        """Open a study. InputError where there is none."""
-        if not (Path(folder) / STUDY_FILE).is_file():
-            raise InputError(folder, "folder", f"holds no study ({STUDY_FILE})", "name the folder of a study")
-        return cls(folder)
-
-    def change_plan(self, text: str, beside: Path | None = None) -> None:
-        """Replace the plan of a study that is not frozen. beside : where files lie that it names."""
-        if self.frozen:
-            raise InputError(self.folder, "study", "is frozen", "declare a new study in another folder")
-        _put_plan(self.folder, text, beside or self.folder, STUDY_FILE)
+    def files_named(cls, text: str, source: object) -> Sequence[str]:
+        return layout.named_files(read_plan_text(text, source))
 
     def freeze(self, passphrase: str, cost: Cost = PASSPHRASE_COST) -> str:
         """Freeze the study, and return its fingerprint: from now on every change is noticed.
@@ -97,9 +73,3 @@ class Study(KeptStudy, StudyFolder):
         holder, about = self.require_unsealable(passphrase, who, why, keeper, despite)
         with self.log() as log:
             return unseal_folder(self.folder, self.plan, log, holder, about)
-
-
-def _put_plan(folder: Path, text: str, beside: Path, source: object) -> None:
-    """Write a plan, behind all files that it names. InputError where one is not there, OSError."""
-    layout.copy_files(layout.named_files(read_plan_text(text, source)), Path(beside), folder)
-    write_atomic(folder / STUDY_FILE, text)

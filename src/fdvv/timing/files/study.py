@@ -7,11 +7,9 @@ from pathlib import Path
 from typing import ClassVar
 
 from fdvv.errors import FdvvError, InputError
-from fdvv.io.files import read_limited, write_atomic
 from fdvv.model.file import builtin_names
 from fdvv.program.library import names_program
-from fdvv.study.admin.kept import KeptStudy, make_folder
-from fdvv.study.files import layout
+from fdvv.study.admin.kept import KeptStudy
 from fdvv.study.files.person_check import SessionReading
 from fdvv.study.files.seal import CODE_COST, PASSPHRASE_COST, Cost
 from fdvv.study.plan.plan_file import STUDY_FILE
@@ -36,26 +34,8 @@ class TimingStudy(KeptStudy):
         self._plan: tuple[bytes, TimingPlan] | None = None
 
     @classmethod
-    def declare(cls, folder: Path, plan_file: Path) -> TimingStudy:
-        """Declare a study in a folder that is new or empty: copy its plan and all files that it names.
-
-        InputError on a plan that cannot be read, or that names a file that is not there. OSError.
-        """
-        text = read_limited(plan_file, layout.LARGEST_bytes, layout.SMALLER).decode(errors="replace")
-        return cls.declare_text(folder, text, Path(plan_file).parent, plan_file)
-
-    @classmethod
-    def declare_text(cls, folder: Path, text: str, beside: Path, source: object = STUDY_FILE) -> TimingStudy:
-        """Declare a study from the text of its plan, whole or not at all. beside : where its files lie."""
-        make_folder(folder, lambda building: _put_plan(building, text, beside, source))
-        return cls(folder)
-
-    @classmethod
-    def open(cls, folder: Path) -> TimingStudy:
-        """Open a study. InputError where there is none."""
-        if not (Path(folder) / STUDY_FILE).is_file():
-            raise InputError(folder, "folder", f"holds no study ({STUDY_FILE})", "name the folder of a study")
-        return cls(folder)
+    def files_named(cls, text: str, source: object) -> tuple[str, ...]:
+        return named_files(read_timing_plan(text, source))
 
     @property
     def plan(self) -> TimingPlan:
@@ -64,12 +44,6 @@ class TimingStudy(KeptStudy):
         if self._plan is None or self._plan[0] != data:
             self._plan = data, read_timing_plan(data, self.folder / STUDY_FILE)
         return self._plan[1]
-
-    def change_plan(self, text: str, beside: Path | None = None) -> None:
-        """Replace the plan of a study that is not frozen. beside : where files lie that it names."""
-        if self.frozen:
-            raise InputError(self.folder, "study", "is frozen", "declare a new study in another folder")
-        _put_plan(self.folder, text, beside or self.folder, STUDY_FILE)
 
     def freeze(self, passphrase: str, cost: Cost = PASSPHRASE_COST) -> str:
         """Freeze the study, and return its fingerprint: from now on every change is noticed.
@@ -118,9 +92,3 @@ def button_problems(plan: TimingPlan, folder: Path) -> Iterator[str]:
                 opened_button(folder, one)
         except (FdvvError, OSError) as error:
             yield f"conditions ({one.name!r}): {error}"
-
-
-def _put_plan(folder: Path, text: str, beside: Path, source: object) -> None:
-    """Write a plan, behind all files that it names. InputError where one is not there, OSError."""
-    layout.copy_files(named_files(read_timing_plan(text, source)), Path(beside), folder)
-    write_atomic(folder / STUDY_FILE, text)
