@@ -28,8 +28,7 @@ from fdvv.study.files.people import EVERYBODY
 from fdvv.study.files.run_key import CLOSED, OPEN_FIRST, RunKey
 from fdvv.study.files.seal import Cost
 from fdvv.study.plan.plan_file import STUDY_FILE
-from fdvv.timing.files.study import TimingStudy
-from fdvv.timing.plan.plan_file import is_timing
+from fdvv.timing.files.study import AnyStudy, TimingStudy, open_study
 
 DEVICE_SUFFIX = ".device"
 TWIN = "twin"
@@ -308,14 +307,6 @@ class Studies:
             screen.leave("the studio was closed")
         for folder in self._tried.values():
             folder.cleanup()
-
-
-AnyStudy = Study | TimingStudy
-
-
-def open_study(folder: Path) -> AnyStudy:
-    """Open a study of whatever kind. InputError where there is none."""
-    return TimingStudy.open(folder) if is_timing(folder) else Study.open(folder)
 
 
 def _device_problems(study: AnyStudy, device: str) -> tuple[str, ...]:

@@ -10,7 +10,6 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.study.kinds import open_study
 from fdvv.cli.study.timing import timing_status, timing_unseal
 from fdvv.io.files import read_limited
 from fdvv.study.admin.kept import KeptStudy
@@ -18,7 +17,7 @@ from fdvv.study.admin.operator_view import OperatorView, operator_view
 from fdvv.study.admin.study import Study
 from fdvv.study.plan.answers import Answers
 from fdvv.timing.analysis.unseal import unseal_timing
-from fdvv.timing.files.study import TimingStudy
+from fdvv.timing.files.study import TimingStudy, open_study
 
 folder_argument = click.argument("folder", type=ui.FOLDER)
 passphrase_option = ui.option(

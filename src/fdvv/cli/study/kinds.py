@@ -5,9 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from fdvv.errors import InputError
-from fdvv.study.admin.study import Study
 from fdvv.study.plan.plan_file import write_template
-from fdvv.timing.files.study import TimingStudy
 from fdvv.timing.plan.plan_file import TEMPLATE_NAMES, is_timing, timing_template
 
 KINDS = ("realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase", "thresholds", *TEMPLATE_NAMES)
@@ -24,11 +22,6 @@ def write_kind(kind: str, folder: Path) -> Path:
     """Write a shipped study of a kind, called as its folder; return its file. InputError, OSError."""
     write = timing_template if kind in TEMPLATE_NAMES else write_template
     return write(kind, folder, folder.absolute().name)
-
-
-def open_study(folder: Path) -> Study | TimingStudy:
-    """Open the study in a folder, of whichever kind. InputError where there is none."""
-    return TimingStudy.open(folder) if is_timing(folder) else Study.open(folder)
 
 
 def refuse_timing(study: Path, command: str, instead: str) -> None:

@@ -12,7 +12,7 @@ from fdvv.errors import FdvvError, InputError
 from fdvv.studio.api.study_steps import text_in
 from fdvv.studio.contract import Empty, Message, call, error_line, message_of, watch_channel
 from fdvv.studio.devices import available_devices, device_names
-from fdvv.studio.studies import TRIED, TWIN, AnyStudy, Studies, StudiesChanged, StudyState, state_of
+from fdvv.studio.studies import TRIED, TWIN, Studies, StudiesChanged, StudyState, state_of
 from fdvv.studio.studio import Studio
 from fdvv.studio.timing_admin import people_of, report_html, standing_text, timing_sentence
 from fdvv.study.admin.operator_view import PersonView, operator_view
@@ -26,7 +26,7 @@ from fdvv.study.files.counts import COUNTED
 from fdvv.study.files.people import EVERYBODY
 from fdvv.timing.analysis.unseal import unseal_timing
 from fdvv.timing.files.progress import PersonProgress
-from fdvv.timing.files.study import TimingStudy
+from fdvv.timing.files.study import AnyStudy, TimingStudy
 
 Name = Annotated[str, Meta(max_length=60)]
 Line = Annotated[str, Meta(max_length=1000)]

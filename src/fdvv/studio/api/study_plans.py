@@ -15,7 +15,7 @@ from fdvv.report.report import Section
 from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.studies import TEMPLATE_DESCRIPTIONS, Name, StudiesAsk, Text
 from fdvv.studio.contract import Empty, Message, Offer, call, error_line
-from fdvv.studio.studies import AnyStudy, Studies
+from fdvv.studio.studies import Studies
 from fdvv.studio.studio import Studio
 from fdvv.studio.timing_admin import study_problems, text_problems, timing_sections
 from fdvv.study.admin.preview import preview_sections
@@ -29,7 +29,7 @@ from fdvv.study.plan.plan_file import (
     template_text,
     write_template,
 )
-from fdvv.timing.files.study import TimingStudy
+from fdvv.timing.files.study import AnyStudy, TimingStudy
 from fdvv.timing.plan.plan_file import TEMPLATE_NAMES, timing_template
 
 

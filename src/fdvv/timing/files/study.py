@@ -10,6 +10,7 @@ from fdvv.errors import FdvvError, InputError
 from fdvv.model.file import builtin_names
 from fdvv.program.library import names_program
 from fdvv.study.admin.kept import KeptStudy
+from fdvv.study.admin.study import Study
 from fdvv.study.files.person_check import SessionReading
 from fdvv.study.files.seal import CODE_COST, PASSPHRASE_COST, Cost
 from fdvv.study.plan.plan_file import STUDY_FILE
@@ -17,7 +18,7 @@ from fdvv.study.plan.trial import StudyTrial
 from fdvv.timing.files.buttons import opened_button
 from fdvv.timing.files.reading import READING
 from fdvv.timing.plan.plan import TimingPlan
-from fdvv.timing.plan.plan_file import check_timing_plan, read_timing_plan
+from fdvv.timing.plan.plan_file import check_timing_plan, is_timing, read_timing_plan
 from fdvv.timing.plan.schedule import draw_validation
 
 
@@ -75,6 +76,14 @@ class TimingStudy(KeptStudy):
         """Return what orders are drawn with. Simulated people have nothing to be blind to."""
         what = f"orders of conditions, {self.fingerprint}"
         return what if simulated or self.run_key is None else self.run_key.mark(what)
+
+
+AnyStudy = Study | TimingStudy
+
+
+def open_study(folder: Path) -> AnyStudy:
+    """Open the study in a folder, of whichever kind. InputError where there is none."""
+    return TimingStudy.open(folder) if is_timing(folder) else Study.open(folder)
 
 
 def named_files(plan: TimingPlan) -> tuple[str, ...]:
