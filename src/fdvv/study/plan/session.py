@@ -12,6 +12,7 @@ from fdvv.errors import ModelError
 from fdvv.study.plan import events
 from fdvv.study.plan.events import Event, SessionStarted, TrialFace
 from fdvv.study.plan.plan import StudyPlan
+from fdvv.study.plan.sitting import SittingState
 
 MOST_FALLS = 3
 """Losses of the device while a trial was felt, after which the trial is given up."""
@@ -24,43 +25,19 @@ ENDS: tuple[StepKind, ...] = ("done", "declined", "withdrawn")
 
 
 @dataclass(frozen=True)
-class SessionState:
-    """The state of a session.
+class SessionState(SittingState):
+    """The state of a session that shows trials to be answered.
 
     Attributes
     ----------
-    plan, started : of the session.
-    pages : that were answered, by name. answers : by the trial's number. attempts : how often each was
-        shown. open : the trial that is shown, or None.
-    converged : item and round of staircases that have ended.
-    work_since_s : since when the person works without a break. break_since_s : when a break began that has
-        not ended. left_s : when the session was closed.
-    declined, withdrawn : it is over. interruptions, resumptions : how often.
-    falls : how often the device went away while a trial was felt, by number. skipped : trials given up for
-        that.
+    answers : by the trial's number. converged : item and round of staircases that have ended.
+    falls : counted only while a label was felt.
     """
 
     plan: StudyPlan
     started: SessionStarted
-    pages: dict[str, events.PageAnswered] = field(default_factory=dict)
     answers: dict[int, events.TrialAnswered] = field(default_factory=dict)
-    attempts: dict[int, int] = field(default_factory=dict)
-    open: int | None = None
     converged: frozenset[tuple[str, int]] = frozenset()
-    work_since_s: float | None = None
-    break_since_s: float | None = None
-    left_s: float | None = None
-    declined: bool = False
-    withdrawn: bool = False
-    interruptions: int = 0
-    resumptions: int = 0
-    falls: dict[int, int] = field(default_factory=dict)
-    skipped: frozenset[int] = frozenset()
-
-    @property
-    def over(self) -> bool:
-        """Whether the person declined or withdrew."""
-        return self.declined or self.withdrawn
 
     @property
     def next_trial(self) -> TrialFace | None:
@@ -74,11 +51,6 @@ class SessionState:
     def _is_left(self, trial: TrialFace) -> bool:
         converged = not trial.practice and (trial.item, trial.round) in self.converged
         return trial.number not in self.answers and trial.number not in self.skipped and not converged
-
-    def next_page(self, *whens: str) -> str | None:
-        """Return the name of the first page of these times that was not answered."""
-        pages = (page.name for when in whens for page in self.plan.pages if page.when == when)
-        return next((name for name in pages if name not in self.pages), None)
 
     def after(self, event: Event) -> SessionState:
         """Return the state after an event. ModelError where it cannot follow."""
@@ -99,15 +71,6 @@ def state_of(plan: StudyPlan, happened: Sequence[Event]) -> SessionState:
     return state
 
 
-def _page(state: SessionState, event: events.PageAnswered) -> SessionState:
-    before = ("consent", "before") if state.next_trial else ("consent", "before", "after")
-    if event.name != state.next_page(*before):
-        raise ModelError(f"page {event.name} is not the one that was asked")
-    (page,) = (one for one in state.plan.pages if one.name == event.name)
-    declined = page.when == "consent" and not event.agreed
-    return replace(state, pages={**state.pages, event.name: event}, declined=declined)
-
-
 def _shown(state: SessionState, event: events.TrialShown) -> SessionState:
     due = state.next_trial
     attempt = state.attempts.get(event.number, 0) + 1
@@ -124,14 +87,7 @@ def _answered(state: SessionState, event: events.TrialAnswered) -> SessionState:
     if state.open != event.number or state.attempts[event.number] != event.attempt:
         raise ModelError(f"trial {event.number} is not the one that is shown")
     after = replace(state, open=None, answers={**state.answers, event.number: event})
-    return replace(after, break_since_s=event.at_s) if _break_is_due(after, event.at_s) else after
-
-
-def _break_is_due(state: SessionState, at_s: float) -> bool:
-    plan, since_s = state.plan, state.work_since_s
-    if not plan.break_every_min or not plan.break_min or since_s is None or not state.trials_left:
-        return False
-    return at_s - since_s >= 60.0 * plan.break_every_min
+    return replace(after, break_since_s=event.at_s) if after.break_is_due(event.at_s) else after
 
 
 def _interrupted(state: SessionState, event: events.TrialInterrupted) -> SessionState:
@@ -155,37 +111,16 @@ def _converged(state: SessionState, event: events.StaircaseConverged) -> Session
     return after if after.trials_left else replace(after, break_since_s=None)
 
 
-def _break_ended(state: SessionState, event: events.BreakEnded) -> SessionState:
-    if state.break_since_s is None:
-        raise ModelError("there is no break to end")
-    if event.at_s < state.break_since_s + 60.0 * state.plan.break_min:
-        raise ModelError("the break is not over yet")
-    return replace(state, break_since_s=None, work_since_s=None)
-
-
-def _resumed(state: SessionState, event: events.SessionResumed) -> SessionState:
-    """Go on. Time away is no work where the session was closed in order, and a break if it was long enough.
-
-    Of a session that was killed nobody knows when work ended: all that time counts as work.
-    """
-    after = replace(state, open=None, left_s=None, resumptions=state.resumptions + 1)
-    if state.left_s is None or state.work_since_s is None:
-        return after
-    away_s = max(0.0, event.at_s - state.left_s)
-    rested = away_s >= 60.0 * state.plan.break_min
-    return replace(after, work_since_s=None if rested else state.work_since_s + away_s)
-
-
 _AFTER: dict[type, Callable[[SessionState, Any], SessionState]] = {
-    events.PageAnswered: _page,
+    events.PageAnswered: SessionState.after_page,
     events.TrialShown: _shown,
     events.TrialAnswered: _answered,
     events.TrialInterrupted: _interrupted,
     events.TrialSkipped: _skipped,
     events.StaircaseConverged: _converged,
-    events.BreakEnded: _break_ended,
+    events.BreakEnded: SessionState.after_break,
     events.SessionClosed: lambda state, event: replace(state, left_s=event.at_s, open=None),
-    events.SessionResumed: _resumed,
+    events.SessionResumed: SessionState.after_return,
     events.ParticipantWithdrew: lambda state, _event: replace(state, withdrawn=True, open=None),
 }
 
@@ -228,10 +163,8 @@ def _due(state: SessionState, now_s: float) -> Step:
         return Step(kind="withdrawn" if state.withdrawn else "declined")
     if page := state.next_page("consent", "before"):
         return Step(kind="page", page=page)
-    if state.next_trial and state.break_since_s is not None:
-        whole_s = 60.0 * state.plan.break_min
-        # a clock that was set back does not make a break longer than it is
-        left_s = min(whole_s, max(0.0, state.break_since_s + whole_s - now_s))
+    left_s = state.break_left_s(now_s)
+    if state.next_trial and left_s is not None:
         return Step(kind="break", left_s=left_s)
     if state.next_trial:
         return _trial_step(state, state.next_trial)

@@ -17,6 +17,7 @@ from fdvv.study.plan.events import (
     SessionClosed,
     SessionResumed,
 )
+from fdvv.study.plan.sitting import SittingState
 from fdvv.task.score import Score
 from fdvv.timing.plan import events
 from fdvv.timing.plan.events import RoundKept, TimingEvent, TimingStarted
@@ -31,47 +32,24 @@ ENDS: tuple[TimingStepKind, ...] = ("done", "declined", "withdrawn")
 
 
 @dataclass(frozen=True)
-class TimingState:
-    """The state of a session.
+class TimingState(SittingState):
+    """The state of a session that times presses.
 
     Attributes
     ----------
-    plan, started : of the session. pages : that were answered, by name.
     designs : of training trials, by number. placed : the trial whose switch is under the hand, or None.
-    attempts : how often each trial was begun. open : the trial that is under way, or None.
-    rounds : all of a trial, by number, those that do not count among them. scores, failed, skipped : trials
-        that are over, by number. trained_s : when the training ended.
-    work_since_s : since when the person works without a break. break_since_s : when a break began that has
-        not ended. left_s : when the session was closed.
-    declined, withdrawn : it is over. interruptions, resumptions : how often.
-    falls : how often the device went away in a trial, by number.
+    rounds : all of a trial, by number, those that do not count among them. scores, failed : with skipped the
+        trials that are over, by number. trained_s : when the training ended.
     """
 
     plan: TimingPlan
     started: TimingStarted
-    pages: dict[str, PageAnswered] = field(default_factory=dict)
     designs: dict[int, events.ButtonDesigned] = field(default_factory=dict)
     placed: int | None = None
-    attempts: dict[int, int] = field(default_factory=dict)
-    open: int | None = None
     rounds: dict[int, tuple[RoundKept, ...]] = field(default_factory=dict)
     scores: dict[int, dict[str, Score]] = field(default_factory=dict)
     failed: dict[int, str] = field(default_factory=dict)
-    skipped: frozenset[int] = frozenset()
     trained_s: float | None = None
-    work_since_s: float | None = None
-    break_since_s: float | None = None
-    left_s: float | None = None
-    declined: bool = False
-    withdrawn: bool = False
-    interruptions: int = 0
-    resumptions: int = 0
-    falls: dict[int, int] = field(default_factory=dict)
-
-    @property
-    def over(self) -> bool:
-        """Whether the person declined or withdrew."""
-        return self.declined or self.withdrawn
 
     def is_over(self, number: int) -> bool:
         """Whether a trial was scored or given up."""
@@ -119,11 +97,6 @@ class TimingState:
         # once a trial of the validation was begun, a clock that was set back stops nobody
         return any(one.phase == "validation" and one.number in self.attempts for one in self.started.trials)
 
-    def next_page(self, *whens: str) -> str | None:
-        """Return the name of the first page of these times that was not answered."""
-        pages = (page.name for when in whens for page in self.plan.pages if page.when == when)
-        return next((name for name in pages if name not in self.pages), None)
-
     def after(self, event: TimingEvent) -> TimingState:
         """Return the state after an event. ModelError where it cannot follow."""
         if self.over:
@@ -141,15 +114,6 @@ def timing_state(plan: TimingPlan, happened: Sequence[TimingEvent]) -> TimingSta
     for event in happened[1:]:
         state = state.after(event)
     return state
-
-
-def _page(state: TimingState, event: PageAnswered) -> TimingState:
-    before = ("consent", "before") if state.next_trial else ("consent", "before", "after")
-    if event.name != state.next_page(*before):
-        raise ModelError(f"page {event.name} is not the one that was asked")
-    (page,) = (one for one in state.plan.pages if one.name == event.name)
-    declined = page.when == "consent" and not event.agreed
-    return replace(state, pages={**state.pages, event.name: event}, declined=declined)
 
 
 def _due_face(state: TimingState, number: int, phase: Phase | None = None) -> TimingFace:
@@ -199,11 +163,7 @@ def _round(state: TimingState, event: RoundKept) -> TimingState:
 def _ended(state: TimingState, at_s: float) -> TimingState:
     """Return the state between two trials: a break begins where one is due."""
     after = replace(state, open=None, placed=None)
-    plan, since_s = state.plan, state.work_since_s
-    if not plan.break_every_min or not plan.break_min or since_s is None or after.next_trial is None:
-        return after
-    due = at_s - since_s >= 60.0 * plan.break_every_min
-    return replace(after, break_since_s=at_s) if due else after
+    return replace(after, break_since_s=at_s) if after.break_is_due(at_s) else after
 
 
 def _scored(state: TimingState, event: events.TimedScored) -> TimingState:
@@ -236,26 +196,12 @@ def _trained(state: TimingState, event: events.TrainingEnded) -> TimingState:
     return replace(state, trained_s=event.at_s, break_since_s=None, work_since_s=None)
 
 
-def _break_ended(state: TimingState, event: BreakEnded) -> TimingState:
-    if state.break_since_s is None:
-        raise ModelError("there is no break to end")
-    if event.at_s < state.break_since_s + 60.0 * state.plan.break_min:
-        raise ModelError("the break is not over yet")
-    return replace(state, break_since_s=None, work_since_s=None)
-
-
 def _resumed(state: TimingState, event: SessionResumed) -> TimingState:
-    """Go on; who was away as long as a break has rested, see `fdvv.study.plan.session`."""
-    after = replace(state, open=None, placed=None, left_s=None, resumptions=state.resumptions + 1)
-    if state.left_s is None or state.work_since_s is None:
-        return after
-    away_s = max(0.0, event.at_s - state.left_s)
-    rested = away_s >= 60.0 * state.plan.break_min
-    return replace(after, work_since_s=None if rested else state.work_since_s + away_s)
+    return replace(state.after_return(event), placed=None)
 
 
 _AFTER: dict[type, Callable[[TimingState, Any], TimingState]] = {
-    PageAnswered: _page,
+    PageAnswered: TimingState.after_page,
     events.ButtonDesigned: _designed,
     events.SwitchPlaced: _placed,
     events.TimedBegun: _begun,
@@ -265,7 +211,7 @@ _AFTER: dict[type, Callable[[TimingState, Any], TimingState]] = {
     events.TimedInterrupted: _interrupted,
     events.TimedSkipped: _skipped,
     events.TrainingEnded: _trained,
-    BreakEnded: _break_ended,
+    BreakEnded: TimingState.after_break,
     SessionClosed: lambda state, event: replace(state, left_s=event.at_s, open=None, placed=None),
     SessionResumed: _resumed,
     ParticipantWithdrew: lambda state, _event: replace(state, withdrawn=True, open=None),
@@ -324,10 +270,8 @@ def _due(state: TimingState, now_s: float) -> TimingStep:
         return TimingStep(kind="page", page=page) if page else TimingStep(kind="done")
     if state.waits(now_s) and state.not_before_s is not None:
         return TimingStep(kind="wait", due_at=utc_text(state.not_before_s))
-    if state.break_since_s is not None:
-        whole_s = 60.0 * state.plan.break_min
-        # a clock that was set back does not make a break longer than it is
-        left_s = min(whole_s, max(0.0, state.break_since_s + whole_s - now_s))
+    left_s = state.break_left_s(now_s)
+    if left_s is not None:
         return TimingStep(kind="break", left_s=left_s)
     return _trial_step(state, state.next_trial)
 
