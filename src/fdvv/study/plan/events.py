@@ -40,14 +40,14 @@ class TrialFace(Struct, frozen=True, forbid_unknown_fields=True):
     practice: bool = False
 
 
-class _Event(Struct, frozen=True, forbid_unknown_fields=True):
+class SessionEvent(Struct, frozen=True, forbid_unknown_fields=True):
     """What all events have. word : key of its record in the log. at_s : wall time."""
 
     word: ClassVar[str]
     at_s: float
 
 
-class SessionStarted(_Event, frozen=True):
+class SessionStarted(SessionEvent, frozen=True):
     """The session started, with its trials. simulated : the participant is simulated."""
 
     word: ClassVar[str] = "began"
@@ -57,7 +57,7 @@ class SessionStarted(_Event, frozen=True):
     simulated: bool = False
 
 
-class PageAnswered(_Event, frozen=True):
+class PageAnswered(SessionEvent, frozen=True):
     """A page was read and its questions were answered. agreed : False on a consent page ends it all."""
 
     word: ClassVar[str] = "page"
@@ -66,7 +66,7 @@ class PageAnswered(_Event, frozen=True):
     agreed: bool = True
 
 
-class TrialShown(_Event, frozen=True):
+class TrialShown(SessionEvent, frozen=True):
     """A trial was shown.
 
     attempt : 1, and one more each time it had to be shown again. simulated : on a simulated rig.
@@ -78,7 +78,7 @@ class TrialShown(_Event, frozen=True):
     simulated: bool = False
 
 
-class TrialAnswered(_Event, frozen=True):
+class TrialAnswered(SessionEvent, frozen=True):
     """A trial was answered, in that attempt; it is never shown again."""
 
     word: ClassVar[str] = "answered"
@@ -87,7 +87,7 @@ class TrialAnswered(_Event, frozen=True):
     answer: TrialAnswer
 
 
-class TrialInterrupted(_Event, frozen=True):
+class TrialInterrupted(SessionEvent, frozen=True):
     """The device went away in a trial, which is shown again. The reason could reveal a label, and is sealed.
 
     felt : a label had been felt by then.
@@ -98,14 +98,14 @@ class TrialInterrupted(_Event, frozen=True):
     felt: bool = False
 
 
-class TrialSkipped(_Event, frozen=True):
+class TrialSkipped(SessionEvent, frozen=True):
     """The device went away in a trial again and again: it is given up, and missing in the analysis."""
 
     word: ClassVar[str] = "skipped"
     number: int
 
 
-class StaircaseConverged(_Event, frozen=True):
+class StaircaseConverged(SessionEvent, frozen=True):
     """The staircase of an item in a round ended: its other trials are passed over."""
 
     word: ClassVar[str] = "settled"
@@ -113,26 +113,26 @@ class StaircaseConverged(_Event, frozen=True):
     round: int
 
 
-class BreakEnded(_Event, frozen=True):
+class BreakEnded(SessionEvent, frozen=True):
     """The person ended a break."""
 
     word: ClassVar[str] = "break_ended"
 
 
-class SessionClosed(_Event, frozen=True):
+class SessionClosed(SessionEvent, frozen=True):
     """The session was closed in order; time until it is resumed is not work."""
 
     word: ClassVar[str] = "left"
 
 
-class SessionResumed(_Event, frozen=True):
+class SessionResumed(SessionEvent, frozen=True):
     """The session was opened again, with the person's code or by the key holder."""
 
     word: ClassVar[str] = "resumed"
     by: Literal["code", "keeper"]
 
 
-class ParticipantWithdrew(_Event, frozen=True):
+class ParticipantWithdrew(SessionEvent, frozen=True):
     """The person left the study for good."""
 
     word: ClassVar[str] = "withdrawn"
@@ -156,7 +156,7 @@ Event = (
 EVENTS: dict[str, type[Event]] = {kind.word: kind for kind in get_args(Event)}
 
 
-def record_of(event: Event) -> dict[str, Any]:
+def record_of(event: SessionEvent) -> dict[str, Any]:
     return {event.word: msgspec.to_builtins(event)}
 
 

@@ -1,9 +1,8 @@
-"""The two logs of a session: what happened, plain, and what was rendered, sealed."""
+"""A session that shows trials, opened: its state, and every record on the disk before it counts."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +11,10 @@ from fdvv.study.admin.study import Study
 from fdvv.study.files.chained_log import read_chained
 from fdvv.study.files.people import SealedTrial
 from fdvv.study.files.seal import KeyHolder
-from fdvv.study.plan.events import Event, SessionResumed, SessionStarted, event_of, face_of, record_of
+from fdvv.study.plan.events import Event, SessionResumed, SessionStarted, event_of, face_of
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.session import ENDS, SessionState, next_step, state_of
-from fdvv.study.session.trial import SEALED_BYTES, sealed_bytes
+from fdvv.study.session.logs import SessionLogs
 
 REMEDY = "fdvv study verify lists all that is wrong with the study's folder"
 
@@ -33,16 +32,10 @@ class OpenedSession:
 
     def __init__(self, study: Study, name: str, code: str | KeyHolder, at_s: float) -> None:
         schedule = study.schedule(name, code)
-        self.trials, self._seal = schedule.trials, study.seal
-        self._counter = study.counter(schedule, code)
-        self._sealed = study.sealed_log(schedule)
+        self.trials = schedule.trials
+        self._logs = SessionLogs(study, schedule, code)
         try:
-            self._log = study.session_log(schedule)
-        except BaseException:
-            self._sealed.close()
-            raise
-        try:
-            state = _state(self._log.path, study.plan, self._log.records)
+            state = _state(self._logs.path, study.plan, self._logs.records)
             if state is None:
                 person = study.person(name)
                 faces = tuple(face_of(study.plan, trial) for trial in schedule.trials)
@@ -54,8 +47,7 @@ class OpenedSession:
                 if next_step(state, at_s).kind not in ENDS:
                     self.add(SessionResumed(at_s, "keeper" if isinstance(code, KeyHolder) else "code"))
         except BaseException:
-            self._log.close()
-            self._sealed.close()
+            self._logs.abandon()
             raise
 
     def add(self, event: Event) -> SessionState:
@@ -66,26 +58,15 @@ class OpenedSession:
         return after
 
     def _write(self, event: Event, after: SessionState) -> None:
-        """Log an event, and count what is logged then."""
-        self._log.write(record_of(event))
-        if self._counter:
-            heads = {log.path.name: log.head for log in (self._log, self._sealed)}
-            self._counter.count(heads, len(after.answers))
+        self._logs.write(event, len(after.answers))
 
     def seal(self, trial: SealedTrial) -> None:
         """Log what was rendered in a trial, for the key holder; of several of one number the last counts."""
-        # the lock adds four bytes of its own before it pads
-        self._sealed.write({"sealed": self._seal.lock(sealed_bytes(trial), SEALED_BYTES + 4)})
+        self._logs.seal(trial)
 
     def close(self) -> None:
-        """Close both logs, and note in the study's log how much was counted; idempotent."""
-        self._log.close()
-        self._sealed.close()
-        counter, self._counter = self._counter, None
-        if counter:
-            # where the study's log was changed a session still ends; it is reported when the next one begins
-            with suppress(InputError):
-                counter.note()
+        """Close the logs; idempotent."""
+        self._logs.close()
 
 
 def read_session(path: Path, plan: StudyPlan) -> SessionState | None:

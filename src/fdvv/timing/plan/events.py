@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal, get_args
 
 import msgspec
-from msgspec import Struct
 
 from fdvv.errors import ModelError
 from fdvv.study.plan.events import (
@@ -16,6 +15,7 @@ from fdvv.study.plan.events import (
     PageAnswered,
     ParticipantWithdrew,
     SessionClosed,
+    SessionEvent,
     SessionResumed,
 )
 from fdvv.task.rounds import RoundTiming
@@ -27,14 +27,7 @@ Surface = Literal["page", "device", "table", "simulated"]
 """What is pressed: a button that this machine simulates, a device, a switch or key, or nothing real."""
 
 
-class _Event(Struct, frozen=True, forbid_unknown_fields=True):
-    """What all events have. word : key of its record in the log. at_s : wall time."""
-
-    word: ClassVar[str]
-    at_s: float
-
-
-class TimingStarted(_Event, frozen=True):
+class TimingStarted(SessionEvent, frozen=True):
     """The session started, with its trials. seed : of what the engine draws."""
 
     word: ClassVar[str] = "began"
@@ -45,7 +38,7 @@ class TimingStarted(_Event, frozen=True):
     simulated: bool = False
 
 
-class ButtonDesigned(_Event, frozen=True):
+class ButtonDesigned(SessionEvent, frozen=True):
     """The engine, origin, suggested the design of a training trial, which nobody has pressed yet."""
 
     word: ClassVar[str] = "designed"
@@ -54,14 +47,14 @@ class ButtonDesigned(_Event, frozen=True):
     origin: str
 
 
-class SwitchPlaced(_Event, frozen=True):
+class SwitchPlaced(SessionEvent, frozen=True):
     """The switch or key of a trial is under the hand."""
 
     word: ClassVar[str] = "placed"
     number: int
 
 
-class TimedBegun(_Event, frozen=True):
+class TimedBegun(SessionEvent, frozen=True):
     """A trial was begun, or went on.
 
     attempt : 1, and one more each time it went on or was begun again. on : what is pressed.
@@ -73,7 +66,7 @@ class TimedBegun(_Event, frozen=True):
     on: Surface
 
 
-class RoundKept(_Event, frozen=True):
+class RoundKept(SessionEvent, frozen=True):
     """One round: a press of pointing, or a second of tapping.
 
     attempt : of the trial, as it was begun. round : from 1, of those that count. target_s : when the target
@@ -95,7 +88,7 @@ class RoundKept(_Event, frozen=True):
         return TaskPress(self.target_s, self.activations_s)
 
 
-class TimedScored(_Event, frozen=True):
+class TimedScored(SessionEvent, frozen=True):
     """All rounds of a trial are there; what they score."""
 
     word: ClassVar[str] = "scored"
@@ -103,7 +96,7 @@ class TimedScored(_Event, frozen=True):
     scores: dict[str, Score]
 
 
-class DesignFailed(_Event, frozen=True):
+class DesignFailed(SessionEvent, frozen=True):
     """The design of a training trial cannot be rendered or scored; the engine avoids it."""
 
     word: ClassVar[str] = "failed"
@@ -111,21 +104,21 @@ class DesignFailed(_Event, frozen=True):
     reason: str
 
 
-class TimedInterrupted(_Event, frozen=True):
+class TimedInterrupted(SessionEvent, frozen=True):
     """The device went away in a trial. The reason could reveal a code, and is sealed."""
 
     word: ClassVar[str] = "interrupted"
     number: int
 
 
-class TimedSkipped(_Event, frozen=True):
+class TimedSkipped(SessionEvent, frozen=True):
     """A trial of the validation was given up: its button cannot be rendered. Why is sealed."""
 
     word: ClassVar[str] = "skipped"
     number: int
 
 
-class TrainingEnded(_Event, frozen=True):
+class TrainingEnded(SessionEvent, frozen=True):
     """The training is over, and the gap begins."""
 
     word: ClassVar[str] = "trained"
@@ -151,10 +144,6 @@ TimingEvent = (
 """What can happen in a timing session, as its journal keeps it."""
 
 EVENTS: dict[str, type[TimingEvent]] = {kind.word: kind for kind in get_args(TimingEvent)}
-
-
-def timing_record(event: TimingEvent) -> dict[str, Any]:
-    return {event.word: msgspec.to_builtins(event)}
 
 
 def timing_event(record: dict[str, Any]) -> TimingEvent:

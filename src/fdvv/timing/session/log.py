@@ -1,9 +1,8 @@
-"""The two logs of a timing session: what happened, plain, and what was behind a code, sealed."""
+"""A timing session, opened: its state, and every press on the disk before it counts."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +14,9 @@ from fdvv.study.files.people import SealedTrial
 from fdvv.study.files.seal import KeyHolder
 from fdvv.study.plan.events import SessionResumed
 from fdvv.study.session.log import REMEDY
-from fdvv.study.session.trial import SEALED_BYTES, sealed_bytes
+from fdvv.study.session.logs import SessionLogs
 from fdvv.timing.files.study import TimingStudy
-from fdvv.timing.plan.events import TimingEvent, TimingStarted, timing_event, timing_record
+from fdvv.timing.plan.events import TimingEvent, TimingStarted, timing_event
 from fdvv.timing.plan.plan import TimingPlan
 from fdvv.timing.plan.schedule import faces_of
 from fdvv.timing.plan.session import ENDS, TimingState, next_timing_step, timing_state
@@ -41,16 +40,10 @@ class OpenedTiming:
     def __init__(self, study: TimingStudy, name: str, code: str | KeyHolder, at_s: float) -> None:
         schedule = study.schedule(name, code)
         self.conditions = {one.number: next(iter(one.labels.values())) for one in schedule.trials}
-        self.random_seed, self._seal = drawn_seed(schedule.key, RANDOM), study.seal
-        self._counter = study.counter(schedule, code)
-        self._sealed = study.sealed_log(schedule)
+        self.random_seed = drawn_seed(schedule.key, RANDOM)
+        self._logs = SessionLogs(study, schedule, code)
         try:
-            self._log = study.session_log(schedule)
-        except BaseException:
-            self._sealed.close()
-            raise
-        try:
-            state = _state(self._log.path, study.plan, self._log.records)
+            state = _state(self._logs.path, study.plan, self._logs.records)
             if state is None:
                 person = study.person(name)
                 faces = faces_of(study.plan, person.place, schedule.trials)
@@ -63,8 +56,7 @@ class OpenedTiming:
                 if next_timing_step(state, at_s).kind not in ENDS:
                     self.add(SessionResumed(at_s, "keeper" if isinstance(code, KeyHolder) else "code"))
         except BaseException:
-            self._log.close()
-            self._sealed.close()
+            self._logs.abandon()
             raise
 
     def add(self, event: TimingEvent) -> TimingState:
@@ -75,25 +67,15 @@ class OpenedTiming:
         return after
 
     def _write(self, event: TimingEvent, after: TimingState) -> None:
-        self._log.write(timing_record(event))
-        if self._counter:
-            heads = {log.path.name: log.head for log in (self._log, self._sealed)}
-            self._counter.count(heads, sum(map(len, after.rounds.values())))
+        self._logs.write(event, sum(map(len, after.rounds.values())))
 
     def seal(self, trial: SealedTrial) -> None:
         """Log what was behind a code, for the key holder; of several of one number the last counts."""
-        # the lock adds four bytes of its own before it pads
-        self._sealed.write({"sealed": self._seal.lock(sealed_bytes(trial), SEALED_BYTES + 4)})
+        self._logs.seal(trial)
 
     def close(self) -> None:
-        """Close both logs, and note in the study's log how much was counted; idempotent."""
-        self._log.close()
-        self._sealed.close()
-        counter, self._counter = self._counter, None
-        if counter:
-            # where the study's log was changed a session still ends; it is reported when the next one begins
-            with suppress(InputError):
-                counter.note()
+        """Close the logs; idempotent."""
+        self._logs.close()
 
 
 def drawn_seed(key: str, stream: int) -> int:
