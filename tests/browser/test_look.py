@@ -16,7 +16,7 @@ from playwright.sync_api import expect
 from tests.browser.accessibility import audit
 from tests.browser.boxes import faults, record
 from tests.browser.dropping import drop
-from tests.browser.timing_screens import PRESS_WHEN_SEEN, Timer, timing_text
+from tests.browser.timing_screens import PRESS_WHEN_SEEN, STEP, Timer, timing_text
 from tests.studio.running import RunningStudio
 from tests.support.buttons import write_cycle
 
@@ -324,6 +324,32 @@ def test_the_screens_of_a_timing_study_are_whole(look: tuple[Page, list[str]]) -
     expect(page.locator("tr[data-person=P01]")).to_contain_text("due from")
     found += at_every_size(page)
     screen.close()
+    assert found + taken(logged) == []
+
+
+@pytest.mark.timeout(300)
+def test_what_lies_on_the_table_is_asked_for_on_a_whole_screen(look: tuple[Page, list[str]]) -> None:
+    page, logged = look
+    go(page, "home")
+    timer = seated(page, "untrained", timing_text(0, 2))
+    timer.agree()
+    timer.page.wait_for_selector(STEP)
+    while not timer.page.locator(".study-sheet[data-key=F13]").count():
+        timer.prepare()
+        at = timer.page.inner_text(".study-at")
+        timer.begin()
+        timer.page.wait_for_selector(f".study-at:not(:has-text('{at}'))", timeout=30_000)
+        timer.page.wait_for_selector(STEP)
+    found = at_every_size(timer.page)
+
+    def mistaken(_page: Page) -> None:
+        timer.hit("Space")
+        expect(timer.page.locator(".other")).to_contain_text("does not count")
+
+    found += at_every_size(timer.page, mistaken)
+    timer.place()
+    found += at_every_size(timer.page)
+    timer.page.close()
     assert found + taken(logged) == []
 
 

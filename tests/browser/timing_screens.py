@@ -153,6 +153,10 @@ class TimingWire:
         return found
 
 
+STEP = ".timed, .study-sheet[data-key]"
+"""A trial, or what must lie under the finger for the next one."""
+
+
 @dataclass
 class Timer:
     """Somebody who presses at bullets. person, code : of their card."""
@@ -209,7 +213,7 @@ class Timer:
 
     def prepare(self) -> None:
         """Put what the screen asks for under the finger, and use the key that counts."""
-        self.page.wait_for_selector(".timed, .study-sheet[data-key]")
+        self.page.wait_for_selector(STEP)
         if self.page.locator(".study-sheet[data-key]").count():
             self.place()
         else:
