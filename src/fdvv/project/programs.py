@@ -6,6 +6,7 @@ import hashlib
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import count
 from pathlib import Path
 from threading import Lock
@@ -70,8 +71,7 @@ class ProgramCatalog:
 
     def entries(self) -> tuple[ProgramEntry, ...]:
         """List the shipped programs, then the person's own; a broken file is listed with its problem."""
-        shipped = [_entry(f"shipped:{r.name}", load_shipped(r.name), r.summary) for r in programs()]
-        return (*shipped, *(self._own_entry(name) for name in self._own()))
+        return (*_shipped_entries(), *(self._own_entry(name) for name in self._own()))
 
     def open(self, program_id: str) -> KeptProgram:
         program, revision = self._opened(program_id)
@@ -196,6 +196,11 @@ def read_program(text: str, source: str = "program") -> Program:
         reason = f"{size_bytes / 1e6:.1f} MB, a program has at most {LARGEST_bytes / 1e6:g} MB"
         raise InputError(source, "whole file", reason, "use fewer points or fewer velocities")
     return program_from_json(text, source)
+
+
+@cache
+def _shipped_entries() -> tuple[ProgramEntry, ...]:
+    return tuple(_entry(f"shipped:{one.name}", load_shipped(one.name), one.summary) for one in programs())
 
 
 def _entry(program_id: str, program: Program, summary: str) -> ProgramEntry:
