@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import norm
@@ -125,6 +127,46 @@ def test_what_others_did_counts_in_the_scores_own_unit_however_near_the_best_one
     # six scores that differ by their noise alone do not make the bowl shallow
     predicted_ms = belief.predict(BOWL.to_unit(far))[0][0] - belief.predict(BOWL.to_unit(near[:1]))[0][0]
     assert predicted_ms == pytest.approx(bowl_ms(far[0]) - bowl_ms(near[0]), rel=0.4)
+
+
+def test_people_who_differ_in_one_way_are_known_after_few_trials() -> None:
+    """Everybody's best depth differs: the mean over people says nothing of it, how they differ does."""
+    rng = np.random.default_rng(4)
+    places = rng.random((60, 3))
+
+    def score_ms(depth: float, at: np.ndarray) -> np.ndarray:
+        return 60.0 + 80.0 * (at[:, 0] - depth) ** 2
+
+    everybody = np.array([score_ms(depth, places) for depth in rng.random(30)])
+    differences = everybody - everybody.mean(axis=1, keepdims=True)
+    left, size, _ = np.linalg.svd((differences - differences.mean(axis=0)).T, full_matrices=False)
+    components = left[:, :2] * size[:2] / np.sqrt(len(everybody) - 1)
+    others = tuple(
+        replace(scored(i, design, float(mean)), components=tuple(more.tolist()))
+        for i, (design, mean, more) in enumerate(
+            zip(BOWL.of_unit(places), everybody.mean(axis=0), components, strict=True)
+        )
+    )
+    at, fresh = rng.random((3, 3)), rng.random((200, 3))
+    missed = []
+    for prior in (others, tuple(replace(trial, components=()) for trial in others)):
+        case = problem(prior=prior)
+        tried = [
+            scored(i, d, float(y))
+            for i, (d, y) in enumerate(zip(BOWL.of_unit(at), score_ms(0.9, at), strict=True))
+        ]
+        belief = believe(scores_of(BOWL, case.objectives[0], tried), prior_basis(case))
+        error = belief.mean(fresh) - score_ms(0.9, fresh)
+        missed.append(float(np.std(error)))
+    assert missed[0] < 0.25 * missed[1]
+
+
+def test_the_mean_alone_is_that_of_the_whole_belief() -> None:
+    case = problem(prior=tuple(run(engine_of("sobol"), problem(seed=9), 20)))
+    scores = scores_of(BOWL, case.objectives[0], run(engine_of("sobol"), problem(), 6))
+    belief = believe(scores, prior_basis(case))
+    places = np.random.default_rng(0).random((50, 3))
+    assert belief.mean(places) == pytest.approx(belief.predict(places)[0])
 
 
 @pytest.mark.parametrize("name", ["gp", pytest.param("botorch", marks=NO_TORCH)])

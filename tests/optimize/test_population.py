@@ -173,6 +173,22 @@ def test_a_grid_becomes_what_others_begin_from(grid: tuple[Path, PopulationResul
     assert not problem.space.broken(design)
 
 
+def test_a_grid_passes_on_how_people_differ(grid: tuple[Path, PopulationResult]) -> None:
+    components = np.array([trial.components for trial in grid[1].prior()])
+    values, _ = grid[1].table()
+    differences = values - values.mean(axis=0)
+    covariance = np.cov(differences)
+    # the best approximation of its rank: what is left is the rest of the spectrum
+    left = np.linalg.eigvalsh(covariance)[::-1][components.shape[1] :]
+    assert np.linalg.norm(covariance - components @ components.T) == pytest.approx(np.linalg.norm(left))
+
+
+def test_few_people_do_not_show_how_people_differ(grid: tuple[Path, PopulationResult]) -> None:
+    plan = msgspec.structs.replace(grid[1].plan, people=3)
+    columns = {name: column[: 3 * plan.designs] for name, column in grid[1].columns.items()}
+    assert all(trial.components == () for trial in PopulationResult(plan, columns).prior())
+
+
 def test_another_plan_in_the_same_folder_is_refused(grid: tuple[Path, PopulationResult]) -> None:
     with pytest.raises(InputError, match="other people, seed"):
         run(grid[0], msgspec.structs.replace(GRID, seed=4, people=8))

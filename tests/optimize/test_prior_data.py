@@ -59,7 +59,7 @@ def test_an_experiment_trains_from_what_others_did_and_says_so(
     setup = ExperimentSetup(people=3, trials=1, presses=2, rounds=1, engine="gp", seed=2, prior=prior)
     result = run_experiment(tmp_path, setup, Here())
     kept = msgspec.json.decode((tmp_path / "training" / "person-02-hard" / "optimize.json").read_bytes())
-    assert kept["prior"] == list(msgspec.to_builtins(prior["hard"]))
+    assert kept["prior"] == msgspec.json.decode(msgspec.json.encode(prior["hard"]))
     assert result.to_dict()["prior_designs"] == {"easy": 5, "hard": 6}
     page = experiment_html(result, judge_experiment(result))
     assert "the mean scores that other simulated people gave 5 designs (easy) and 6 designs (hard)" in page

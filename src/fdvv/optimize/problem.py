@@ -41,6 +41,8 @@ class Trial:
     design : what is tried. suggested : what the engine had suggested, if a person edited it.
     state : how far it is. scores : by objective, when done. reason : of a failure.
     origin : who suggested it: an engine's name, "start" (the person's own button) or "person".
+    components : of a design that several people scored: what a person of one standard deviation along each
+        principal component of the people adds to the score; empty: nothing is known of how they differ.
     """
 
     number: int
@@ -50,6 +52,7 @@ class Trial:
     suggested: dict[str, float] | None = None
     reason: str = ""
     origin: str = ""
+    components: tuple[float, ...] = ()
 
 
 class Answer(StrEnum):

@@ -140,6 +140,13 @@ class Belief:
         variance = prior - (root**2).sum(axis=0) + (rest @ solved["cov"] * rest).sum(axis=1)
         return mean, self.scale * np.sqrt(np.maximum(variance, 1e-12))
 
+    def mean(self, places: FloatArray) -> FloatArray:
+        """Return the mean alone, (n,): much cheaper than with its SD."""
+        now = None if self.observed.trend is None else np.zeros(len(places))
+        H = _functions(self.basis, places, now, self.scale)
+        cross = self.kernel(places, self.observed.places)
+        return np.asarray(self.centre + self.scale * (H @ self.weights + cross @ self._solved["a"]))
+
     def best_of(self, done: Sequence[Trial]) -> dict[str, float]:
         """Return the design of best mean among the trials whose scores were learned from."""
         return dict(done[int(np.argmin(self.predict(self.observed.places)[0]))].design)
@@ -313,25 +320,31 @@ def best_of(problem: Problem, trials: Sequence[Trial]) -> list[Trial]:
 MOST, FITTED = 1000, 150
 """Trials of others that are learned from, and that lengths are fitted to; of more, as many spread evenly."""
 WEIGHT, SPREAD = 1.0, 0.6
-"""Of the others' differences in a person's scores, before the first of them: the same, and a doubt."""
+"""Of the others' mean in a person's scores, before the first of them: the same, and a doubt."""
 
 
 def prior_basis(problem: Problem) -> Basis | None:
-    """Return what others' trials let expect; None without any."""
+    """Return what others' trials let expect: their mean, and how people differ from it; None without any."""
     done = finished(problem, problem.prior)
     if len(done) < 3:
         return None
     few = [done[i] for i in _spread(len(done), MOST)]
-    scores = observed(problem.space, problem.objectives[0], few)
+    objective, d = problem.objectives[0], len(problem.space.names)
+    scores = observed(problem.space, objective, few)
+    count = min(len(trial.components) for trial in few)
+    rows = [trial.components[:count] for trial in few]
+    components = objective.sign * np.array(rows, dtype=np.float64).reshape(len(few), count)
+    unknown = np.full(len(few), np.nan)
+    columns = [(scores.values, scores.errors), *((column.copy(), unknown) for column in components.T)]
     # as bytes, by which what was learned of them is kept
-    rows = (column.tobytes() for column in (scores.places, scores.values, scores.errors))
-    belief = _learned(*rows, len(problem.space.names))
-    centre = float(np.mean(belief.predict(belief.observed.places)[0]))
+    beliefs = [_learned(scores.places.tobytes(), y.tobytes(), error.tobytes(), d) for y, error in columns]
+    centre = [float(np.mean(belief.mean(scores.places))) for belief in beliefs]
 
     def of(places: FloatArray) -> FloatArray:
-        return np.asarray(belief.predict(places)[0] - centre)[:, None]
+        return np.column_stack([belief.mean(places) for belief in beliefs]) - centre
 
-    return Basis(of, np.array([WEIGHT]), np.array([SPREAD]))
+    # a component's own unit is the standard deviation between people
+    return Basis(of, np.array([WEIGHT, *[0.0] * count]), np.array([SPREAD, *[1.0] * count]))
 
 
 @lru_cache(maxsize=64)

@@ -31,6 +31,8 @@ from fdvv.task.score import Score
 from fdvv.units import FloatArray
 
 RESULT_FILE, SUMMARY_FILE = "population.npz", "summary.json"
+COMPONENTS, FEWEST = 4, 8
+"""Principal components of people that a prior holds, and people from whom they can be learned."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,17 +67,20 @@ class PopulationResult:
         """Return what others may begin from: every design of a grid with its mean over the people.
 
         The error of a mean is that between people, each taken without their own mean over all designs: how
-        well somebody does altogether says nothing of which design is better.
+        well somebody does altogether says nothing of which design is better. How people differ comes as the
+        principal components of what is left, which an engine takes as the prior's covariance (Wang et al.,
+        Pre-trained Gaussian Processes for Bayesian Optimization, 2021).
         """
         values, _ = self.table()
         people = values.shape[1]
         apart = values - values.mean(axis=0)
         errors = apart.std(axis=1, ddof=1) / np.sqrt(people) if people > 1 else np.zeros(len(values))
         name = TemporalPointing(self.plan.level).objectives[0].name
+        components = _components(apart)
         scores = [Score(float(m), float(s) or None) for m, s in zip(values.mean(axis=1), errors, strict=True)]
         return tuple(
-            Trial(i, dict(design), TrialState.DONE, {name: score}, origin="population")
-            for i, (design, score) in enumerate(zip(self.designs, scores, strict=True))
+            Trial(i, design, TrialState.DONE, {name: score}, origin="population", components=tuple(more))
+            for i, (design, score, more) in enumerate(zip(self.designs, scores, components, strict=True))
         )
 
     @property
@@ -98,6 +103,16 @@ class PopulationResult:
             "gain_percent": spread_of(100 * (1 - judged / against)),
             "better_ratio": float(np.mean(judged < against)),
         }
+
+
+def _components(scores: FloatArray) -> list[list[float]]:
+    """Return by design what each principal component adds, SDs over people; scores are (designs, people)."""
+    people = scores.shape[1]
+    if people < FEWEST:
+        return [[]] * len(scores)
+    left, size, _ = np.linalg.svd(scores - scores.mean(axis=1, keepdims=True), full_matrices=False)
+    found: list[list[float]] = (left * size / np.sqrt(people - 1))[:, :COMPONENTS].tolist()
+    return found
 
 
 def spread_of(values: FloatArray) -> dict[str, float]:
