@@ -103,3 +103,20 @@ def test_a_run_of_own_numbers_is_the_same_when_it_is_opened_again(tmp_path: Path
     with Optimization.open(tmp_path / "run") as again:
         assert again.space.parameters == (SIZE,)
         assert again.ask() == (trial,)
+
+
+def test_of_lines_the_favourite_is_worth_more_than_where_one_began(tmp_path: Path) -> None:
+    with run_of(tmp_path / "run", task="preference", engine="preference-line") as run:
+        with pytest.raises(ModelError):
+            best_design(run)
+        for _ in range(4):
+            line = run.line()
+            assert line is not None
+            sizes = [stop["size_px"] for stop in line.stops]
+            run.choose(line.number, sizes.index(max(sizes)))
+        best = best_design(run)
+    assert best.design["size_px"] == pytest.approx(1000.0)
+    assert best.count == 4
+    assert best.chance is not None
+    assert 0.5 < best.chance < 1.0
+    assert best.low < best.mean < best.high

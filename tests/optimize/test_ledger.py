@@ -25,6 +25,9 @@ def filled(path: Path | None) -> Ledger:
     ledger.suggest(A, "tpe")
     ledger.become(2, TrialState.ABANDONED)
     ledger.suggest(B, "person")
+    ledger.line([A, B, A])
+    ledger.choose(0, 1)
+    ledger.line([B, A])
     ledger.pair(A, B)
     ledger.answer(0, Answer.EQUAL)
     ledger.pair(B, A)
@@ -37,6 +40,8 @@ def test_what_is_written_is_read_back_whole(tmp_path: Path) -> None:
     read = Ledger(tmp_path / "trials.jsonl")
     assert read.trials == written.trials
     assert read.comparisons == written.comparisons
+    assert read.lines == written.lines
+    assert [one.best for one in read.lines] == [1, None]
     read.close()
 
 
@@ -100,7 +105,7 @@ def test_a_record_that_cannot_follow_is_refused_by_its_number(tmp_path: Path) ->
     filled(path).close()
     with path.open("ab") as stream:
         stream.write(line_of({"state": {"number": 0, "state": "shown"}}))
-    with pytest.raises(InputError, match="line 13"):
+    with pytest.raises(InputError, match="line 16"):
         Ledger(path)
 
 
@@ -116,9 +121,27 @@ def test_every_suggestion_is_found_with_what_was_known_then(tmp_path: Path) -> N
     path = tmp_path / "trials.jsonl"
     filled(path).close()
     found = list(steps_before(path))
-    assert [one.number for *_, one in found] == [0, 1, 2, 3, 0, 1]
-    assert [len(trials) for trials, _, _ in found] == [0, 1, 2, 3, 4, 4]
-    assert isinstance(found[0][2], Trial)
-    assert found[0][2].design == A
+    assert [one.number for *_, one in found] == [0, 1, 2, 3, 0, 1, 0, 1]
+    assert [len(trials) for trials, *_ in found] == [0, 1, 2, 3, 4, 4, 4, 4]
+    assert isinstance(found[0][3], Trial)
+    assert found[0][3].design == A
     assert found[1][0][0].state is TrialState.DONE
-    assert found[5][1][0].answer is Answer.EQUAL
+    assert [one.best for one in found[5][2]] == [1]
+    assert found[7][1][0].answer is Answer.EQUAL
+
+
+@pytest.mark.parametrize(
+    ("number", "best", "said"),
+    [
+        (0, 0, "was answered: stop 1"),
+        (1, 2, "has stops 0 to 1"),
+        (1, -1, "has stops 0 to 1"),
+        (2, 0, "no such"),
+    ],
+)
+def test_a_line_is_answered_once_with_a_stop_of_its_own(number: int, best: int, said: str) -> None:
+    ledger = filled(None)
+    before = ledger.lines
+    with pytest.raises(InputError, match=said):
+        ledger.choose(number, best)
+    assert ledger.lines == before

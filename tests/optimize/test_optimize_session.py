@@ -176,6 +176,49 @@ def test_comparisons_are_kept_resumed_and_replayed(tmp_path: Path) -> None:
     assert replay_differences(tmp_path / "run") == ()
 
 
+def test_lines_are_kept_resumed_and_replayed_and_then_the_result_is_compared(tmp_path: Path) -> None:
+    about = {OptimizeSetup.RETEST: 2}
+    setup = OptimizeSetup(task="preference", engine="preference-line", budget=3, seed=2, about=about)
+    Optimization.create(tmp_path / "run", setup).close()
+    for turn in range(3):
+        with Optimization.open(tmp_path / "run") as session:
+            line = session.line()
+            assert session.left == 2 - turn
+        with Optimization.open(tmp_path / "run") as session:
+            again = session.line()
+            assert again is not None
+            assert again == line
+            with pytest.raises(InputError, match="ask for lines"):
+                session.compare()
+            session.choose(again.number, (8, 0, 3)[turn])
+            assert session.answered == turn + 1
+    with Optimization.open(tmp_path / "run") as session:
+        assert session.line() is None
+        assert (session.searched, session.finished) == (True, False)
+        assert session.start == session.lines[0].middle
+        for _ in range(2):
+            pair = session.compare()
+            assert pair is not None
+            assert session.start in (pair.first, pair.second)
+            assert session.recommended() in (pair.first, pair.second)
+            session.answer(pair.number, "first")
+        assert session.compare() is None
+        assert session.finished
+        assert session.space.checked(session.best()) == session.best()
+        with pytest.raises(InputError, match="compar"):
+            session.ask()
+    assert replay_differences(tmp_path / "run") == ()
+
+
+def test_only_a_run_of_lines_has_lines(tmp_path: Path) -> None:
+    setup = OptimizeSetup(task="preference", engine="preference")
+    with (
+        Optimization.create(tmp_path / "run", setup) as session,
+        pytest.raises(InputError, match="preference has no lines"),
+    ):
+        session.line()
+
+
 def test_a_run_whose_seed_was_changed_is_seen_by_its_replay(tmp_path: Path) -> None:
     with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol")) as session:
         go_on(session, 2)

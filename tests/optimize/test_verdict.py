@@ -23,11 +23,11 @@ SPACE = realistic_space(BASE, NAMES)
 START = neutral_design(SPACE, BASE)
 
 
-def begun(folder: Path, pairs: int = 6, preference: bool = False, simulated: bool = True) -> Optimization:
+def begun(folder: Path, pairs: int = 6, engine: str = "sobol", simulated: bool = True) -> Optimization:
     setup = OptimizeSetup(
         space=model_space_setup(BASE, NAMES),
-        engine="preference" if preference else "sobol",
-        task="preference" if preference else "temporal-pointing",
+        engine=engine,
+        task="preference" if engine.startswith("preference") else "temporal-pointing",
         budget=4,
         start=START,
         simulated=simulated,
@@ -130,12 +130,16 @@ def test_of_people_without_a_difference_few_are_called_better() -> None:
     assert share == pytest.approx(0.025, abs=0.01)
 
 
-def test_comparisons_are_retested_too(tmp_path: Path) -> None:
-    with begun(tmp_path / "run", preference=True, simulated=False) as session:
+@pytest.mark.parametrize("engine", ["preference", "preference-line"])
+def test_what_people_preferred_is_retested_too(tmp_path: Path, engine: str) -> None:
+    with begun(tmp_path / "run", engine=engine, simulated=False) as session:
+        while session.line_engine and (line := session.line()):
+            forces = [stop["force_ratio"] for stop in line.stops]
+            session.choose(line.number, forces.index(min(forces)))
         while pair := session.compare():
             liked = Answer.FIRST if pair.first["force_ratio"] < pair.second["force_ratio"] else Answer.SECOND
             session.answer(pair.number, liked)
-        assert len(session.comparisons) == 4
+        assert session.answered == 4
         found = retest_of(session)
         assert found is not None
         assert found.pairs == len(session.retest_comparisons) == 6

@@ -139,6 +139,8 @@ def _trials(path: Path, kind: str) -> FileCheck:
     found = read_ledger(path)
     states = Counter(str(trial.state) for trial in found.trials)
     facts = {"trials": len(found.trials), **states, "comparisons": len(found.comparisons)}
+    if found.lines:
+        facts["lines"] = len(found.lines)
     return FileCheck(path, kind, {**facts, "size_bytes": path.stat().st_size})
 
 

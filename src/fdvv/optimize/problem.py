@@ -74,6 +74,26 @@ class Comparison:
 
 
 @dataclass(frozen=True)
+class Line:
+    """Designs along a straight line through the space, and the one of them that somebody liked best.
+
+    Attributes
+    ----------
+    number : from 0, in the order of suggestion. stops : at least two designs, in the order of the line.
+    best : which of the stops is liked best, from 0; None: not yet answered.
+    """
+
+    number: int
+    stops: tuple[dict[str, float], ...]
+    best: int | None = None
+
+    @property
+    def middle(self) -> dict[str, float]:
+        """The stop in the middle, where a person begins to feel."""
+        return self.stops[len(self.stops) // 2]
+
+
+@dataclass(frozen=True)
 class Problem:
     """What is optimised.
 
@@ -132,4 +152,18 @@ class PairEngine(Protocol):
         """Suggest the next two designs."""
 
     def best(self, problem: Problem, comparisons: Sequence[Comparison]) -> dict[str, float]:
+        """Recommend a design; ModelError if nothing was answered yet."""
+
+
+class LineEngine(Protocol):
+    """Suggests a line along which the best design is felt out; keeps nothing, as Engine."""
+
+    @property
+    def name(self) -> str:
+        """Its name, as a setup knows it."""
+
+    def line(self, problem: Problem, lines: Sequence[Line]) -> tuple[dict[str, float], ...]:
+        """Suggest the stops of the next line; all of them hold the constraints."""
+
+    def best(self, problem: Problem, lines: Sequence[Line]) -> dict[str, float]:
         """Recommend a design; ModelError if nothing was answered yet."""

@@ -84,15 +84,20 @@ class PreferenceBelief:
         return np.asarray(places[int(np.argmax(self.mean(places)))])
 
 
+def kernel_of(dimensions: int, length: float = LENGTH) -> Any:
+    """Return worth's covariance; length : ranges times the root of d. BuildError without scikit-learn."""
+    try:
+        from sklearn.gaussian_process.kernels import Matern
+    except ImportError as error:
+        raise missing("preference", "optimize", error) from error
+    return Matern(length * np.sqrt(dimensions), nu=2.5)
+
+
 def believe_answers(space: DesignSpace, comparisons: Sequence[Comparison]) -> PreferenceBelief | None:
     """Learn from answered comparisons; None without any. Raises BuildError without scikit-learn."""
     answered = [one for one in comparisons if one.answer is not None]
     if not answered:
         return None
-    try:
-        from sklearn.gaussian_process.kernels import Matern
-    except ImportError as error:
-        raise missing("preference", "optimize", error) from error
     both = space.to_unit([design for one in answered for design in (one.first, one.second)])
     places = fresh(both, np.empty((0, both.shape[1])))
     rows = np.abs(both[:, None] - places[None]).max(axis=2).argmin(axis=1).reshape(-1, 2)
@@ -103,9 +108,8 @@ def believe_answers(space: DesignSpace, comparisons: Sequence[Comparison]) -> Pr
         share = {Answer.FIRST: 1.0, Answer.SECOND: 0.0, Answer.EQUAL: 0.5}[one.answer or Answer.EQUAL]
         pairs += [(first, second), (second, first)]
         counts += [share, 1.0 - share]
-    kernel = Matern(LENGTH * np.sqrt(both.shape[1]), nu=2.5)
     table = np.array(pairs, dtype=np.intp).reshape(-1, 2)
-    return PreferenceBelief(places, table, np.array(counts), kernel)
+    return PreferenceBelief(places, table, np.array(counts), kernel_of(both.shape[1]))
 
 
 Pair = tuple[dict[str, float], dict[str, float]]

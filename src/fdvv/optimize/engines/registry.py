@@ -13,8 +13,9 @@ from fdvv.optimize.engines.gp import GPEngine, GPExpectedImprovement
 from fdvv.optimize.engines.gp_model import RecommendsBelievedBest
 from fdvv.optimize.engines.optuna import CMAESEngine, NSGA2Engine, TPEEngine
 from fdvv.optimize.engines.preference import PreferenceEngine
+from fdvv.optimize.engines.preference_line import PreferenceLineEngine
 from fdvv.optimize.engines.search import random_places, sobol_places, tried_places
-from fdvv.optimize.problem import Engine, PairEngine, Problem, Trial
+from fdvv.optimize.problem import Engine, LineEngine, PairEngine, Problem, Trial
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,10 @@ ENGINES: Mapping[str, Callable[..., Engine]] = MappingProxyType(
 """Engines of this package that read scores, by name; called with their options."""
 PAIR_ENGINES: Mapping[str, Callable[..., PairEngine]] = MappingProxyType({"preference": PreferenceEngine})
 """Engines of this package that read comparisons, by name."""
+LINE_ENGINES: Mapping[str, Callable[..., LineEngine]] = MappingProxyType(
+    {"preference-line": PreferenceLineEngine}
+)
+"""Engines that read which stop of a line is liked best, by name."""
 
 
 def engine_names() -> tuple[str, ...]:
@@ -79,13 +84,22 @@ def pair_engine_of(name: str, options: Mapping[str, Any] | None = None) -> PairE
     return engine
 
 
+def line_engine_of(name: str, options: Mapping[str, Any] | None = None) -> LineEngine:
+    """Make an engine of lines. Raises like ``engine_of``."""
+    engine: LineEngine = _made(LINE_ENGINES, None, name, options)
+    return engine
+
+
 def _made(
-    own: Mapping[str, Callable[..., Any]], kind: extras.Kind, name: str, options: Mapping[str, Any] | None
+    own: Mapping[str, Callable[..., Any]],
+    kind: extras.Kind | None,
+    name: str,
+    options: Mapping[str, Any] | None,
 ) -> Any:
-    known = (*own, *extras.names(kind))
+    known = (*own, *(extras.names(kind) if kind else ()))
     if name not in known:
         raise InputError("engine", name, "no engine has this name", f"use one of {', '.join(known)}")
-    make = own[name] if name in own else extras.load(kind, name)
+    make = own[name] if name in own or kind is None else extras.load(kind, name)
     try:
         return make(**(options or {}))
     except TypeError as error:

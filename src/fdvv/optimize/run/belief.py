@@ -9,6 +9,7 @@ import numpy as np
 from fdvv.errors import ModelError
 from fdvv.optimize.engines.gp_model import believe, finished, observed
 from fdvv.optimize.engines.preference import believe_answers
+from fdvv.optimize.engines.preference_line import believe_lines
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.verdict import LEVEL
 
@@ -39,7 +40,7 @@ def best_design(run: Optimization) -> BestDesign:
     The interval is that of a Gaussian process over all scores, whichever engine chose the designs: of the
     mean of more trials of this design, not of the next one.
     """
-    return _liked(run) if run.pair_engine else _scored(run)
+    return _liked(run) if run.setup.preference else _scored(run)
 
 
 def _scored(run: Optimization) -> BestDesign:
@@ -54,15 +55,16 @@ def _scored(run: Optimization) -> BestDesign:
 def _liked(run: Optimization) -> BestDesign:
     from scipy.stats import norm
 
-    design, belief = run.best(), believe_answers(run.space, run.comparisons)
+    design = run.best()
+    belief = believe_answers(run.space, run.comparisons) or believe_lines(run.space, run.lines)
     if belief is None:
-        raise ModelError("no comparison is answered yet, so there is no favourite")
-    answered = sum(one.answer is not None for one in run.comparisons)
-    mean, cov = belief.predict(run.space.to_unit([design, run.comparisons[0].first]))
+        raise ModelError("nothing is answered yet, so there is no favourite")
+    first = run.lines[0].middle if run.lines else run.comparisons[0].first
+    mean, cov = belief.predict(run.space.to_unit([design, first]))
     more, variance = float(mean[0] - mean[1]), float(cov[0, 0] + cov[1, 1] - 2 * cov[0, 1])
     deviation = float(np.sqrt(max(variance, 1e-12)))
     chance = float(norm.cdf(more / deviation))
-    return BestDesign(design, more, *_interval(more, deviation), chance, answered)
+    return BestDesign(design, more, *_interval(more, deviation), chance, run.answered)
 
 
 def _interval(mean: float, deviation: float) -> tuple[float, float]:

@@ -1,13 +1,14 @@
-"""The ledger of a run: every trial and comparison, on the disk before anybody sees it.
+"""The ledger of a run: every trial, comparison and line, on the disk before anybody sees it.
 
 ``trials.jsonl`` is a journal (see `fdvv.eventlog`) with the records ``{"trial": …}`` of a suggestion,
 ``{"edit": …}`` of its design, ``{"state": …}`` of what became of it, ``{"pair": …}`` of two designs to be
-compared and ``{"answer": …}`` of which was preferred.
+compared, ``{"answer": …}`` of which was preferred, ``{"line": …}`` of designs in a row and ``{"choice": …}``
+of which was liked best.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -16,7 +17,7 @@ import msgspec
 
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_bodies
-from fdvv.optimize.problem import Answer, Comparison, Trial, TrialState
+from fdvv.optimize.problem import Answer, Comparison, Line, Trial, TrialState
 from fdvv.optimize.space import Design
 from fdvv.task.score import Score
 
@@ -52,14 +53,31 @@ class Answered(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     answer: Answer
 
 
-Record = Trial | Edited | TrialOutcome | Comparison | Answered
+class Chosen(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Which stop of a line is liked best."""
+
+    number: int
+    best: int
+
+
+Suggested = Trial | Comparison | Line
+Record = Suggested | Edited | TrialOutcome | Answered | Chosen
 KIND = JournalKind(
-    {"trial": Trial, "edit": Edited, "state": TrialOutcome, "pair": Comparison, "answer": Answered}, REMEDY
+    {
+        "trial": Trial,
+        "edit": Edited,
+        "state": TrialOutcome,
+        "pair": Comparison,
+        "answer": Answered,
+        "line": Line,
+        "choice": Chosen,
+    },
+    REMEDY,
 )
 
 
 class Ledger:
-    """Trials and comparisons in memory, and on file for one process at a time if there is a path.
+    """Trials, comparisons and lines in memory, and on file for one process at a time if there is a path.
 
     Parameters
     ----------
@@ -76,6 +94,7 @@ class Ledger:
         self._source: object = path or "ledger"
         self._trials: list[Trial] = []
         self._comparisons: list[Comparison] = []
+        self._lines: list[Line] = []
         self._journal: Journal | None = None
         self.warnings: list[str] = []
         if path is not None:
@@ -92,6 +111,10 @@ class Ledger:
     @property
     def comparisons(self) -> tuple[Comparison, ...]:
         return tuple(self._comparisons)
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        return tuple(self._lines)
 
     def suggest(self, design: Design, origin: str) -> Trial:
         trial = Trial(len(self._trials), dict(design), origin=origin)
@@ -120,6 +143,16 @@ class Ledger:
         self._keep("answer", Answered(number, Answer(answer)))
         return self._comparisons[number]
 
+    def line(self, stops: Sequence[Design]) -> Line:
+        line = Line(len(self._lines), tuple(dict(stop) for stop in stops))
+        self._keep("line", line)
+        return line
+
+    def choose(self, number: int, best: int) -> Line:
+        """Write down which stop is liked best. Raises InputError on no stop, and on a second answer."""
+        self._keep("choice", Chosen(number, best))
+        return self._lines[number]
+
     def _keep(self, key: str, body: Any) -> None:
         changed = self._changed(body)
         if self._journal:
@@ -132,17 +165,19 @@ class Ledger:
         except InputError as error:  # the journal adds the line and what to do about a damaged file
             raise ValueError(f"{error.place}: {error.reason}") from error
 
-    def _put(self, changed: Trial | Comparison) -> None:
+    def _put(self, changed: Suggested) -> None:
         rows = self._rows(changed)
         # in the place of its number, or at the end
         rows[changed.number : changed.number + 1] = [changed]
 
-    def _rows(self, body: Trial | Comparison) -> list[Any]:
+    def _rows(self, body: Suggested) -> list[Any]:
+        if isinstance(body, Line):
+            return self._lines
         return self._trials if isinstance(body, Trial) else self._comparisons
 
-    def _changed(self, body: Record) -> Trial | Comparison:
-        """Return the trial or comparison as a record leaves it. Raises InputError where it cannot follow."""
-        if isinstance(body, Trial | Comparison):
+    def _changed(self, body: Record) -> Suggested:
+        """Return what was suggested as a record leaves it. Raises InputError where it cannot follow."""
+        if isinstance(body, Trial | Comparison | Line):
             if body.number != (count := len(self._rows(body))):
                 raise self._refusal(body.number, f"the next number is {count}")
             return body
@@ -151,6 +186,8 @@ class Ledger:
             if pair.answer is not None:
                 raise self._refusal(body.number, f"was answered: {pair.answer}")
             return replace(pair, answer=body.answer)
+        if isinstance(body, Chosen):
+            return self._chosen(body)
         trial = self._at(self._trials, body.number)
         if isinstance(body, Edited):
             if trial.state is not TrialState.SUGGESTED:
@@ -159,6 +196,14 @@ class Ledger:
         if body.state not in NEXT.get(trial.state, frozenset()):
             raise self._refusal(trial.number, f"is {trial.state} and cannot become {body.state}")
         return replace(trial, state=body.state, scores=body.scores, reason=body.reason)
+
+    def _chosen(self, body: Chosen) -> Line:
+        line = self._at(self._lines, body.number)
+        if line.best is not None:
+            raise self._refusal(body.number, f"was answered: stop {line.best}")
+        if not 0 <= body.best < len(line.stops):
+            raise self._refusal(body.number, f"has stops 0 to {len(line.stops) - 1}, not {body.best}")
+        return replace(line, best=body.best)
 
     def _at(self, rows: list[Read], number: int) -> Read:
         if not 0 <= number < len(rows):
@@ -182,14 +227,14 @@ def read_ledger(path: Path) -> Ledger:
     return ledger
 
 
-Step = tuple[tuple[Trial, ...], tuple[Comparison, ...], Trial | Comparison]
-"""Trials and comparisons that were known, and what was suggested next."""
+Step = tuple[tuple[Trial, ...], tuple[Comparison, ...], tuple[Line, ...], Suggested]
+"""Trials, comparisons and lines that were known, and what was suggested next."""
 
 
 def steps_before(path: Path) -> Iterator[Step]:
     """Return every suggestion with what was known before it, for replay. Raises InputError, OSError."""
     ledger = Ledger()
     for _, body, _ in read_bodies(path, KIND):
-        if isinstance(body, Trial | Comparison):
-            yield ledger.trials, ledger.comparisons, body
+        if isinstance(body, Trial | Comparison | Line):
+            yield ledger.trials, ledger.comparisons, ledger.lines, body
         ledger._put(ledger._changed(body))

@@ -10,9 +10,9 @@ from fdvv.errors import InputError, ModelError
 from fdvv.io.files import require_new_folder, write_atomic
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.multi_objective import ParetoFront, pareto_front
-from fdvv.optimize.engines.registry import engine_of, pair_engine_of
-from fdvv.optimize.problem import OPEN, Answer, Comparison, Engine, Trial, TrialState
-from fdvv.optimize.run.ledger import Ledger, Step, steps_before
+from fdvv.optimize.engines.registry import LINE_ENGINES, engine_of, line_engine_of, pair_engine_of
+from fdvv.optimize.problem import OPEN, Answer, Comparison, Engine, Line, Trial, TrialState
+from fdvv.optimize.run.ledger import Ledger, Step, Suggested, steps_before
 from fdvv.optimize.run.setup import (
     SETUP_FILE,
     OptimizeSetup,
@@ -38,7 +38,8 @@ class Optimization:
     Attributes
     ----------
     folder : of the run. setup : what it is about. space, problem : what its engine is asked.
-    engine, pair_engine : the one of scores, or the one of comparisons where the task is preference.
+    engine : the one of scores. pair_engine, line_engine : where the task is preference one of these, which
+        reads comparisons, or which stop of a line is liked best.
     warnings : what a person should know of the folder.
     """
 
@@ -48,7 +49,10 @@ class Optimization:
         self._designer = designer_of(setup.space)
         self.problem = problem_of(setup, self.space)
         self.engine = None if setup.preference else engine_of(setup.engine, setup.options)
-        self.pair_engine = pair_engine_of(setup.engine, setup.options) if setup.preference else None
+        on_lines = setup.preference and setup.engine in LINE_ENGINES
+        self.line_engine = line_engine_of(setup.engine, setup.options) if on_lines else None
+        pairs = setup.preference and not on_lines
+        self.pair_engine = pair_engine_of(setup.engine, setup.options) if pairs else None
         self.warnings = ledger.warnings
         self._ledger = ledger
         self._given: set[int] = set()
@@ -97,22 +101,33 @@ class Optimization:
     @property
     def comparisons(self) -> tuple[Comparison, ...]:
         """The comparisons of the search; those beyond the budget are the retest's."""
-        return self._ledger.comparisons[: self.setup.budget]
+        return self._ledger.comparisons[: self.setup.budget if self.pair_engine else 0]
 
     @property
     def retest_comparisons(self) -> tuple[Comparison, ...]:
-        return self._ledger.comparisons[self.setup.budget :]
+        return self._ledger.comparisons[len(self.comparisons) :]
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """The lines of the search, where the engine reads these."""
+        return self._ledger.lines
+
+    @property
+    def answered(self) -> int:
+        """How many comparisons or lines of the search are answered."""
+        answers = [one.answer for one in self.comparisons]
+        return sum(one is not None for one in (*answers, *(line.best for line in self.lines)))
 
     @property
     def left(self) -> int:
-        """How many more trials, or comparisons, may be suggested."""
+        """How many more trials, comparisons or lines may be suggested."""
         spent = sum(trial.state is not TrialState.ABANDONED for trial in self.trials)
-        return max(0, self.setup.budget - (len(self.comparisons) if self.pair_engine else spent))
+        return max(0, self.setup.budget - spent - len(self.comparisons) - len(self.lines))
 
     @property
     def searched(self) -> bool:
         """Whether the budget is spent and nothing of the search is open."""
-        unanswered = any(one.answer is None for one in self.comparisons)
+        unanswered = self.answered < len(self.comparisons) + len(self.lines)
         return not self.left and not unanswered and not any(trial.state in OPEN for trial in self.trials)
 
     @property
@@ -126,7 +141,7 @@ class Optimization:
         pairs = self.setup.retest_pairs if self.start is not None else 0
         if not pairs or (self.searched and self.recommended() in (None, self.start)):
             return 0
-        if self.pair_engine:
+        if self.setup.preference:
             return pairs - sum(one.answer is not None for one in self.retest_comparisons)
         return max(0, 2 * pairs - len(self.retests))
 
@@ -163,6 +178,8 @@ class Optimization:
             return self.space.checked(self.setup.start)
         if self.comparisons:
             return self.comparisons[0].first
+        if self.lines:
+            return self.lines[0].middle
         return self.trials[0].design if self.trials else None
 
     def recommended(self) -> dict[str, float] | None:
@@ -185,7 +202,7 @@ class Optimization:
         """
         if open_ := next((one for one in self.retests if one.state in OPEN), None):
             return open_
-        if self.pair_engine or not self.searched or not self.retest_left:
+        if self.setup.preference or not self.searched or not self.retest_left:
             return None
         count = len(self.retests)
         return self._ledger.suggest(self._blind(count // 2)[count % 2], RETEST)
@@ -231,6 +248,8 @@ class Optimization:
         """Recommend a design by what the engine believes, not by luck. Raises ModelError if none is done."""
         if self.pair_engine:
             return self.pair_engine.best(self.problem, self.comparisons)
+        if self.line_engine:
+            return self.line_engine.best(self.problem, self.lines)
         return self._scored().best(self.problem, self.trials)
 
     def front(self) -> ParetoFront:
@@ -241,16 +260,20 @@ class Optimization:
         """Return the next two designs to be compared: the unanswered first; None once all is answered.
 
         Behind the budget come those of the retest, start and recommended design, in a drawn order. They are
-        on the disk when this returns. InputError where the run's task is not preference.
+        on the disk when this returns. InputError where the run's task is not preference, and where its
+        search is by lines and not over.
         """
-        if self.pair_engine is None:
+        if not self.setup.preference:
             raise InputError("run", "task", "designs of this run are scored", "ask for trials instead")
+        if self.pair_engine is None and not self.searched:
+            raise InputError("run", "engine", "this run searches along lines", "ask for lines instead")
         unanswered = next((one for one in self._ledger.comparisons if one.answer is None), None)
         if unanswered is not None:
             return unanswered
         if not self.left:
             more = self.retest_left > 0
             return self._ledger.pair(*self._blind(len(self.retest_comparisons))) if more else None
+        assert self.pair_engine is not None
         return self._ledger.pair(*self.pair_engine.pair(self.problem, self.comparisons))
 
     def answer(self, number: int, answer: Answer | str) -> Comparison:
@@ -258,6 +281,22 @@ class Optimization:
         if answer not in tuple(Answer):
             raise InputError("answer", str(number), f"is {answer!r}", f"say {', '.join(Answer)}")
         return self._ledger.answer(number, answer)
+
+    def line(self) -> Line | None:
+        """Return the next line, on the disk when this returns: the unanswered first; None once all are.
+
+        InputError where the run's engine does not search along lines.
+        """
+        if self.line_engine is None:
+            raise InputError("run", "engine", f"{self.setup.engine} has no lines", "begin another run")
+        unanswered = next((one for one in self.lines if one.best is None), None)
+        if unanswered is not None:
+            return unanswered
+        return self._ledger.line(self.line_engine.line(self.problem, self.lines)) if self.left else None
+
+    def choose(self, number: int, best: int) -> Line:
+        """Record which stop of a line is liked best. InputError on no stop, or if one was chosen before."""
+        return self._ledger.choose(number, best)
 
     def model(self, design: Design, name: str = "design") -> FDVVModel:
         return self._designer(design).renamed(name)
@@ -272,8 +311,8 @@ class Optimization:
         self.close()
 
 
-def replay_differences(folder: Path) -> tuple[Trial | Comparison, ...]:
-    """Suggest every trial and comparison of a run anew, from what was known then; return those that differ.
+def replay_differences(folder: Path) -> tuple[Suggested, ...]:
+    """Suggest everything in a run anew, from what was known then; return what differs.
 
     None on the machine and the versions that a run was made with. InputError, OSError.
     """
@@ -284,10 +323,14 @@ def replay_differences(folder: Path) -> tuple[Trial | Comparison, ...]:
 
 def _agrees(run: Optimization, step: Step) -> bool:
     """Return whether an engine would suggest the same again; what a person brought in always agrees."""
-    trials, comparisons, found = step
+    trials, comparisons, lines, found = step
+    if isinstance(found, Line):
+        return run.line_engine is None or run.line_engine.line(run.problem, lines) == found.stops
     if isinstance(found, Comparison):
-        pair = run.pair_engine and run.pair_engine.pair(run.problem, comparisons)
-        return pair == (found.first, found.second)
+        # past the budget are the blind pairs of the retest, which no engine suggests
+        if run.pair_engine is None or len(comparisons) >= run.setup.budget:
+            return True
+        return run.pair_engine.pair(run.problem, comparisons) == (found.first, found.second)
     if run.engine is None or found.origin != run.engine.name:
         return True
     return run.engine.suggest(run.problem, trials) == [found.design]

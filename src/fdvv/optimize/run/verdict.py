@@ -44,7 +44,7 @@ class Retest:
 
 def retest_of(session: Optimization) -> Retest | None:
     """Return what the retest found; None of fewer than two pairs."""
-    return _of_answers(session) if session.pair_engine else _of_scores(session)
+    return _of_answers(session) if session.setup.preference else _of_scores(session)
 
 
 def _of_scores(session: Optimization) -> Retest | None:
@@ -102,7 +102,7 @@ PHRASES = {
 
 def verdict_kind(session: Optimization) -> Kind | None:
     """Return what the retest says of the recommended design; None while it is not over."""
-    if not session.finished or not (session.trials or session.comparisons):
+    if not session.finished or not (session.trials or session.comparisons or session.lines):
         return None
     if session.recommended() == session.start:
         return "same"
@@ -119,7 +119,7 @@ def verdict_sentence(session: Optimization) -> str | None:
     found = retest_of(session)
     if found is None:
         return f"No better design found{played}; keep {name}."
-    if session.pair_engine:
+    if session.setup.preference:
         count = round((found.difference + 0.5) * found.pairs)
         share = f"95 %: {100 * (found.low + 0.5):.0f} to {100 * (found.high + 0.5):.0f} %"
         end = "." if kind == "better" else f"; keep {name}."
