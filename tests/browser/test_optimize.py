@@ -375,6 +375,48 @@ def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: 
         assert [one.answer for one in session.retest_comparisons] in ([Answer.FIRST], [])
 
 
+def test_a_line_is_felt_and_answered_by_keys_until_the_budget_is_spent(
+    page: Page, studio: RunningStudio
+) -> None:
+    form(page, "I slide")
+    page.get_by_label("Designs").select_option("paper")
+    for label, value in (("Budget", "2"), ("Retest", "1")):
+        page.get_by_label(label, exact=True).fill(value)
+        page.keyboard.press("Enter")
+    page.get_by_role("button", name="Begin", exact=True).click()
+    choose = page.get_by_role("button", name="This one is best")
+    for line, back in ((1, 3), (2, 0)):
+        page.wait_for_selector(f"h2:has-text('Line {line}')")
+        slider = page.get_by_label("Position on the line")
+        for position in range(1, 10):
+            expect(slider).to_have_attribute("aria-valuetext", f"{position} of 9")
+            expect(choose).to_be_disabled()
+            page.wait_for_selector(f".press-view[aria-label^='Position {position} ']")
+            page.focus(".press-view")
+            # some designs are too stiff for their key to go down: the press counts when it ends
+            page.keyboard.down(" ")
+            page.wait_for_timeout(500)
+            page.keyboard.up(" ")
+            expect(slider).to_have_attribute("aria-valuetext", f"{position} of 9, felt")
+            if position < 9:
+                page.keyboard.press("ArrowRight")
+        slider.focus()
+        for _ in range(back):
+            page.keyboard.press("ArrowLeft")
+        expect(choose).to_be_enabled()
+        page.keyboard.press("Enter")
+    page.wait_for_selector("h2:has-text('Comparison 1')")
+    for side in ("A", "B"):
+        press_once(page, side)
+        page.keyboard.press("x" if side == "A" else "1")
+    page.wait_for_selector("text=All lines are answered")
+    page.get_by_role("tab", name="Result").click()
+    page.wait_for_selector(".opt-compared")
+    with ended(page, studio) as session:
+        assert [one.best for one in session.lines] == [5, 8]
+        assert [one.answer for one in session.retest_comparisons] == [Answer.FIRST]
+
+
 @pytest.mark.parametrize(
     ("how", "tab"),
     [
@@ -383,6 +425,7 @@ def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: 
         ("I play", "Play"),
         ("I play", "Timing"),
         ("I compare", "Compare"),
+        ("I slide", "Compare"),
     ],
 )
 @pytest.mark.parametrize("scheme", ["light", "dark"])

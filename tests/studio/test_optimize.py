@@ -476,6 +476,30 @@ def test_two_designs_are_compared_until_the_budget_is_spent(
     assert "compared" in refusal(client, "next", run=run)
 
 
+def test_lines_are_answered_until_the_budget_is_spent_and_the_result_is_compared(
+    ask: Callable[..., Any], client: TestClient
+) -> None:
+    assert [one["name"] for one in ask("offers")["line_engines"]] == ["preference-line"]
+    some = {"engine": "preference-line", "budget": 2, "start": None, "retest": 1}
+    run = ask("create", **{**CREATE, "preference": True, **some})["run"]
+    for number, best in enumerate((8, 3)):
+        assert ask("line", run=run) == ask("line", run=run) == {"run": run, "line": number}
+        assert "ask for lines" in refusal(client, "pair", run=run)
+        assert "stops 0 to 8" in refusal(client, "choose", run=run, line=number, best=9)
+        ask("choose", run=run, line=number, best=best)
+    found = ask("detail", run=run)
+    assert found["on_lines"]
+    assert [one["best"] for one in found["lines"]] == [8, 3]
+    assert (found["row"]["spent"], found["searched"], found["pairs"]) == (2, True, [])
+    assert found["start"] == found["lines"][0]["stops"][4]
+    assert ask("best", run=run)["design"] in [stop for one in found["lines"] for stop in one["stops"]]
+    assert "all answered" in refusal(client, "line", run=run)
+    assert "was answered" in refusal(client, "choose", run=run, line=0, best=1)
+    ask("answer", run=run, pair=ask("pair", run=run)["pair"], answer="first")
+    assert ask("detail", run=run)["retest"]["done"] == 1
+    assert "all made" in refusal(client, "pair", run=run)
+
+
 def test_several_objectives_make_a_front_to_pick_from(ask: Callable[..., Any], own_studio: Studio) -> None:
     many = {**CREATE, "also": ["lost_ratio"], "simulated": True, "engine": "nsga2"}
     run = ask("create", **many)["run"]

@@ -65,7 +65,13 @@ PROBE = {
 TUNE = {**PROBE, "type": "tune", "device": "twin", "observer": "person"}
 PRESS = "displacement_mm,force_cN\n" + "".join(f"{i / 50},{min(i, 40) + i / 5}\n" for i in range(200))
 CREATED: dict[str, tuple[dict[str, object], ...]] = {
-    "optimize.create": (SCORED, {**SCORED, "preference": True, "engine": "preference", "simulated": False}),
+    "optimize.create": (
+        SCORED,
+        *(
+            {**SCORED, "preference": True, "engine": engine, "simulated": False}
+            for engine in ("preference", "preference-line")
+        ),
+    ),
     "jobs.start": ({"order": {**PROBE, "presses": 1}}, {"order": TUNE}),
     "device.connect": ({"device": "host"},),
     "press.trace": (

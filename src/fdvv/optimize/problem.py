@@ -89,7 +89,7 @@ class Line:
 
     @property
     def middle(self) -> dict[str, float]:
-        """The stop in the middle, where a person begins to feel."""
+        """The stop in the middle; of a run's first line, what its result is compared with."""
         return self.stops[len(self.stops) // 2]
 
 

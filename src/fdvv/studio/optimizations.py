@@ -192,7 +192,7 @@ class Optimizations:
     def found(self, run: int, session: Optimization) -> dict[str, float] | None:
         """Return the recommended design, by the engine's model or the knee of the front; None at first."""
         done = sum(one.state is TrialState.DONE for one in session.trials)
-        done += sum(one.answer is not None for one in session.comparisons)
+        done += session.answered
         if not done:
             return None
         if self._found.get(run, (0, {}))[0] != done:

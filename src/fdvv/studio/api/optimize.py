@@ -35,7 +35,7 @@ Level = Literal["easy", "hard"]
 class OptimizeRow(Message):
     """A run in short.
 
-    spent : trials, or comparisons, that count. problem : why it cannot be read; empty if it can.
+    spent : trials, comparisons or lines that count. problem : why it cannot be read; empty if it can.
     sentence : what was found, None before the end. simulated : a simulated person plays. made : when, UTC.
     """
 
@@ -97,6 +97,14 @@ class OptimizePair(Message):
     answer: Answer | None
 
 
+class OptimizeLine(Message):
+    """Designs in a row, and which of them is liked best; None: not yet answered."""
+
+    number: int
+    stops: list[dict[str, float]]
+    best: int | None
+
+
 class OptimizeSimulated(Message):
     """A simulated person who plays: how far, and whether still at it. about : the person."""
 
@@ -129,6 +137,7 @@ class OptimizeDetail(Message):
 
     rounds : presses of a score. rules : what every design must hold. start : the design the run began with,
     None while there is none. start_name : the button it is. start_button : its id; empty if there is none.
+    on_lines : designs are compared along lines, not in pairs.
     searched : the budget is spent; what is left is the retest.
     others : what it began from; empty if from nothing. playable : a person can play its task here.
     """
@@ -142,6 +151,8 @@ class OptimizeDetail(Message):
     strip: PlayStrip
     trials: list[OptimizeTrial]
     pairs: list[OptimizePair]
+    on_lines: bool
+    lines: list[OptimizeLine]
     start: dict[str, float] | None
     start_name: str
     start_button: str
@@ -168,14 +179,13 @@ TITLE, START, OTHERS = "title", "start", "others"
 def run_row(run: int, session: Optimization) -> OptimizeRow:
     setup, trials = session.setup, session.trials
     counting = sum(one.state is not TrialState.ABANDONED for one in trials)
-    answered = sum(one.answer is not None for one in session.comparisons)
     return message_of(
         OptimizeRow,
         setup,
         run=run,
         title=str(setup.about.get(TITLE, "")) or f"run {run}",
         level=setup.level or "",
-        spent=answered if setup.preference else counting,
+        spent=session.answered if setup.preference else counting,
         sentence=verdict_sentence(session),
         made=setup.created,
         problem="",
@@ -242,6 +252,8 @@ def detail(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeDetail:
             strip_of(pointing_of(setup) if playable(setup) else TemporalPointing()),
             trial_list(session),
             pair_list(session),
+            session.line_engine is not None,
+            [message_of(OptimizeLine, one, stops=list(one.stops)) for one in session.lines],
             session.start,
             setup.start_name,
             str(setup.about.get(START) or ""),

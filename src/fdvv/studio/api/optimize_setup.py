@@ -8,7 +8,7 @@ from msgspec import Meta
 
 from fdvv.errors import InputError, ModelError
 from fdvv.live.press_subject import button_choices
-from fdvv.optimize.engines.registry import engine_names, pair_engine_names
+from fdvv.optimize.engines.registry import LINE_ENGINES, engine_names, pair_engine_names
 from fdvv.optimize.model_space import model_space, neutral_design
 from fdvv.optimize.paper_space import paper_design_like
 from fdvv.optimize.problem import Trial
@@ -28,13 +28,14 @@ from fdvv.task.score import Objective
 class OptimizeOffers(Message):
     """What a run can be made of.
 
-    engines : read scores. pair_engines : read preferences. spaces : of designs. objectives : beside the
-    first. starts : buttons that a run may start from. others : grids of the project that a run in the
-    paper's space may begin from.
+    engines : read scores. pair_engines : read which of two is preferred. line_engines : read where on a line
+    it feels best. spaces : of designs. objectives : beside the first. starts : buttons that a run may start
+    from. others : grids of the project that a run in the paper's space may begin from.
     """
 
     engines: list[Offer]
     pair_engines: list[Offer]
+    line_engines: list[Offer]
     spaces: list[Offer]
     rigs: list[Offer]
     levels: list[Offer]
@@ -56,7 +57,7 @@ class OptimizeCreate(Message):
     simulated : a simulated person plays. level : of temporal pointing.
     also : objectives beside asynchrony, of designs that are scored. start : a button; None starts from what
     the engine suggests. rig : must be able to render every design; None asks for none.
-    budget : trials, or comparisons.
+    budget : trials, comparisons or lines.
     task_presses : of a score, 20 in the paper. others : a grid to begin from, in the paper's space; None
     begins from nothing. retest : pairs of trials, or comparisons, of the result with the start.
     """
@@ -97,6 +98,7 @@ PAIR_ENGINE_DESCRIPTIONS = {
     "preference": "learns from which of two you prefer",
     "preference-botorch": "the same, stronger; needs the extra fdvv[botorch]",
 }
+LINE_ENGINE_DESCRIPTIONS = {"preference-line": "learns from where on a line you like it best"}
 OBJECTIVE_DESCRIPTIONS = {"lost_ratio": "share of rounds lost"}
 
 
@@ -105,6 +107,7 @@ def offers(studio: Studio, _ask: Empty) -> OptimizeOffers:
     return OptimizeOffers(
         [Offer(name, ENGINE_DESCRIPTIONS.get(name, "")) for name in engine_names()],
         [Offer(name, PAIR_ENGINE_DESCRIPTIONS.get(name, "")) for name in pair_engine_names()],
+        [Offer(name, LINE_ENGINE_DESCRIPTIONS[name]) for name in LINE_ENGINES],
         [Offer(name, about) for name, about in SPACE_DESCRIPTIONS.items()],
         [Offer(entry.rig_id, entry.about) for entry in studio.rigs.entries()],
         [Offer(name, f"{speed:g} pixels per second") for name, speed in LEVELS_px_s.items()],

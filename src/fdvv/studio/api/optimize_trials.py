@@ -1,4 +1,4 @@
-"""Trials and comparisons of a run: suggested, edited, answered, and what they recommend."""
+"""Trials, comparisons and lines of a run: suggested, edited, answered, and what they recommend."""
 
 from __future__ import annotations
 
@@ -48,6 +48,18 @@ class OptimizePairAsk(Message):
 
     run: int
     pair: int
+
+
+class OptimizeLineAsk(OptimizeAsk):
+    """Name a line of a run."""
+
+    line: Number
+
+
+class OptimizeChoose(OptimizeLineAsk):
+    """Say which stop of a line is liked best, from 0."""
+
+    best: Number
 
 
 class OptimizeModelAsk(OptimizeAsk):
@@ -119,6 +131,24 @@ def answer(optimizations: Optimizations, ask: OptimizeAnswer) -> OptimizePairAsk
     with _changed(optimizations, ask.run) as session:
         session.answer(ask.pair, ask.answer)
     return OptimizePairAsk(ask.run, ask.pair)
+
+
+@call("optimize.line")
+def next_line(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeLineAsk:
+    """Return the open line, or ask the engine for one."""
+    with _changed(optimizations, ask.run) as session:
+        waiting = session.line()
+        if waiting is None:
+            reason, remedy = "its lines are all answered", "compare what was found, or begin another run"
+            raise InputError("optimise", f"run {ask.run}", reason, remedy)
+        return OptimizeLineAsk(ask.run, waiting.number)
+
+
+@call("optimize.choose")
+def choose(optimizations: Optimizations, ask: OptimizeChoose) -> OptimizeLineAsk:
+    with _changed(optimizations, ask.run) as session:
+        session.choose(ask.line, ask.best)
+    return OptimizeLineAsk(ask.run, ask.line)
 
 
 @call("optimize.model")

@@ -20,7 +20,7 @@ export class Pace {
 export function said(store: RunStore, detail: OptimizeDetail, pace: Pace): Verdict {
   const { retest, row, simulated } = detail;
   if (retest.sentence) return found(store, detail, retest.sentence);
-  const one = row.preference ? "comparison" : "trial";
+  const one = detail.on_lines ? "line" : row.preference ? "comparison" : "trial";
   const again = `the best design against ${detail.start_name}, blind: ${Math.min(retest.done + 1, retest.total)} of ${retest.total}`;
   const now = store.retesting() ? again : `${one} ${Math.min(row.spent + 1, row.budget)} of ${row.budget}`;
   if (simulated?.running) {

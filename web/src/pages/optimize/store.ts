@@ -78,9 +78,11 @@ export class RunStore extends Followed<OptimizeDetail> {
     return this.detail()?.objectives[0]?.name ?? "asynchrony_ms";
   }
 
-  /** How many trials are done, or comparisons answered. */
+  /** How many trials are done, or comparisons and lines answered. */
   count(): number {
-    return this.done().length + (this.detail()?.pairs.filter((pair) => pair.answer !== null).length ?? 0);
+    const { pairs = [], lines = [] } = this.detail() ?? {};
+    const answered = [...pairs.map(({ answer }) => answer), ...lines.map(({ best }) => best)];
+    return this.done().length + answered.filter((answer) => answer !== null).length;
   }
 
   done(): readonly OptimizeTrial[] {

@@ -86,7 +86,13 @@ export class FingerInput {
   /** Follow the space bar and the arrows wherever the page has the focus, unless something else uses them. */
   onKeys(): void {
     const down = (event: KeyboardEvent) => {
-      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || taken(event.target))
+      if (
+        event.defaultPrevented ||
+        event.ctrlKey ||
+        event.metaKey ||
+        event.altKey ||
+        taken(event.target, event.key)
+      )
         return;
       if (event.key === " ") event.repeat || this.key(event.timeStamp);
       else if (event.key === "ArrowDown" || event.key === "ArrowUp")
@@ -219,9 +225,11 @@ function hasPressure(event: PointerEvent): boolean {
   );
 }
 
-function taken(target: EventTarget | null): boolean {
+function taken(target: EventTarget | null, key: string): boolean {
   return (
     target instanceof HTMLElement &&
+    // the space bar does nothing on a slider
+    !(key === " " && target.matches("input[type=range]")) &&
     target.matches("button, a, input, select, textarea, summary, [role=tab], [contenteditable]")
   );
 }
