@@ -37,6 +37,7 @@ from fdvv.study.plan.events import Event
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.sweep.plan import SweepPlan
 from fdvv.task.rounds import TaskRound
+from fdvv.thresholds.file import JndRecord, MeasuredJnd
 from fdvv.timing.plan.events import TimingEvent
 from fdvv.timing.plan.plan import TimingPlan
 from fdvv.vibration.exciter import ExciterRecord, KnownExciter
@@ -102,6 +103,13 @@ FILES = (
         "`*.exciter.json`",
         "The identified exciter of a rig ([how](../explanation/vibration-rendering.md)).",
         {"file": ExciterRecord},
+    ),
+    FileKind(
+        "JNDs",
+        "`jnds.json`",
+        "What the people of a study notice, for a project to judge by ([how](../explanation/noticeable.md)). "
+        "`fdvv study jnds` writes it.",
+        {"file": JndRecord, "jnd": MeasuredJnd},
     ),
     FileKind(
         "Session",

@@ -79,7 +79,7 @@ def test_a_rig_learns_a_button_and_the_error_is_seen_to_fall(page: Page) -> None
         r"Mean error [\d.]+ → [\d.]+ cN on simulated presses, largest [\d.]+ → [\d.]+ cN; a finger would"
     )
     expect(verdict(page)).to_contain_text(re.compile(figures))
-    expect(page.get_by_text("A finger would not notice the force on")).to_be_visible()
+    expect(page.get_by_text("a finger would not notice the force on")).to_be_visible()
     noticed = page.get_by_role("table", name="What a finger would notice").locator("tbody tr")
     expect(noticed).to_have_count(2)
     assert re.search(r"\d+ % → \d+ %", noticed.nth(0).inner_text())
@@ -114,7 +114,7 @@ def test_the_recommended_rig_comes_first_and_its_result_beside_no_compensation(p
     set_field(page, "Held-out presses", "2")
     page.get_by_role("button", name="Start", exact=True).click()
     page.wait_for_selector(DONE, timeout=LONG_ms)
-    expect(verdict(page)).to_contain_text("; a finger would not notice it.")
+    expect(verdict(page)).to_contain_text("; a finger would not notice it, by JNDs from the literature.")
     button = page.url
     verdict(page).get_by_role("link", name="Press it").click()
     page.wait_for_url(re.compile("#/press/builtin%3Amx-clear"))

@@ -144,7 +144,7 @@ def test_a_probe_ends_with_its_verdict_and_the_next_step_and_draws_them(fdvv: Ru
     lines = ran.out.splitlines()
     assert lines[0] == "mx-clear on twin (simulated), 2 presses, 2 more with the vibration"
     text = " ".join(line.strip() for line in lines)
-    assert "A finger would not notice the force on" in text
+    assert "By JNDs from the literature, a finger would not notice the force on" in text
     assert "the 239 Hz vibration at 2.3 mm" in text
     assert "Next: Learn the actuation with fdvv compensate, then probe again." in lines
     assert lines[-2:] == ["written to f.svg", "written to r.html"]

@@ -257,4 +257,4 @@ def test_compare_and_show_write_a_page_to_share(fdvv: Run, tmp_path: Path) -> No
 
 def test_compare_begins_with_how_different_the_buttons_feel(fdvv: Run) -> None:
     first = fdvv("compare", "mx-red", "mx-clear", "mx-blue").out.splitlines()[0]
-    assert first.startswith("mx-clear feels clearly different from mx-red: about 2.3 just noticeable")
+    assert first.startswith("mx-clear feels clearly different from mx-red: about 2.2 just noticeable")

@@ -11,7 +11,10 @@ import pytest
 from fdvv.errors import ModelError
 from fdvv.library.page import buttons_page, difference_sentences
 from fdvv.model.file import load_builtin, model_from_json
+from fdvv.model.noticeable import LITERATURE
+from fdvv.thresholds.file import jnds_of
 from tests.support.buttons import line_model
+from tests.support.jnds import as_literature, record_of
 
 MODELS = [load_builtin(name) for name in ("mx-red", "mx-clear", "mx-blue")]
 
@@ -40,6 +43,20 @@ def test_twice_the_force_feels_clearly_different() -> None:
     (sentence,) = difference_sentences([line_model("light", 30), line_model("heavy", 60)])
     assert "feels clearly different" in sentence
     assert "most of it in the force" in sentence
+
+
+def test_what_is_noticed_depends_on_whose_jnds_count_and_the_page_says_whose() -> None:
+    pair = [line_model("light", 45), line_model("heavy", 60)]
+    dull = jnds_of(record_of(as_literature("force", 4.0), simulated=True))
+    (sharp_sentence,), (dull_sentence,) = (
+        list(difference_sentences(pair, one)) for one in (LITERATURE, dull)
+    )
+    assert "heavy feels close to light" in sharp_sentence
+    assert "heavy can hardly be felt apart from light" in dull_sentence
+    assert "Counted in JNDs from the literature" in buttons_page(pair)
+    assert "Counted in JNDs of force of 12 people of study weights (simulated)" in buttons_page(
+        pair, jnds=dull
+    )
 
 
 def test_the_models_can_be_saved_from_the_page_as_they_are() -> None:

@@ -20,8 +20,12 @@ from fdvv.library.row import NUMBERS as SHELF_NUMBERS
 from fdvv.library.row import ButtonRow, ButtonType, Origin
 from fdvv.library.search import CatalogSearch, SearchQuery
 from fdvv.model.file import builtin_names, load_builtin
+from fdvv.model.noticeable import LITERATURE
+from fdvv.thresholds.file import jnds_of
+from fdvv.thresholds.observer import Dimension
 from fdvv.units import FloatArray
 from tests.support.catalog_rows import bumped, button, dome, row, spring
+from tests.support.jnds import as_literature, record_of
 
 NAMES = ("Cherry MX Clear", "Cherry MX Blue", "Gateron Yellow Pro", "Kailh Box Navy", "Topre 45g", "Omron B3")
 FORCES = (bumped(15), bumped(20, 0.03), spring, bumped(30, 0.03), dome, bumped(9))
@@ -181,6 +185,32 @@ def test_distance_is_zero_to_itself_and_the_same_both_ways() -> None:
     assert (gaps[~np.eye(len(ROWS), dtype=bool)] > 0.5).all()
 
 
+@pytest.mark.parametrize("dimension", ["force", "snap"])
+def test_people_with_twice_the_jnd_find_buttons_half_as_far_apart(dimension: Dimension) -> None:
+    table = LikeTable()
+    table.extend(ROWS)
+    once, twice = (
+        table.parts(0, jnds_of(record_of(as_literature(dimension, times)))) for times in (1.0, 2.0)
+    )
+    np.testing.assert_allclose(once, table.parts(0))
+    if dimension == "force":
+        np.testing.assert_allclose(twice[:, :2], 0.5 * once[:, :2])
+        np.testing.assert_allclose(twice[:, 2], once[:, 2])
+    else:
+        np.testing.assert_allclose(twice[:, :2], once[:, :2])
+        assert (twice[1:, 2] < once[1:, 2]).all()
+
+
+def test_a_search_that_counts_in_other_jnds_leaves_the_next_one_as_it_was() -> None:
+    dull = jnds_of(record_of(as_literature("force", 3.0)))
+    before, other, after = (
+        SEARCH.find(SearchQuery(like=ROWS[0].id, jnds=jnds)).distances
+        for jnds in (LITERATURE, dull, LITERATURE)
+    )
+    assert (other < before).all()
+    np.testing.assert_array_equal(after, before)
+
+
 def test_a_force_8_percent_higher_is_about_one_noticeable_difference_in_force_and_none_in_shape() -> None:
     def strong(scale: float) -> ButtonRow:
         return row(button(lambda x: scale * (100 + 10 * x), lambda x: scale * (95 + 10 * x)))
@@ -188,6 +218,7 @@ def test_a_force_8_percent_higher_is_about_one_noticeable_difference_in_force_an
     table = LikeTable()
     table.extend([strong(1.0), strong(1.08)])
     force, shape, _ = table.parts(0)[1]
+    # 8 % of 100 to 145 cN, of which 7 % and 30 cN are noticed
     assert force == pytest.approx(0.9, abs=0.1)
     assert shape == pytest.approx(0, abs=0.02)
 

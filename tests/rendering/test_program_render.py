@@ -11,13 +11,14 @@ from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import InputError
+from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
 from fdvv.program.compile import compile_program
 from fdvv.program.library import MAKERS, make
 from fdvv.program.program import Program
 from fdvv.rendering.compensate import compensate
 from fdvv.rendering.evaluation.probe_curve import judged_curves
-from fdvv.rendering.evaluation.program_probe import all_errors_cN, intended_cN, judged_states
+from fdvv.rendering.evaluation.program_probe import StateError, all_errors_cN, intended_cN, judged_states
 from fdvv.rendering.program_render import ProgramReport, render_program, rendering_of
 from fdvv.twin.files import load_rig
 from fdvv.twin.rig import LoadCell, Rig
@@ -58,6 +59,14 @@ def test_with_the_loop_closed_every_program_is_felt_as_written(name: str, known:
     assert report.median_cN < 2.0
     assert report.worse == []
     assert "felt as written" in report.verdict
+
+
+def test_a_program_is_felt_as_written_where_half_of_it_is_off_by_less_than_a_jnd() -> None:
+    errors_cN, errors_JND = np.array([1.0, 2.0, 40.0]), np.array([0.3, 0.9, 8.0])
+    for times, felt in ((1.0, "is felt as written"), (2.0, "is not yet felt as written")):
+        row = StateError("up", Stroke.PRESS, SPEED_mm_s, errors_cN, times * errors_JND)
+        report = ProgramReport("button", "twin", True, 1, (row,), (row,))
+        assert f"button {felt}, by JNDs from the literature: median 2.0 cN off" in report.verdict
 
 
 @pytest.mark.parametrize("name", sorted(MAKERS))

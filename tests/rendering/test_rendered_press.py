@@ -6,7 +6,7 @@ import pytest
 from fdvv.device.twin import TwinDevice
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
-from fdvv.model.noticeable import force_jnd_cN
+from fdvv.model.noticeable import LITERATURE
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.press_check import intended_press, noticeable_cN, rendered_press
 from fdvv.rendering.probe import probe
@@ -34,7 +34,7 @@ def test_what_was_intended_is_the_models_force() -> None:
 
 
 def test_what_is_noticeable_is_a_part_of_the_mean_force() -> None:
-    down, up = noticeable_cN(MODEL, 100.0)
+    down, up = noticeable_cN(MODEL, 100.0, LITERATURE)
     wanted = intended_press(MODEL, 100.0)
-    assert force_jnd_cN(wanted.press_cN).min() < down < force_jnd_cN(wanted.press_cN).max()
+    assert LITERATURE.force_cN(wanted.press_cN).min() < down < LITERATURE.force_cN(wanted.press_cN).max()
     assert 0 < up < down

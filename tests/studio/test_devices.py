@@ -23,8 +23,11 @@ from fdvv.studio.device_findings import PressSeen
 from fdvv.studio.device_session import DeviceConnect, DeviceSession, DeviceStatus, DeviceUpload
 from fdvv.studio.jobs.jobs import Jobs
 from fdvv.studio.studio import Studio
+from fdvv.thresholds.file import FILE_NAME as JNDS_FILE
+from fdvv.thresholds.file import save_jnds
 from fdvv.twin.files import load_rig
 from tests.studio.jobs import DEVICES, PATIENCE_s, learning
+from tests.support.jnds import as_literature, record_of
 
 CLEAR = DeviceUpload("builtin:mx-clear")
 
@@ -140,8 +143,31 @@ def test_a_sound_cell_closes_the_loop_that_was_open_and_the_next_press_is_held(
     seen = page.wait(PressSeen)
     assert not seen.noticed
     assert re.fullmatch(
-        r"Mean error [01]\.\d cN in one press at 100 mm/s, simulated; .* not notice it", seen.sentence
+        r"Mean error [01]\.\d cN in one press at 100 mm/s, simulated; .* not notice it, by JNDs from .*",
+        seen.sentence,
     )
+
+
+def test_a_press_is_judged_by_what_the_projects_people_notice_while_its_file_is_there(
+    studio: Studio, page: Page
+) -> None:
+    part.connect.function(studio, DeviceConnect("twin"))
+    part.upload.function(studio, CLEAR)
+    file = studio.project / JNDS_FILE
+    origin = "JNDs of force of 12 people of study weights (simulated)"
+    for times, noticed in ((50.0, False), (0.01, True)):
+        save_jnds(record_of(as_literature("force", times), simulated=True), file)
+        part.press.function(studio, DevicePress(100.0))
+        seen = page.wait(PressSeen, lambda seen, wanted=noticed: seen.noticed == wanted)
+        assert seen.sentence.endswith(f"a finger would {'' if noticed else 'not '}notice it, by {origin}")
+    file.write_text("{")
+    count = len(page.of(PressSeen))
+    with pytest.raises(InputError, match=JNDS_FILE):
+        part.press.function(studio, DevicePress(100.0))
+    file.unlink()
+    part.press.function(studio, DevicePress(100.0))
+    assert len(page.of(PressSeen)) == count + 1
+    assert page.of(PressSeen)[-1].sentence.endswith(", by JNDs from the literature")
 
 
 def test_a_rig_without_a_cell_has_none_to_check(studio: Studio) -> None:

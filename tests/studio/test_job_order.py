@@ -15,8 +15,11 @@ from fdvv.model.file import model_from_json
 from fdvv.studio.jobs.file import RESULT_FOLDERS, result_file, result_names, rig_name
 from fdvv.studio.jobs.inputs import inputs_of
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order
+from fdvv.thresholds.file import FILE_NAME as JNDS_FILE
+from fdvv.thresholds.file import save_jnds
 from fdvv.twin.files import load_rig, rig_to_toml
 from tests.studio.jobs import DEVICES, learning, tuning
+from tests.support.jnds import as_literature, record_of
 
 OLD_JOB = Path(__file__).parents[1] / "files" / "old" / "project" / "jobs" / "0001" / "job.json"
 
@@ -100,3 +103,13 @@ def test_what_is_kept_is_found_by_name_among_what_is_there(tmp_path: Path) -> No
     assert result_file(tmp_path, "actuation", "b 2").is_file()
     with pytest.raises(InputError, match="none of this name"):
         result_file(tmp_path, "actuation", "../actuations/a")
+
+
+def test_a_job_keeps_what_people_noticed_when_it_was_ordered(tmp_path: Path) -> None:
+    assert JNDS_FILE not in checked(learning(), tmp_path).files
+    save_jnds(record_of(as_literature("force", 2.0)), tmp_path / JNDS_FILE)
+    copied = checked(learning(), tmp_path).files[JNDS_FILE]
+    assert copied == (tmp_path / JNDS_FILE).read_bytes()
+    (tmp_path / JNDS_FILE).write_text("{}")
+    with pytest.raises(InputError, match="not a file of JNDs"):
+        checked(learning(), tmp_path)

@@ -16,8 +16,11 @@ from fdvv.model.file import MODEL_SUFFIX, builtin_names, load_builtin, save_mode
 from fdvv.studio.api.library_buttons import sampled_strokes
 from fdvv.studio.server import address_of, create_app
 from fdvv.studio.studio import Studio
+from fdvv.thresholds.file import FILE_NAME as JNDS_FILE
+from fdvv.thresholds.file import save_jnds
 from tests.studio.conftest import LIVE, ORIGIN, TOKEN
 from tests.support.buttons import write_cycle
+from tests.support.jnds import as_literature, record_of
 
 
 @pytest.fixture(scope="module")
@@ -30,9 +33,13 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory, bench: Path) -> Iterator[TestClient]:
+def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("library") / "project"
+
+
+@pytest.fixture(scope="module")
+def client(project: Path, bench: Path) -> Iterator[TestClient]:
     """A studio whose index has read everything."""
-    project = tmp_path_factory.mktemp("library") / "project"
     save_model(load_builtin("mx-red"), project / "buttons" / f"mine{MODEL_SUFFIX}")
     app = create_app(Studio(project, (bench,)), address_of(["127.0.0.1"], 8377, TOKEN))
     with TestClient(app, base_url=ORIGIN, headers={"origin": ORIGIN}) as client:
@@ -173,3 +180,29 @@ def test_samples_lie_on_the_curves(name: str) -> None:
         np.testing.assert_allclose(sampled.force_cN, curve.force_cN(x), atol=6e-4)
         assert x[-1] == pytest.approx(curve.end_mm)
         assert sampled.step_mm <= 0.0101
+
+
+def test_distances_count_in_the_projects_own_jnds_while_its_file_is_there(
+    client: TestClient, project: Path
+) -> None:
+    def looked() -> tuple[str, list[float], str, str]:
+        alike = ask(client, "like", id="builtin:mx-clear")
+        found = ask(client, "find", like="builtin:mx-clear")
+        page = ask(client, "page", ids=["builtin:mx-clear", "builtin:mx-red"])["html"]
+        assert alike["jnds"] == found["jnds"]
+        return alike["jnds"], [one["force_jnd"] for one in alike["alike"]], found["distances_jnd"], page
+
+    before = looked()
+    assert before[0] == "JNDs from the literature"
+    save_jnds(record_of(as_literature("force", 2.0), simulated=True), project / JNDS_FILE)
+    own = looked()
+    assert own[0] == "JNDs of force of 12 people of study weights (simulated)"
+    assert sum(own[1]) < sum(before[1])
+    assert own[0] in own[3]
+    (project / JNDS_FILE).write_text("{")
+    broken = client.post("/api/library.like", json={"id": "builtin:mx-clear"})
+    assert broken.status_code != 200
+    assert JNDS_FILE in broken.text
+    assert ask(client, "find", text="mx")["positions"]
+    (project / JNDS_FILE).unlink()
+    assert looked() == before

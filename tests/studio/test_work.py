@@ -10,6 +10,7 @@ import pytest
 
 from fdvv.device.twin import TwinDevice
 from fdvv.model.file import load_builtin, save_model
+from fdvv.model.noticeable import LITERATURE
 from fdvv.project.measured_bands import measured_button
 from fdvv.rendering.compensate import uncompensated
 from fdvv.rendering.probe import probe
@@ -19,8 +20,10 @@ from fdvv.studio.jobs.orders import Order, ProbeOrder
 from fdvv.studio.jobs.process import ended
 from fdvv.studio.jobs.work import Work
 from fdvv.studio.jobs.work_learn import PROBE_SEED
+from fdvv.thresholds.file import save_jnds
 from fdvv.twin.files import load_rig, rig_to_toml
 from tests.studio.jobs import learning, tuning
+from tests.support.jnds import as_literature, record_of
 
 
 def work_of(order: Order, path: Path, tell: Any) -> Work:
@@ -74,6 +77,23 @@ def test_what_was_learned_is_judged_beside_the_same_presses_without_compensation
     before = sum(c.outcome.mean_error_cN for c in alone) / len(alone)
     assert outcome.headline.startswith(f"Mean error {before:.0f} → ")
     assert " cN on simulated presses, largest " in outcome.headline
+
+
+def test_a_job_judges_by_the_jnds_that_lie_in_its_folder_and_says_whose(tmp_path: Path) -> None:
+    events: list[JobEvent] = []
+    order = ProbeOrder("builtin:mx-clear", "clear", velocities_mm_s=(100.0,), presses=2)
+    work = work_of(order, tmp_path / "job", events.append)
+    save_jnds(record_of(as_literature("force", 50.0)), work.folder.jnds)
+    assert ended(work).state == "done"
+    origin = "JNDs of force of 12 people of study weights"
+    intended = next(e for e in events if isinstance(e, CurveIntended))
+    wanted = 50 * LITERATURE.force_cN(intended.press_cN)
+    assert intended.press_jnd_cN == pytest.approx(wanted.tolist(), abs=0.2)
+    assert intended.jnds == origin
+    outcome = next(e for e in events if isinstance(e, JobOutcome))
+    assert outcome.headline.endswith(f"a finger would not notice it, by {origin}")
+    measured = json.loads(work.folder.result("measured").read_text())
+    assert measured["noticeable"]["jnds"]["origin"] == origin
 
 
 @pytest.mark.parametrize(

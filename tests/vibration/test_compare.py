@@ -10,8 +10,10 @@ from hypothesis import strategies as st
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.vibration import Mode, Vibration
+from fdvv.thresholds.file import jnds_of
 from fdvv.units import FloatArray
 from fdvv.vibration.compare import BANDS_Hz, CapMotions, RATE_Hz, band_power, compare_vibration, least_s
+from tests.support.jnds import as_literature, record_of
 
 SNAP = Vibration(Stroke.PRESS, None, 2.3, 0.016, (Mode(239.0, 4.6, 130.0),))
 BEFORE = 80
@@ -102,6 +104,15 @@ def test_where_nothing_is_played_the_caps_own_motion_is_set_beside_what_was_aske
     assert found.added_m_s2 is None
     assert found.own_dB == pytest.approx(6.02, abs=0.1)
     assert found.level_JND > 0
+
+
+def test_people_with_twice_the_jnd_notice_half_as_much_of_the_level() -> None:
+    once, twice = (
+        compare_vibration(SNAP, motions(5, 15), None, jnds_of(record_of(as_literature("vibration", times))))
+        for times in (1.0, 2.0)
+    )
+    assert twice.level_JND == pytest.approx(0.5 * once.level_JND)
+    assert once.level_JND == pytest.approx(compare_vibration(SNAP, motions(5, 15), None).level_JND)
 
 
 def test_a_vibration_left_out_is_noticed_less_where_the_cap_shakes_anyway() -> None:

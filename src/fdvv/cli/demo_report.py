@@ -39,7 +39,7 @@ def demo_report(result: DemoResult) -> str:
     detail = (_every_rendering, _vibration, _learning, _button, _scan)
     sections = [_before_and_after(result), _switch(result)]
     sections += [replace(make(result), folded=True) for make in detail]
-    sections.append(replace(sources_section(), folded=True))
+    sections.append(replace(sources_section(result.renderings[-1].judged.jnds), folded=True))
     figures = [Headline(*figure) for figure in headline_figures(after, before)]
     return render_html("fdvv demo", summary, sections, footer, simulated=source, headlines=figures)
 

@@ -8,7 +8,7 @@ from typing import Any, get_args
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.options import Workers, executor_options
+from fdvv.cli.options import Workers, executor_options, jnds_option, opened_jnds
 from fdvv.force_text import force_name
 from fdvv.library.build import build_library
 from fdvv.library.library import By as LikeBy
@@ -113,8 +113,11 @@ def search(
 @ui.choice_option("--by", ("all", "curve", "landmarks"), help="Compare force and shape, landmarks, or all.")
 @COUNT
 @CSV
+@jnds_option
 @ui.json_option
-def like(folder: Path, button: str, by: str, count: int, output: Path | None, as_json: bool) -> None:
+def like(
+    folder: Path, button: str, by: str, count: int, output: Path | None, jnds_from: Path | None, as_json: bool
+) -> None:
     """Find the buttons of a library that feel most like one.
 
     BUTTON is a built-in, a *.fdvv.json file, a measured file, or the id of one of the library. Distances are
@@ -122,10 +125,12 @@ def like(folder: Path, button: str, by: str, count: int, output: Path | None, as
     """
     ui.check_output(output, ".csv")
     assert by in get_args(LikeBy)
-    opened = Library(folder)
-    hits = opened.like(button, by, len(opened.rows))  # type: ignore[arg-type]
+    opened, jnds = Library(folder), opened_jnds(jnds_from)
+    hits = opened.like(button, by, len(opened.rows), jnds)  # type: ignore[arg-type]
     document = {"library": str(folder), "like": button, "by": by, "found": len(hits)}
-    _print_hits(hits, count, output, as_json, document)
+    _print_hits(hits, count, output, as_json, {**document, "jnds": jnds.to_dict()})
+    if not as_json:
+        ui.print_wrapped(f"counted in {jnds.origin}")
 
 
 @library.command()

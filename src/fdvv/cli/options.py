@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from fdvv.compensation.rig_aware import RigAware
     from fdvv.device.contract import Device
     from fdvv.device.remote import Remote
+    from fdvv.model.noticeable import Jnds
     from fdvv.parallel.executor import Executor
     from fdvv.vibration.exciter import KnownExciter
 
@@ -101,6 +102,20 @@ def opened_exciter(path: Path | None) -> KnownExciter | None:
     from fdvv.vibration.exciter import load_exciter
 
     return load_exciter(path) if path else None
+
+
+jnds_option = ui.option(
+    "--jnds", "jnds_from", type=ui.EXISTING,
+    help="What your own people notice: the jnds.json of fdvv study jnds, or a project's folder that has one; "
+         "else the literature's.",
+)  # fmt: skip
+
+
+def opened_jnds(path: Path | None) -> Jnds:
+    from fdvv.model.noticeable import LITERATURE
+    from fdvv.thresholds.file import load_jnds
+
+    return load_jnds(path) if path else LITERATURE
 
 
 RIG_AWARE, PAPER = "rig-aware", "paper"

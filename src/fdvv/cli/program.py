@@ -10,6 +10,7 @@ import click
 
 from fdvv.button.open import open_button
 from fdvv.cli import ui
+from fdvv.cli.options import jnds_option
 from fdvv.errors import InputError
 from fdvv.force_text import force_name, force_number, force_text
 from fdvv.io.files import write_atomic
@@ -231,6 +232,7 @@ def compile_(
 @ui.speeds_option("--velocity", "velocities_mm_s", help="mm/s; repeatable.")
 @ui.option("--presses", type=click.IntRange(1, 50), default=3, help="Per speed, as it is and rendered.")
 @ui.option("-o", "--output", type=ui.NEW_FILE, help="The *.fdvv-image to write, for this rig.")
+@jnds_option
 @ui.json_option
 def render(
     program: str, rig_known: Path | None, learned: Path | None, output: Path | None, **options: Any

@@ -8,7 +8,7 @@ import click
 
 from fdvv.button.open import open_button
 from fdvv.cli import ui
-from fdvv.cli.options import opened
+from fdvv.cli.options import opened, opened_jnds
 from fdvv.cli.rendering.session import recommended_for
 from fdvv.compensation.identification.rig_file import LearnedRig, load_learned_rig
 from fdvv.device.contract import Device
@@ -36,19 +36,21 @@ def render(
     seed: int,
     velocities_mm_s: tuple[float, ...],
     presses: int,
+    jnds_from: Path | None,
     as_json: bool,
 ) -> None:
     """Render a program, and print what it leaves in every state."""
     ui.check_output(output, ".fdvv-image")
     if rig_known is None:
         raise InputError("--rig-known", "option", "the rig is not known", IDENTIFY)
-    program, known = open_program(name), load_learned_rig(rig_known)
+    program, known, jnds = open_program(name), load_learned_rig(rig_known), opened_jnds(jnds_from)
     with opened(spec, None, rig or recommended_for(spec), seed) as device:
         rendering = _rendering(program, device, known, learned)
         if output:
             write_atomic(output, rendering.image)
         if isinstance(device, TwinDevice):
-            _print(judge_rendering(device, program, rendering, velocities_mm_s, presses), as_json)
+            report = judge_rendering(device, program, rendering, velocities_mm_s, presses, jnds)
+            _print(report, as_json)
         else:
             rendering.put_on(device)
             _print_active(device.info().name, program, rendering, as_json)

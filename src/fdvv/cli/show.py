@@ -12,6 +12,7 @@ from fdvv.button.compare import Comparison, spread_reports
 from fdvv.button.compare import compare as compare_models
 from fdvv.button.open import button_files, open_button, open_files, open_models
 from fdvv.cli import ui
+from fdvv.cli.options import jnds_option, opened_jnds
 from fdvv.errors import InputError
 from fdvv.force_text import ForceTitle, force_name, force_number, force_unit
 from fdvv.io.documents import ACTUATION, own_kind
@@ -19,6 +20,7 @@ from fdvv.library.kind import kind_sentence
 from fdvv.model.curve import Stroke
 from fdvv.model.landmarks import LandmarkError, landmark_errors, landmarks
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import LITERATURE, Jnds
 
 LABEL_WIDTH, NAME_WIDTH = 19, 28
 """Of the names of landmarks, and what the columns of LANDMARKS or TABLE leave for the names of buttons."""
@@ -35,12 +37,14 @@ TABLE = ("travel_mm", "actuation_mm", "peak_cN", "peak_mm", "snap_ratio", "botto
 @ui.velocity_option(help="Compare at this speed, mm/s; default: the slowest.")
 @ui.option("--figure", type=ui.PATH, help="Draw the overlay: .svg, .png or .pdf.")
 @ui.option("--report", type=ui.PATH, help="Write a page to share: .html with chart, tables and models.")
+@jnds_option
 @ui.json_option
 def compare(
     buttons: tuple[str, ...],
     velocity_mm_s: float | None,
     figure: Path | None,
     report: Path | None,
+    jnds_from: Path | None,
     as_json: bool,
 ) -> None:
     """Compare buttons: landmarks side by side and force differences.
@@ -50,6 +54,7 @@ def compare(
     """
     ui.check_output(figure, *ui.FIGURES)
     ui.check_output(report, ".html")
+    jnds = opened_jnds(jnds_from)
     refused: list[str] = []
     with ui.progress("opening", len(buttons)) as advance:
         opened = open_models(buttons, refused, advance)
@@ -64,14 +69,14 @@ def compare(
 
         ui.save_figure(plot_comparison(models, velocity_mm_s=velocity_mm_s).figure, figure)
     if report:
-        _write_page(report, models, velocity_mm_s)
+        _write_page(report, models, velocity_mm_s, jnds)
     if as_json:
         ui.print_json({**result.to_dict(), "refused": refused})
         return
     if len(models) <= MOST_SENTENCES:
-        from fdvv.library.page import difference_sentences
+        from fdvv.library.page import counted_in, difference_sentences
 
-        for sentence in difference_sentences(models):
+        for sentence in (*difference_sentences(models, jnds), counted_in(jnds)):
             ui.print_wrapped(sentence)
         click.echo("")
         _draw(models, velocity_mm_s)
@@ -94,11 +99,13 @@ def _draw(models: Sequence[FDVVModel], velocity_mm_s: float | None) -> None:
         print_curves(models, velocity_mm_s)
 
 
-def _write_page(path: Path, models: Sequence[FDVVModel], velocity_mm_s: float | None) -> None:
+def _write_page(
+    path: Path, models: Sequence[FDVVModel], velocity_mm_s: float | None, jnds: Jnds = LITERATURE
+) -> None:
     from fdvv.library.page import buttons_page
     from fdvv.report.report import write_report
 
-    write_report(path, buttons_page(models, velocity_mm_s))
+    write_report(path, buttons_page(models, velocity_mm_s, jnds))
 
 
 def _print_columns(result: Comparison) -> None:

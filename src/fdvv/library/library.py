@@ -28,6 +28,7 @@ from fdvv.library.search import LABELS, CatalogSearch, SearchQuery
 from fdvv.library.table import READ_NAMES, curves_of, rows_of
 from fdvv.model.file import builtin_names, load_builtin
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import LITERATURE, Jnds
 
 if TYPE_CHECKING:
     from pyarrow import Table
@@ -96,16 +97,17 @@ class Library:
         rows = [self._search.rows[i] for i in found.positions]
         return [LibraryHit(row, self._places[row.id]) for row in rows if row.id in self._places], found.mended
 
-    def like(self, spec: str, by: By = "all", count: int = 10) -> list[LibraryHit]:
+    def like(self, spec: str, by: By = "all", count: int = 10, jnds: Jnds = LITERATURE) -> list[LibraryHit]:
         """Find the buttons that feel most like one; docs/explanation/library.md tells how that is decided.
 
         spec : the id or the place of one of the library, a built-in's name, a model file or a measured file.
+        jnds : what distances are counted in.
         Raises InputError.
         """
         row = self._query_row(spec)
         if self._search.row(row.id) is None:
             self._search.extend([row])
-        found = self._search.find(SearchQuery(like=row.id))
+        found = self._search.find(SearchQuery(like=row.id, jnds=jnds))
         distance = distances(found.parts[:, PARTS[by]])
         nearest = [i for i in np.argsort(distance, kind="stable") if np.isfinite(distance[i])]
         hits = (self._hit(found.positions[i], distance[i], found.parts[i]) for i in nearest)

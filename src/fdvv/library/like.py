@@ -1,7 +1,6 @@
 """How unlike two buttons feel, from their rows: force along press and release, shape, landmarks.
 
-All is in just noticeable differences (JND). Of force that is 8 % (reports for pressing fingers: 7 to 10 %)
-of the force plus 10 cN, so that light forces do not count for more than their share; of places it is 0.2 mm.
+All is in just noticeable differences (fdvv.model.noticeable), the literature's or a project's own.
 The three parts are mean squares and count alike; docs/explanation/library.md tells how well that works.
 """
 
@@ -13,10 +12,9 @@ from itertools import pairwise
 import numpy as np
 
 from fdvv.library.row import SKETCH_POINTS, ButtonRow
+from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.units import FloatArray
 
-FORCE_jnd_ratio, FORCE_floor_cN = 0.08, 10.0
-PLACE_jnd_mm = 0.2
 STOP_cN_mm, STOP_most_cN = 150.0, 100.0
 """Beyond its travel a button is taken to have a stop of this slope, up to this force above its bottom-out."""
 
@@ -26,27 +24,29 @@ GRID_mm = np.arange(0.1, 4.51, 0.1)
 SHAPE_points = 32
 _SIZES = (GRID_mm.size, GRID_mm.size, SHAPE_points, SHAPE_points, 5)
 _FORCE, _SHAPE, _LANDMARKS = (0, 1), (2, 3), (4,)
+_NO_ROWS: FloatArray = np.empty((0, sum(_SIZES)))
 
 
 class LikeTable:
     """What many buttons are compared by; positions count them in the order they were added."""
 
     def __init__(self) -> None:
-        self._table: FloatArray = np.empty((0, sum(_SIZES)))
-        self._fresh: list[ButtonRow] = []
+        self._rows: list[ButtonRow] = []
+        self._jnds, self._table = LITERATURE, _NO_ROWS
 
     def extend(self, rows: Sequence[ButtonRow]) -> None:
-        self._fresh += rows
+        self._rows += rows
 
-    def parts(self, at: int) -> FloatArray:
+    def parts(self, at: int, jnds: Jnds = LITERATURE) -> FloatArray:
         """Return how far every button is from the one at a position: force, shape, landmarks in JND, (n, 3).
 
         What either button lacks (a release, a bump's place) is left out; a part of which nothing is left is
-        infinite.
+        infinite. jnds : what the distance is counted in.
         """
-        if self._fresh:
-            self._table = np.vstack([self._table, _vectors(self._fresh)])
-            self._fresh = []
+        if jnds != self._jnds:
+            self._jnds, self._table = jnds, _NO_ROWS
+        if fresh := self._rows[len(self._table) :]:
+            self._table = np.vstack([self._table, _vectors(fresh, jnds)])
         gap = (self._table - self._table[at]) ** 2
         ends = np.cumsum((0, *_SIZES))
         means = [_mean(gap[:, a:b]) for a, b in pairwise(ends)]
@@ -68,13 +68,14 @@ def _mean(squares: FloatArray) -> FloatArray:
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
-def _vectors(rows: Sequence[ButtonRow]) -> FloatArray:
+def _vectors(rows: Sequence[ButtonRow], jnds: Jnds) -> FloatArray:
     """Return what buttons are compared by, a row each; NaN where it is unknown."""
     travel_mm = np.array([[row.travel_mm] for row in rows])
     strokes = [_sketches([row.sketch.press_dcN for row in rows])]
     strokes.append(_sketches([row.sketch.release_dcN for row in rows]))
-    forces = [_in_jnd(stroke, travel_mm) for stroke in strokes]
-    return np.hstack([*forces, *map(_normalised, strokes), np.array([_landmarks(row) for row in rows])])
+    forces = [jnds.force_steps(_on_grid(stroke, travel_mm)) for stroke in strokes]
+    shapes = [_normalised(stroke) / jnds.force_ratio for stroke in strokes]
+    return np.hstack([*forces, *shapes, np.array([_landmarks(row, jnds) for row in rows])])
 
 
 def _sketches(found_dcN: Sequence[Sequence[int]]) -> FloatArray:
@@ -91,27 +92,24 @@ def _at(force_cN: FloatArray, part: FloatArray) -> FloatArray:
     return np.asarray(low + (place - before) * (high - low))
 
 
-def _in_jnd(force_cN: FloatArray, travel_mm: FloatArray) -> FloatArray:
-    """Count the noticeable steps from no force to the force at each place of the grid."""
+def _on_grid(force_cN: FloatArray, travel_mm: FloatArray) -> FloatArray:
+    """Return the force at each place of the grid, with the stop beyond the travel."""
     stop = np.clip(STOP_cN_mm * (GRID_mm - travel_mm), 0.0, STOP_most_cN)
-    all_cN = np.clip(_at(force_cN, GRID_mm / travel_mm) + stop, 0.0, None)
-    return np.asarray(np.log1p(all_cN / FORCE_floor_cN) / FORCE_jnd_ratio)
+    return np.clip(_at(force_cN, GRID_mm / travel_mm) + stop, 0.0, None)
 
 
 def _normalised(force_cN: FloatArray) -> FloatArray:
-    """Return force by its mean on travel by its length, in JND."""
+    """Return force by its mean on travel by its length."""
     places = np.broadcast_to(np.linspace(0.02, 1.0, SHAPE_points), (len(force_cN), SHAPE_points))
     part = _at(force_cN, places)
-    return np.asarray(part / np.maximum(part.mean(axis=1, keepdims=True), 1.0) / FORCE_jnd_ratio)
+    return np.asarray(part / np.maximum(part.mean(axis=1, keepdims=True), 1.0))
 
 
-def _landmarks(row: ButtonRow) -> list[float]:
+def _landmarks(row: ButtonRow, jnds: Jnds) -> list[float]:
     """Return travel, places of peak and valley, drops of press and release; without a bump the drop is 0."""
-    typical_cN = 50.0 if row.bottom_out_cN is None else abs(row.bottom_out_cN)
-    step_cN = FORCE_jnd_ratio * (typical_cN + FORCE_floor_cN)
     places = (row.travel_mm, row.peak_mm, row.valley_mm)
     return [
-        *(np.nan if place is None else place / PLACE_jnd_mm for place in places),
-        (row.drop_cN or 0.0) / step_cN if row.sketch.press_dcN else np.nan,
-        (row.release_drop_cN or 0.0) / step_cN if row.sketch.release_dcN else np.nan,
+        *(np.nan if place is None else place / jnds.place_mm for place in places),
+        (row.drop_cN or 0.0) / jnds.snap_cN if row.sketch.press_dcN else np.nan,
+        (row.release_drop_cN or 0.0) / jnds.snap_cN if row.sketch.release_dcN else np.nan,
     ]

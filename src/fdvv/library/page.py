@@ -16,6 +16,7 @@ from fdvv.library.row import Origin
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.file import MODEL_SUFFIX, model_to_json
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.report.chart import SPEEDS, ChartLine, chart_svg
 from fdvv.report.report import Download, Section, Table, render_html
 
@@ -41,18 +42,21 @@ LANDMARKS: tuple[tuple[str, str, int], ...] = (
 )
 
 
-def buttons_page(models: Sequence[FDVVModel], velocity_mm_s: float | None = None) -> str:
+def buttons_page(
+    models: Sequence[FDVVModel], velocity_mm_s: float | None = None, jnds: Jnds = LITERATURE
+) -> str:
     """Return the page of one button, or of several; the first is the reference of a comparison.
 
     velocity_mm_s : of the curves that are compared, the slowest by default; a button alone shows all.
-    The model files are in the page, to be saved from it. Raises ModelError for no button, for more than
-    six, and for one without a press.
+    jnds : what their distance is counted in. The model files are in the page, to be saved from it. Raises
+    ModelError for no button, for more than six, and for one without a press.
     """
     if not 1 <= len(models) <= MOST_BUTTONS:
         raise ModelError(f"a page shows 1 to {MOST_BUTTONS} buttons, got {len(models)}")
     found = compare(models, velocity_mm_s)
     alone = len(models) == 1
-    summary = kind_sentence(models[0]) if alone else " ".join(difference_sentences(models))
+    compared = " ".join((*difference_sentences(models, jnds), counted_in(jnds)))
+    summary = kind_sentence(models[0]) if alone else compared
     lines = _every_line(models[0]) if alone else list(_compared_lines(models, velocity_mm_s))
     sections = [
         Section("Force over displacement", (_legend(alone),), (_chart(lines, models),)),
@@ -72,14 +76,14 @@ def buttons_page(models: Sequence[FDVVModel], velocity_mm_s: float | None = None
     )
 
 
-def difference_sentences(models: Sequence[FDVVModel]) -> Iterator[str]:
+def difference_sentences(models: Sequence[FDVVModel], jnds: Jnds = LITERATURE) -> Iterator[str]:
     """Say of every button but the first how unlike the first it feels, in just noticeable differences.
 
-    The distance is fdvv.library.like's, an estimate from published thresholds.
+    The distance is fdvv.library.like's, an estimate. jnds : what it is counted in.
     """
     table = LikeTable()
     table.extend([row_of_model(model, str(at), Origin.OWN) for at, model in enumerate(models)])
-    parts = table.parts(0)[1:]
+    parts = table.parts(0, jnds)[1:]
     for model, jnd, of in zip(models[1:], distances(parts), parts, strict=True):
         if not np.isfinite(jnd):
             yield f"{model.name} and {models[0].name} share too little to be compared."
@@ -87,6 +91,11 @@ def difference_sentences(models: Sequence[FDVVModel]) -> Iterator[str]:
         what = ("force", "shape of the curve", "places of the landmarks")[int(np.argmax(of))]
         by = f"about {jnd:.1f} just noticeable differences, most of it in the {what}"
         yield f"{model.name} {_felt(float(jnd))} {models[0].name}: {by}."
+
+
+def counted_in(jnds: Jnds) -> str:
+    """Say in one sentence whose JNDs distances are counted in."""
+    return f"Counted in {jnds.origin}; computed, not tried on people."
 
 
 def _felt(jnd: float) -> str:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from fdvv.errors import InputError
 from fdvv.library.like import LikeTable, distances
 from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, Origin
+from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.units import FloatArray
 
 Mask = npt.NDArray[np.bool_]
@@ -107,7 +108,7 @@ class SearchQuery:
     text : words, every one of which must match.
     kinds, origins : any of these; empty for all.
     ranges : lowest and highest by name in NUMBERS, None for no end; what has no such figure is left out.
-    like : the id of the button that others are to feel like.
+    like : the id of the button that others are to feel like. jnds : what distances to it are counted in.
     sort : "match", or a name in LABELS or NUMBERS; what has no such figure comes last.
     """
 
@@ -118,6 +119,7 @@ class SearchQuery:
     like: str | None = None
     sort: str = "match"
     descending: bool = False
+    jnds: Jnds = LITERATURE
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,7 +232,7 @@ class CatalogSearch:
     def _distances(self, query: SearchQuery) -> tuple[FloatArray, FloatArray]:
         if query.like is None:
             return np.empty((0, 3)), np.empty(0)
-        parts = self._like.parts(self._position(query.like))
+        parts = self._like.parts(self._position(query.like), query.jnds)
         return parts, distances(parts)
 
     def _ordered(

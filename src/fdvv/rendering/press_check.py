@@ -17,7 +17,7 @@ from fdvv.device.recording import read_session, unpack_press, unpack_surface
 from fdvv.errors import InputError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
-from fdvv.model.noticeable import force_jnd_cN
+from fdvv.model.noticeable import Jnds
 from fdvv.model.press import Press
 from fdvv.recording.check import FileCheck, FileProblem, unusable
 from fdvv.rendering.run_summary import RECEIPT, read_run_summary
@@ -143,10 +143,10 @@ def intended_press(model: FDVVModel, velocity_mm_s: float) -> RenderedPress:
     return RenderedPress(grid, down, up)
 
 
-def noticeable_cN(model: FDVVModel, velocity_mm_s: float) -> tuple[float, float]:
+def noticeable_cN(model: FDVVModel, velocity_mm_s: float, jnds: Jnds) -> tuple[float, float]:
     """Return the just noticeable difference of force, press and release: its mean over the judged places."""
     wanted = intended_press(model, velocity_mm_s)
     judged = (wanted.displacement_mm >= FROM_mm) & (wanted.displacement_mm <= model.travel_mm - STOP_GUARD_mm)
     forces = (wanted.press_cN, wanted.release_cN)
-    down, up = (float(force_jnd_cN(row[judged]).mean()) for row in forces)
+    down, up = (float(jnds.force_cN(row[judged]).mean()) for row in forces)
     return down, up

@@ -15,7 +15,7 @@ from fdvv.device.lacking import NO_FORCE_SENSOR, lacking
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke, reading_order
 from fdvv.model.model import FDVVModel
-from fdvv.model.noticeable import SOURCES
+from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.compensate import check_force_sensor, check_speeds
@@ -109,6 +109,7 @@ class ProbeResult:
     receipt : how it came about.
     means : what the rig has to render with.
     vibration_presses : used, with the model's vibrations.
+    jnds : what a finger notices, by which the curves were judged.
     """
 
     method: str
@@ -122,6 +123,7 @@ class ProbeResult:
     receipt: RunSummary
     means: RenderingMeans
     vibration_presses: int = 0
+    jnds: Jnds = LITERATURE
 
     def to_dict(self) -> dict[str, Any]:
         """Return the report; errors in cN, true displacement, median over presses."""
@@ -142,7 +144,8 @@ class ProbeResult:
             "noticeable": {
                 "total": overall([c.total for c in self.curves]).to_dict(),
                 **strokes,
-                "sources": [asdict(source) for source in SOURCES],
+                "jnds": self.jnds.to_dict(),
+                "sources": [asdict(source) for source in self.jnds.sources],
             },
             "verdict": verdict(self.curves),
             "next_step": next_step(self.curves, self.means),
@@ -169,6 +172,7 @@ def probe(
     tuning: Tuning = UNTUNED,
     playback: Playback | None = None,
     known_rig: RigModel | None = None,
+    jnds: Jnds = LITERATURE,
 ) -> ProbeResult:
     """Upload a surface once, press it afresh at every speed, and compare the rendered force with the model.
 
@@ -181,6 +185,7 @@ def probe(
         held against it.
     playback : also press with the model's vibrations, where it has some and the device an exciter; force is
     judged on the presses without. None, and in a session begun without: the cap's own motion is compared.
+    jnds : what a finger notices; a project has its own where its people were measured (fdvv.thresholds.file).
 
     Raises DeviceError if the device fails or too many presses in a row cannot be used, InputError on bad
     speeds and on a folder that is no session of this probe, KeyboardInterrupt on Ctrl-C.
@@ -223,7 +228,7 @@ def probe(
             heard = with_rig_check(session_plan.progress, session_plan.guide.notice, *about)
             session_plan = replace(session_plan, progress=heard)
         found = run(device, session_plan, plan.init(), log)
-        curves = _with_vibrations(model, plan, found)
+        curves = _with_vibrations(model, plan, found, jnds)
         outcomes = [curve.outcome for curve in curves]
         receipt = write_run_summary(session.folder, manifest, log.runs, log.entries, outcomes)
         skipped = tuple(str(entry) for entry in log.entries if not entry.used)
@@ -237,7 +242,7 @@ def probe(
         exciter_known=bool(playback and playback.exciter),
     )
     result = ProbeResult(*names, range_mm, tuple(curves), presses, skipped, info.simulated, receipt, means)
-    return replace(result, vibration_presses=played)
+    return replace(result, vibration_presses=played, jnds=jnds)
 
 
 def _begun_without(session: Session) -> bool:
@@ -255,14 +260,18 @@ def _silent(entries: Sequence[PressEntry], plan: ProbePlan) -> int:
     return count
 
 
-def _all_curves(model: FDVVModel, plan: ProbePlan, found: Found) -> list[ProbeCurve]:
-    pairs = plan.of(found)
-    curves = [curve for speed, silent, _ in pairs if silent for curve in judged_curves(model, speed, silent)]
+def _all_curves(model: FDVVModel, plan: ProbePlan, found: Found, jnds: Jnds = LITERATURE) -> list[ProbeCurve]:
+    curves = [
+        curve
+        for speed, silent, _ in plan.of(found)
+        if silent
+        for curve in judged_curves(model, speed, silent, jnds)
+    ]
     return sorted(curves, key=reading_order)
 
 
-def _with_vibrations(model: FDVVModel, plan: ProbePlan, found: Found) -> list[ProbeCurve]:
-    curves = _all_curves(model, plan, found)
+def _with_vibrations(model: FDVVModel, plan: ProbePlan, found: Found, jnds: Jnds) -> list[ProbeCurve]:
+    curves = _all_curves(model, plan, found, jnds)
     judged = [
         curve
         for speed, silent, vibrating in plan.of(found)

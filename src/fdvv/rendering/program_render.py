@@ -18,6 +18,7 @@ from fdvv.device.twin import TwinDevice
 from fdvv.errors import InputError
 from fdvv.force_text import force_number, force_text
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.program.check import require_accepted
 from fdvv.program.compensate import commands, learned_surfaces, loop_targets
 from fdvv.program.compile import compile_program
@@ -30,8 +31,6 @@ from fdvv.rendering.tuning import tune
 
 JUDGED_mm_s = 100.0
 """Speed whose figures the verdict names, or the nearest one pressed."""
-FELT_cN = 3.0
-"""Median error that passes for rendered as written: an assumed just noticeable difference."""
 
 
 @dataclass(frozen=True)
@@ -128,6 +127,7 @@ class ProgramReport:
     ----------
     closed : the force loop was closed.
     as_is, rendered : per state, stroke and speed; the same presses' number each.
+    jnds : what a finger notices.
     """
 
     program: str
@@ -136,6 +136,7 @@ class ProgramReport:
     presses: int
     as_is: tuple[StateError, ...]
     rendered: tuple[StateError, ...]
+    jnds: Jnds = LITERATURE
 
     def at(self, velocity_mm_s: float, rendered: bool = True) -> list[StateError]:
         """Return the errors at one speed."""
@@ -151,6 +152,12 @@ class ProgramReport:
     def median_cN(self) -> float:
         """Return the median error over all bins at the judged speed."""
         return float(np.median(all_errors_cN(self.at(self.judged_mm_s))))
+
+    @property
+    def as_written(self) -> bool:
+        """Return whether half of the bins at the judged speed are off by less than a finger would notice."""
+        steps = np.concatenate([row.errors_JND for row in self.at(self.judged_mm_s)])
+        return bool(np.median(steps) <= 1)
 
     @property
     def worse(self) -> list[StateError]:
@@ -178,9 +185,9 @@ class ProgramReport:
         after, before = self.at(speed), self.at(speed, False)
         errors, median = all_errors_cN(after), self.median_cN
         worst = max(after, key=lambda row: row.mean_cN)
-        felt = "felt as written" if median <= FELT_cN else "not yet felt as written"
+        felt = "felt as written" if self.as_written else "not yet felt as written"
         return (
-            f"{self.program} is {felt}: median {force_text(median, '.1f')} off, mean "
+            f"{self.program} is {felt}, by {self.jnds.origin}: median {force_text(median, '.1f')} off, mean "
             f"{force_number(errors.mean(), '.1f')} instead of "
             f"{force_number(all_errors_cN(before).mean(), '.1f')} at {speed:g} mm/s; most in {worst.state!r} "
             "on the "
@@ -190,7 +197,7 @@ class ProgramReport:
     @property
     def next_step(self) -> str:
         """Say what to do next."""
-        if self.median_cN <= FELT_cN:
+        if self.as_written:
             return "upload it to the rig with --device serial:PORT, or press it in fdvv studio"
         if self.closed:
             return "make the program's steps wider, or press slower"
@@ -228,25 +235,26 @@ def judge_rendering(
     rendering: ProgramRendering,
     velocities_mm_s: Sequence[float],
     presses: int = 3,
+    jnds: Jnds = LITERATURE,
 ) -> ProgramReport:
-    """Press a program as it is and as it is rendered; see `render_program`."""
+    """Press a program as it is and as it is rendered; see `render_program`. jnds : what a finger notices."""
     speeds = check_speeds(velocities_mm_s)
     tune(device, UNTUNED)
     as_it_is = compile_program(start_alone(program)).image
     device.upload_program(compile_program(program).image, paced_on=as_it_is)
-    as_is = pressed(device, program, speeds, presses)
+    as_is = pressed(device, program, speeds, presses, jnds)
     rendering.put_on(device)
-    rendered = pressed(device, program, speeds, presses)
+    rendered = pressed(device, program, speeds, presses, jnds)
     closed = rendering.tuning.loop is not None
-    return ProgramReport(program.name, device.info().name, closed, presses, as_is, rendered)
+    return ProgramReport(program.name, device.info().name, closed, presses, as_is, rendered, jnds)
 
 
 def pressed(
-    device: TwinDevice, program: Program, velocities_mm_s: Sequence[float], presses: int
+    device: TwinDevice, program: Program, velocities_mm_s: Sequence[float], presses: int, jnds: Jnds
 ) -> tuple[StateError, ...]:
     """Press what is active and judge it by what a program intends."""
     found: list[StateError] = []
     for speed in velocities_mm_s:
         traces = [device.press_trace(speed) for _ in range(presses)]
-        found += judged_states(program, traces, speed)
+        found += judged_states(program, traces, speed, jnds)
     return tuple(found)

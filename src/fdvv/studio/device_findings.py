@@ -9,7 +9,7 @@ import numpy as np
 from fdvv.compensation.presses import FROM_mm, STOP_GUARD_mm
 from fdvv.device.contract import FREE_CELL_cN
 from fdvv.model.model import FDVVModel
-from fdvv.model.noticeable import force_jnd_cN
+from fdvv.model.noticeable import Jnds
 from fdvv.model.press import Press
 from fdvv.rendering.evaluation.verdict import FEW_ratio
 from fdvv.rendering.press_check import RenderedPress, intended_press, rendered_press
@@ -46,9 +46,10 @@ class PressSeen(Message, tag="press_seen"):
     noticed: bool = False
 
 
-def press_seen(press: Press, model: FDVVModel, velocity_mm_s: float) -> PressSeen:
+def press_seen(press: Press, model: FDVVModel, velocity_mm_s: float, jnds: Jnds) -> PressSeen:
+    """Return how a press came out; jnds : what a finger notices."""
     rendered, wanted = rendered_press(press, model.travel_mm), intended_press(model, velocity_mm_s)
-    error_cN, noticed = _off(rendered, wanted, model.travel_mm)
+    error_cN, noticed = _off(rendered, wanted, model.travel_mm, jnds)
     simulated = ", simulated" if press.simulated else ""
     return PressSeen(
         velocity_mm_s,
@@ -59,12 +60,12 @@ def press_seen(press: Press, model: FDVVModel, velocity_mm_s: float) -> PressSee
         rounded(wanted.press_cN),
         rounded(wanted.release_cN),
         f"Mean error {error_cN:.1f} cN in one press at {velocity_mm_s:g} mm/s{simulated}; "
-        f"a finger would {'' if noticed else 'not '}notice it",
+        f"a finger would {'' if noticed else 'not '}notice it, by {jnds.origin}",
         noticed,
     )
 
 
-def _off(rendered: RenderedPress, wanted: RenderedPress, travel_mm: float) -> tuple[float, bool]:
+def _off(rendered: RenderedPress, wanted: RenderedPress, travel_mm: float, jnds: Jnds) -> tuple[float, bool]:
     """Return the mean error where presses are judged, and whether a finger would notice much of it."""
     judged = (wanted.displacement_mm >= FROM_mm) & (wanted.displacement_mm <= travel_mm - STOP_GUARD_mm)
     rendered_cN = np.concatenate([rendered.press_cN[judged], rendered.release_cN[judged]])
@@ -73,7 +74,7 @@ def _off(rendered: RenderedPress, wanted: RenderedPress, travel_mm: float) -> tu
     if not known.any():
         return math.nan, True
     error_cN = np.abs(rendered_cN - asked_cN)[known]
-    return float(error_cN.mean()), bool((error_cN > force_jnd_cN(asked_cN)[known]).mean() > FEW_ratio)
+    return float(error_cN.mean()), bool((error_cN > jnds.force_cN(asked_cN)[known]).mean() > FEW_ratio)
 
 
 def cell_check(reads_cN: float, closed: bool) -> CellCheck:

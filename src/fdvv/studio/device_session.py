@@ -147,7 +147,7 @@ class DeviceSession:
     """Holds one device open for the page. Any thread may ask; zero force once no page is subscribed."""
 
     def __init__(self, studio: Studio) -> None:
-        self._locks = studio.part(DeviceLocks)
+        self._studio, self._locks = studio, studio.part(DeviceLocks)
         # never held while the device's thread is waited for, which takes it too
         self._lock = threading.RLock()
         self._held: DeviceThread | None = None
@@ -205,9 +205,10 @@ class DeviceSession:
         return self.refresh(program.name)
 
     def press(self, velocity_mm_s: float) -> DeviceStatus:
-        """Make one simulated press and send it to all subscribers. DeviceError."""
+        """Make one simulated press and send it to all subscribers. DeviceError, InputError."""
         held = self.held()
         check_speeds((velocity_mm_s,))
+        jnds = self._studio.jnds  # a broken file is said before anything moves
         if not held.device.info().simulated:
             raise DeviceError("a person presses this device; arm it and press")
         try:
@@ -215,7 +216,7 @@ class DeviceSession:
         finally:
             self.refresh()
         if self._button:
-            self._tell(press_seen(press, self._button.model, velocity_mm_s))
+            self._tell(press_seen(press, self._button.model, velocity_mm_s, jnds))
         return self._status
 
     def check_cell(self) -> CellCheck:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 if TYPE_CHECKING:
     from fdvv.library.catalog import Catalog
+    from fdvv.model.noticeable import Jnds
     from fdvv.project.programs import ProgramCatalog
     from fdvv.rendering.rig_catalog import RigCatalog
 
@@ -47,6 +48,13 @@ class Studio:
         from fdvv.rendering.rig_catalog import RigCatalog
 
         return self._only(RigCatalog, self.project)
+
+    @property
+    def jnds(self) -> Jnds:
+        """What people notice: those of the project, read anew each time, or the literature's. InputError."""
+        from fdvv.thresholds.file import project_jnds
+
+        return project_jnds(self.project)
 
     def part(self, service: type[P]) -> P:
         """Return the one instance of a service, made with this studio on first use."""

@@ -16,13 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model.noticeable import (
-    FREQUENCY_jnd_ratio,
-    LOWEST_Hz,
-    ONSET_jnd_ms,
-    acceleration_above_threshold,
-    vibration_steps,
-)
+from fdvv.model.noticeable import LITERATURE, Jnds, LOWEST_Hz, acceleration_above_threshold
 from fdvv.model.vibration import Vibration
 from fdvv.units import FloatArray
 
@@ -109,15 +103,17 @@ def least_s(vibration: Vibration) -> float:
     return PERIODS / _slowest_Hz(vibration)
 
 
-def compare_vibration(vibration: Vibration, silent: CapMotions, played: CapMotions | None) -> VibrationError:
+def compare_vibration(
+    vibration: Vibration, silent: CapMotions, played: CapMotions | None, jnds: Jnds = LITERATURE
+) -> VibrationError:
     """Compare what playing adds to silent presses with what was asked for.
 
-    silent, played : of one stroke and speed, of one shape but for the number of presses. Raises ModelError on
-    different shapes.
+    silent, played : of one stroke and speed, of one shape but for the number of presses. jnds : what the
+    differences are counted in. Raises ModelError on different shapes.
     """
     if played is not None and (played.since_s.size, played.before) != (silent.since_s.size, silent.before):
         raise ModelError("presses with and without the vibration must be cut alike")
-    found = _Comparison(vibration, silent, played)
+    found = _Comparison(vibration, silent, played, jnds)
     if played is None:
         return found.silent_error()
     return found.error()
@@ -155,8 +151,10 @@ def band_power(signals: FloatArray) -> FloatArray:
 class _Comparison:
     """One comparison; every signal without what is slower than half of the slowest mode."""
 
-    def __init__(self, vibration: Vibration, silent: CapMotions, played: CapMotions | None) -> None:
-        self._vibration, self._since_s = vibration, silent.since_s
+    def __init__(
+        self, vibration: Vibration, silent: CapMotions, played: CapMotions | None, jnds: Jnds
+    ) -> None:
+        self._vibration, self._since_s, self._jnds = vibration, silent.since_s, jnds
         self._asked = self._still(vibration.acceleration_m_s2(self._since_s)[None, :])
         self._silent = self._still(silent.acceleration_m_s2)
         self._apart = _left_out(self._silent, silent.speed_mm_s)
@@ -207,18 +205,18 @@ class _Comparison:
         if onset_s is None:
             return found
         late_ms = 1e3 * onset_s
-        onset_JND = abs(late_ms) / ONSET_jnd_ms
+        onset_JND = abs(late_ms) / self._jnds.onset_ms
         found = replace(found, onset_ms=late_ms, onset_mm=onset_s * self._speed_mm_s, onset_JND=onset_JND)
         if self._since_s[-1] - onset_s < FREQUENCY_periods / _slowest_Hz(self._vibration):
             return found
         ratio = self._frequency_ratio(onset_s)
-        apart = abs(float(np.log(ratio))) / float(np.log1p(FREQUENCY_jnd_ratio))
+        apart = abs(float(np.log(ratio))) / float(np.log1p(self._jnds.frequency_ratio))
         return replace(found, frequency_ratio=ratio, frequency_JND=apart)
 
     def _level_JND(self, added: float) -> float:
         """Compare what is felt, the cap's own motion included, with that motion and the vibration."""
         own, asked = _felt(self._silent), _felt(self._asked)
-        steps = vibration_steps(np.sqrt([own + added, own + asked]))
+        steps = self._jnds.vibration_steps(np.sqrt([own + added, own + asked]))
         return abs(float(steps[0] - steps[1]))
 
     def _onset(self) -> tuple[float | None, float | None]:

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.model.file import load_builtin
-from fdvv.model.noticeable import force_jnd_cN
+from fdvv.model.noticeable import LITERATURE
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.evaluation.noticed import Noticed, noticed, overall
 from fdvv.rendering.evaluation.probe_curve import ProbeCurve
@@ -29,7 +29,7 @@ def curve() -> ProbeCurve:
 
 def off_by(curve: ProbeCurve, steps_JND: float, sign: float = 1.0) -> ProbeCurve:
     """Return a curve whose force is off by so much everywhere, and that asks for no vibration."""
-    error_cN = sign * steps_JND * force_jnd_cN(curve.target_cN)
+    error_cN = sign * steps_JND * LITERATURE.force_cN(curve.target_cN)
     rendered = np.tile(curve.target_cN + error_cN, (2, 1))
     achieved = np.tile(curve.target_cN, (2, 1))
     return replace(curve, rendered_cN=rendered, at_achieved_cN=achieved, vibration=NONE_ASKED)
@@ -69,7 +69,7 @@ def test_a_vibration_is_added_by_squares_where_it_should_be_felt_and_nowhere_els
 
 def test_the_beginning_is_reported_apart(curve: ProbeCurve) -> None:
     entry = curve.displacement_mm <= 0.6 + 1e-9
-    step_cN = np.where(entry, 3 * force_jnd_cN(curve.target_cN), 0.0)
+    step_cN = np.where(entry, 3 * LITERATURE.force_cN(curve.target_cN), 0.0)
     late = replace(curve, rendered_cN=curve.target_cN + step_cN[None, :])
     found = late.noticeable()
     assert found["force_to_entry"]["above_ratio"] == 1

@@ -9,7 +9,7 @@ import pytest
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import ModelError
 from fdvv.model.file import load_builtin
-from fdvv.model.noticeable import SOURCES, force_jnd_cN
+from fdvv.model.noticeable import LITERATURE
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.evaluation.probe_figures import plot_vibrations, rendered_curves, shown_vibrations
 from fdvv.rendering.evaluation.probe_report import probe_report
@@ -37,7 +37,7 @@ def test_the_band_around_the_target_is_one_jnd_and_bars_are_where_most_presses_a
     curve = result.curves[0]
     ax = plot_rendering(rendered_curves({"rendered": result.curves}, simulated=True))[0, 0]
     edges = ax.collections[0].get_paths()[0].vertices[:, 1]
-    jnd = force_jnd_cN(curve.target_cN)
+    jnd = LITERATURE.force_cN(curve.target_cN)
     assert edges.max() == pytest.approx((curve.target_cN + jnd).max())
     assert edges.min() == pytest.approx((curve.target_cN - jnd).min())
     marked = [any(low <= x <= high for low, high in bars(ax)) for x in curve.displacement_mm]
@@ -77,7 +77,7 @@ def test_the_report_has_the_verdict_both_figures_and_every_source(result: ProbeR
     found = result.to_dict()
     assert found["verdict"].replace("'", "&#39;") in html
     assert html.count("<svg") == 2
-    for source in SOURCES:
+    for source in LITERATURE.sources:
         assert source.value.replace("'", "&#39;") in html
     plain = replace(result, curves=tuple(replace(c, vibration=NONE_ASKED) for c in result.curves))
     assert "Vibration was not asked for: the model has none." in probe_report(plain)

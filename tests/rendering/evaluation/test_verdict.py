@@ -7,7 +7,7 @@ import pytest
 
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
-from fdvv.model.noticeable import force_jnd_cN
+from fdvv.model.noticeable import LITERATURE
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.evaluation.probe_curve import ProbeCurve
 from fdvv.rendering.evaluation.verdict import (
@@ -22,7 +22,9 @@ from fdvv.rendering.evaluation.verdict import (
 from fdvv.rendering.evaluation.vibration_presses import NONE_ASKED, RenderedVibration
 from fdvv.rendering.probe import probe
 from fdvv.testing.scripted import ScriptedDevice
+from fdvv.thresholds.file import jnds_of
 from fdvv.vibration.compare import VibrationError
+from tests.support.jnds import as_literature, record_of
 
 MODEL = load_builtin("mx-clear")
 SNAP = MODEL.vibrations[0]
@@ -58,7 +60,9 @@ def curves() -> list[ProbeCurve]:
 
 def off(curve: ProbeCurve, places: int) -> ProbeCurve:
     """Return a curve that is off by two JNDs in its first places."""
-    step_cN = np.where(np.arange(curve.target_cN.size) < places, 2 * force_jnd_cN(curve.target_cN), 0.0)
+    step_cN = np.where(
+        np.arange(curve.target_cN.size) < places, 2 * LITERATURE.force_cN(curve.target_cN), 0.0
+    )
     return replace(curve, rendered_cN=np.tile(curve.target_cN + step_cN, (2, 1)))
 
 
@@ -68,8 +72,8 @@ def with_vibration(curves: list[ProbeCurve], error: VibrationError) -> list[Prob
 
 def test_a_perfect_force_without_a_vibration(curves: list[ProbeCurve]) -> None:
     assert verdict(curves) == (
-        "A finger would not notice the force on 100 % of the press and 100 % of the release; "
-        "no vibration was asked for."
+        "By JNDs from the literature, a finger would not notice the force on 100 % of the press and 100 % of "
+        "the release; no vibration was asked for."
     )
     assert next_step(curves, LEARNED) == STEPS["people"]
 
@@ -90,15 +94,30 @@ def test_the_headline_says_what_fell_to_what_and_at_which_speeds_a_finger_notice
     worst_cN = max(float(np.abs(c.rendered_cN - c.target_cN).max()) for c in bad)
     assert headline(fine, bad).startswith("Mean error ")
     assert f" → 0.0 cN, largest {worst_cN:.0f} → 0.0 cN; a finger would not notice it" in headline(fine, bad)
-    assert headline([*fine, *bad]).endswith("; a finger would notice it at 100 mm/s only")
-    assert headline(bad).endswith("a finger would notice it")
+    by = ", by JNDs from the literature"
+    assert headline([*fine, *bad]).endswith("; a finger would notice it at 100 mm/s only" + by)
+    assert headline(bad).endswith("a finger would notice it" + by)
     three = [*fine, *bad, *(replace(c, velocity_mm_s=200.0) for c in bad)]
-    assert headline(three).endswith("at 100 and 200 mm/s only")
-    assert headline(three[2:]).endswith("at every speed")
+    assert headline(three).endswith("at 100 and 200 mm/s only" + by)
+    assert headline(three[2:]).endswith("at every speed" + by)
     assert headline([]) == ""
     assert headline(fine, bad, "simulated presses").count(" cN on simulated presses, largest ") == 1
     # a tenth of a stroke and less counts as little, as for the next step
     assert "would not" in headline([off(curves[0], count // 11), curves[1]])
+
+
+def test_the_verdict_flips_with_what_people_notice_and_says_whose_jnds_judged(
+    curves: list[ProbeCurve],
+) -> None:
+    bad = [off(curve, curve.target_cN.size) for curve in curves]  # by two JNDs from the literature
+    dull = jnds_of(record_of(as_literature("force", 3.0)))
+    judged = [replace(curve, jnds=dull) for curve in bad]
+    by = "JNDs of force of 12 people of study weights"
+    assert headline(bad).endswith("; a finger would notice it, by JNDs from the literature")
+    assert headline(judged).endswith(f"; a finger would not notice it, by {by}")
+    assert verdict(bad).startswith("By JNDs from the literature, a finger would not notice the force on 0 %")
+    assert verdict(judged).startswith(f"By {by}, a finger would not notice the force on 100 %")
+    assert next_step(bad, LEARNED) != next_step(judged, LEARNED) == STEPS["people"]
 
 
 def test_what_became_of_the_vibration_is_said_in_its_own_numbers(curves: list[ProbeCurve]) -> None:

@@ -10,7 +10,15 @@ import click
 
 from fdvv.button.open import open_button
 from fdvv.cli import ui
-from fdvv.cli.options import exciter_option, law_of, method_options, opened_exciter, sensor_option
+from fdvv.cli.options import (
+    exciter_option,
+    jnds_option,
+    law_of,
+    method_options,
+    opened_exciter,
+    opened_jnds,
+    sensor_option,
+)
 from fdvv.cli.rendering.session import Pressing, beside, session_options
 from fdvv.compensation.identification.prior_file import check_range
 from fdvv.compensation.identification.rig_file import save_rig as keep
@@ -78,6 +86,7 @@ def compensate(
 )
 @exciter_option
 @sensor_option
+@jnds_option
 @ui.option(
     "--figure", type=ui.PATH, help="Draw force and what is noticed of it into this .svg, .png or .pdf."
 )
@@ -97,6 +106,7 @@ def probe(
     vibrating: int | None,
     exciter: Path | None,
     sensor: Path | None,
+    jnds_from: Path | None,
     figure: Path | None,
     report: Path | None,
     bound_cN: float | None,
@@ -109,11 +119,12 @@ def probe(
     presses. Use another --seed than for learning.
 
     Where the model has vibrations and the rig an exciter, as many presses follow that play them; their onset,
-    strength, spectrum and likeness are measured on the cap. JND is what a finger would just notice; the
-    sources are in the report and in docs/explanation/vibration-rendering.md.
+    strength, spectrum and likeness are measured on the cap. JND is what a finger would just notice, by the
+    literature or by your own people (--jnds); docs/explanation/noticeable.md.
     """
     ui.check_output(figure, *ui.FIGURES)
     ui.check_output(report, ".html")
+    jnds = opened_jnds(jnds_from)
     playback = Playback(presses if vibrating is None else vibrating, opened_exciter(exciter))
     model, pressing = open_button(button), pressing.on_recommended_rig()
     sheet = check_range(sensor, model, pressing.velocities_mm_s) if sensor else None
@@ -128,7 +139,7 @@ def probe(
         tuning = learned.outcome.tuning if learned else Tuning()
         about = (method, session, guide, tuning, playback if playback.presses else None)
         known = learned.known_rig if learned else None
-        result = judge(found, model, surface, speeds, presses, view.done, *about, known_rig=known)
+        result = judge(found, model, surface, speeds, presses, view.done, *about, known_rig=known, jnds=jnds)
     document = {**result.to_dict(), **_receipt(result)}
     _draw(result, figure, report)
     if as_json:

@@ -1,4 +1,4 @@
-"""fdvv study: analyse, export."""
+"""fdvv study: analyse, export, jnds."""
 
 from __future__ import annotations
 
@@ -6,16 +6,19 @@ from pathlib import Path
 from typing import Any
 
 import click
+import msgspec
 
 from fdvv.cli import ui
 from fdvv.cli.study.timing import timing_analyse, timing_export
 from fdvv.errors import InputError
 from fdvv.io.files import read_limited
+from fdvv.model.noticeable import LITERATURE
 from fdvv.study.admin.study import Study
 from fdvv.study.analysis.analyse import analyse as analysed
 from fdvv.study.analysis.code_book import write_answers
 from fdvv.study.analysis.columns import ColumnMap
 from fdvv.study.analysis.export import analysis_dict, write_analysis
+from fdvv.study.analysis.jnd_record import jnd_record
 from fdvv.study.analysis.jnds import standards_of
 from fdvv.study.analysis.read_answers import AnswersTable, read_table
 from fdvv.study.analysis.records import StudyAnalysis
@@ -23,6 +26,7 @@ from fdvv.study.analysis.report import study_summary, write_study_report
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
+from fdvv.thresholds.file import FILE_NAME, jnds_of, save_jnds
 from fdvv.timing.plan.plan_file import is_timing
 
 table_options = ui.options(
@@ -116,6 +120,39 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
     click.echo(f"{ui.counted(len(answers.person), 'trial')}{simulated}")
     for path in files:
         click.echo(str(path))
+
+
+@click.command()
+@click.argument("folder", metavar="STUDY", type=ui.FOLDER)
+@ui.option(
+    "--into", "project", type=ui.FOLDER, metavar="PROJECT", help="Project that judges by them from then on."
+)
+@ui.option("-o", "--output", type=ui.PATH, help="The .json to write, for --jnds of other commands.")
+@ui.json_option
+def jnds(folder: Path, project: Path | None, output: Path | None, as_json: bool) -> None:
+    """Let a project judge by what the people of a study notice.
+
+    STUDY is the folder of an unsealed study of thresholds or staircases. Their JNDs are written into the
+    project's jnds.json. Its studio's distances between buttons, verdicts on renderings and findings count in
+    them from then on and say so. Without the file they count in JNDs from the literature.
+    """
+    ui.check_output(output, ".json")
+    if is_timing(folder):
+        raise InputError(folder, "study", "a timing study measures no JND", "name one of kind thresholds")
+    record = jnd_record(Study.open(folder))
+    paths = [path for path in (output, project and project / FILE_NAME) if path]
+    for path in paths:
+        save_jnds(record, path)
+    if as_json:
+        ui.print_json({**msgspec.to_builtins(record), "files": [str(path) for path in paths]})
+        return
+    found = jnds_of(record)
+    click.echo(found.origin)
+    for source in found.sources:
+        if source not in LITERATURE.sources:
+            ui.print_wrapped(f"{source.of}: {source.value}; {source.source}")
+    ui.print_written(*paths)
+    ui.print_warnings(record.doubts())
 
 
 def _analysed(answers: Answers, declared: StudyPlan | None, source: Path) -> StudyAnalysis:

@@ -10,7 +10,7 @@ MODULES = {
     "declare": ("new", "check", "preview"),
     "keep": ("freeze", "verify", "status", "unseal", "withdraw"),
     "simulate": ("power", "simulate"),
-    "analyse": ("analyse", "export"),
+    "analyse": ("analyse", "export", "jnds"),
 }
 """Commands by the module below fdvv.cli.study that holds them."""
 COMMANDS = {name: f"study.{module}" for module, names in MODULES.items() for name in names}

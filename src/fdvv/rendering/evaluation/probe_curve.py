@@ -14,7 +14,7 @@ from fdvv.compensation.presses import FROM_mm, STOP_GUARD_mm, mean_speed_mm_s, s
 from fdvv.compensation.tables import bin_force, grid_mm
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
-from fdvv.model.noticeable import force_jnd_cN
+from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.model.press import Press
 from fdvv.rendering.evaluation.noticed import Noticed, noticed
 from fdvv.rendering.evaluation.vibration_presses import (
@@ -51,6 +51,7 @@ class ProbeCurve:
     ripple_cN : rms from 40 to 800 Hz of the force's error over time, median over presses: what shakes and
         nobody asked for; None if it was not measured.
     vibration : what became of the vibration.
+    jnds : what a finger notices, by which errors are judged.
     """
 
     stroke: Stroke
@@ -63,6 +64,7 @@ class ProbeCurve:
     reached_ratio: float
     ripple_cN: float | None = None
     vibration: RenderedVibration = NONE_ASKED
+    jnds: Jnds = LITERATURE
 
     @property
     def error_cN(self) -> FloatArray:
@@ -82,12 +84,13 @@ class ProbeCurve:
     @cached_property
     def force_JND(self) -> FloatArray:
         """Error of the force in JNDs of the target, (presses, n)."""
-        return np.asarray(np.abs(self.rendered_cN - self.target_cN) / force_jnd_cN(self.target_cN))
+        return np.asarray(np.abs(self.rendered_cN - self.target_cN) / self.jnds.force_cN(self.target_cN))
 
     @cached_property
     def achieved_JND(self) -> FloatArray:
         """The same against what the model asks for at the speed that each press had, (presses, n)."""
-        return np.asarray(np.abs(self.rendered_cN - self.at_achieved_cN) / force_jnd_cN(self.at_achieved_cN))
+        error_cN = np.abs(self.rendered_cN - self.at_achieved_cN)
+        return np.asarray(error_cN / self.jnds.force_cN(self.at_achieved_cN))
 
     @cached_property
     def total_JND(self) -> FloatArray:
@@ -115,7 +118,7 @@ class ProbeCurve:
             "force_to_entry": noticed(self.force_JND[:, entry]).to_dict(),
             "force_beyond_entry": noticed(self.force_JND[:, ~entry]).to_dict(),
             "entry_mm": ENTRY_mm,
-            "jnd_cN": force_jnd_cN(self.target_cN).tolist(),
+            "jnd_cN": self.jnds.force_cN(self.target_cN).tolist(),
             "noticed_ratio": (self.total_JND > 1).mean(axis=0).tolist(),
         }
 
@@ -159,14 +162,16 @@ def with_vibrations(
         replace(
             c,
             ripple_cN=_ripple_cN(model, c, silent),
-            vibration=rendered_vibration(model, c.stroke, c.velocity_mm_s, silent, vibrating),
+            vibration=rendered_vibration(model, c.stroke, c.velocity_mm_s, silent, vibrating, c.jnds),
         )
         for c in curves
     ]
 
 
-def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Press]) -> list[ProbeCurve]:
-    """Judge the force of both strokes of the presses of one velocity."""
+def judged_curves(
+    model: FDVVModel, velocity_mm_s: float, presses: Sequence[Press], jnds: Jnds = LITERATURE
+) -> list[ProbeCurve]:
+    """Judge the force of both strokes of the presses of one velocity; jnds : what a finger notices."""
     grid = grid_mm(model.travel_mm, BIN_mm)
     # a bin at the very edge counts, however its centre was rounded
     judged = (grid >= FROM_mm - 1e-9) & (grid <= model.travel_mm - STOP_GUARD_mm + 1e-9)
@@ -194,6 +199,7 @@ def judged_curves(model: FDVVModel, velocity_mm_s: float, presses: Sequence[Pres
                 achieved,
                 model.force_cN(x[np.newaxis], paces, served),
                 float(np.isfinite(rendered).mean(axis=1).min()),
+                jnds=jnds,
             )
         )
     return curves

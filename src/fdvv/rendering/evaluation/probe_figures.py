@@ -9,7 +9,6 @@ import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
-from fdvv.model.noticeable import force_jnd_cN
 from fdvv.rendering.evaluation.probe_curve import ProbeCurve
 from fdvv.rendering.evaluation.verdict import short_outcome
 from fdvv.rendering.evaluation.vibration_presses import RenderedVibration
@@ -38,7 +37,7 @@ def rendered_curves(methods: Mapping[str, Sequence[ProbeCurve]], simulated: bool
         first = rows[0]
         bands = tuple(_band(name, curve) for name, curve in zip(methods, rows, strict=True))
         where = (first.stroke, first.velocity_mm_s, first.displacement_mm, first.target_cN)
-        curves.append(RenderedCurve(*where, bands, simulated, force_jnd_cN(first.target_cN)))
+        curves.append(RenderedCurve(*where, bands, simulated, first.jnds.force_cN(first.target_cN)))
     return curves
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from fdvv import __version__
 from fdvv.force_text import force_number, force_unit
-from fdvv.model.noticeable import SOURCES, JndSource
+from fdvv.model.noticeable import Jnds, JndSource
 from fdvv.rendering.evaluation.noticed import Noticed, noticed
 from fdvv.rendering.evaluation.probe_curve import ENTRY_mm, ProbeCurve
 from fdvv.rendering.evaluation.probe_figures import plot_vibrations, rendered_curves, shown_vibrations
@@ -22,7 +22,11 @@ def probe_report(result: ProbeResult) -> str:
     """Write the report as HTML. Needs matplotlib (BuildError without it)."""
     found = result.to_dict()
     simulated = f"the {result.device_name}; no hardware was used" if result.simulated else None
-    sections = [_force(result), vibration_section(result.curves, result.simulated), sources_section()]
+    sections = [
+        _force(result),
+        vibration_section(result.curves, result.simulated),
+        sources_section(result.jnds),
+    ]
     more = f", {result.vibration_presses} more with the vibration" if result.vibration_presses else ""
     footer = f"fdvv {__version__}; {result.presses} presses{more}; method: {result.method}"
     summary = f"{found['verdict']} {found['next_step']}"
@@ -120,10 +124,14 @@ def _cell(value: Any, digits: int) -> str:
     return "–" if value is None else f"{value:.{digits}f}"
 
 
-def sources_section() -> Section:
+def sources_section(jnds: Jnds) -> Section:
     """Return the just noticeable differences with their sources and assumptions."""
-    text = ("No study compared whole strokes of push-buttons; these numbers show what to look at first.",)
-    return Section("Just noticeable differences", (*text, *map(_source_text, SOURCES)))
+    text = (
+        f"Judged by {jnds.origin}.",
+        "No study that was read compared whole strokes of push-buttons; these numbers show what to look at "
+        "first.",
+    )
+    return Section("Just noticeable differences", (*text, *map(_source_text, jnds.sources)))
 
 
 def _source_text(one: JndSource) -> str:

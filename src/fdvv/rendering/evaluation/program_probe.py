@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ import numpy.typing as npt
 from fdvv.compensation.presses import FROM_mm, STOP_GUARD_mm, split_strokes
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
+from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.program.program import Program, State, Velocity
 from fdvv.program.surface import Surface
 from fdvv.twin.trace import Trace
@@ -35,6 +36,7 @@ class StateError:
     Attributes
     ----------
     errors_cN : |intended - rendered| of every visited bin of 0.05 mm, over all presses, (bins,).
+    errors_JND : the same in just noticeable differences of the intended force, (bins,).
     impact_cN : largest force with which a cap that was free met the finger; 0 without such an impact.
     """
 
@@ -42,6 +44,7 @@ class StateError:
     stroke: Stroke
     velocity_mm_s: float
     errors_cN: FloatArray
+    errors_JND: FloatArray
     impact_cN: float = 0.0
 
     @property
@@ -112,31 +115,42 @@ def _bias_cN(state: State, spent_ms: FloatArray) -> FloatArray:
     return state.bias_cN + part * (state.bias_end_cN - state.bias_cN)
 
 
-def judged_states(program: Program, traces: Sequence[Trace], velocity_mm_s: float) -> list[StateError]:
+def judged_states(
+    program: Program, traces: Sequence[Trace], velocity_mm_s: float, jnds: Jnds = LITERATURE
+) -> list[StateError]:
     """Return the errors of every state and stroke that the presses at one speed went through.
 
     Judged from 0.3 mm to 0.1 mm before the stop, between the guards of each stroke, as fdvv probe does;
-    rows are averaged over bins of 0.05 mm.
+    rows are averaged over bins of 0.05 mm. jnds : what a finger notices.
     """
-    found: dict[tuple[int, Stroke], list[tuple[FloatArray, float]]] = {}
+    found: dict[tuple[int, Stroke], list[_Errors]] = {}
     for trace in traces:
-        for key, errors in _press_errors(program, trace, velocity_mm_s):
+        for key, errors in _press_errors(program, trace, velocity_mm_s, jnds):
             found.setdefault(key, []).append(errors)
     return [
         StateError(
             program.states[number].name,
             stroke,
             velocity_mm_s,
-            np.concatenate([errors for errors, _ in parts]),
-            max(impact for _, impact in parts),
+            np.concatenate([part.cN for part in parts]),
+            np.concatenate([part.JND for part in parts]),
+            max(part.impact_cN for part in parts),
         )
         for (number, stroke), parts in sorted(found.items(), key=lambda one: (one[0][0], str(one[0][1])))
     ]
 
 
+class _Errors(NamedTuple):
+    """Of one press in one state and stroke: errors by bin, (bins,) each, and the largest impact."""
+
+    cN: FloatArray
+    JND: FloatArray
+    impact_cN: float
+
+
 def _press_errors(
-    program: Program, trace: Trace, velocity_mm_s: float
-) -> list[tuple[tuple[int, Stroke], tuple[FloatArray, float]]]:
+    program: Program, trace: Trace, velocity_mm_s: float, jnds: Jnds
+) -> list[tuple[tuple[int, Stroke], _Errors]]:
     x_mm = trace.displacement_mm
     spans = split_strokes(x_mm, program.travel_mm)
     release = np.arange(x_mm.size) >= spans[1].start
@@ -150,9 +164,11 @@ def _press_errors(
         inside[span] = True
         for number in np.unique(trace.state[span]):
             here = inside & (trace.state == number)
-            off = (trace.force_cN - intended)[here & judged]
+            places = x_mm[here & judged]
+            off_cN = np.abs(_binned(places, (trace.force_cN - intended)[here & judged]))
+            jnd_cN = jnds.force_cN(_binned(places, intended[here & judged]))
             impact_cN = float(trace.force_cN[here & landing].max(initial=0.0))
-            rows.append(((int(number), stroke), (np.abs(_binned(x_mm[here & judged], off)), impact_cN)))
+            rows.append(((int(number), stroke), _Errors(off_cN, off_cN / jnd_cN, impact_cN)))
     return rows
 
 

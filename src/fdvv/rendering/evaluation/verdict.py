@@ -49,10 +49,10 @@ class RenderingMeans:
 
 
 def verdict(curves: Sequence[ProbeCurve]) -> str:
-    """Return one sentence; empty without a curve."""
+    """Return one sentence, which says whose JNDs it judges by; empty without a curve."""
     if not curves:
         return ""
-    return f"{_force(curves)}; {_vibration(curves)}."
+    return f"By {curves[0].jnds.origin}, {_force(curves)}; {_vibration(curves)}."
 
 
 def headline(curves: Sequence[ProbeCurve], before: Sequence[ProbeCurve] = (), presses: str = "") -> str:
@@ -66,7 +66,8 @@ def headline(curves: Sequence[ProbeCurve], before: Sequence[ProbeCurve] = (), pr
     parts = (_fell(_mean_cN(before), _mean_cN(curves)), _fell(_largest_cN(before), _largest_cN(curves)))
     where = f" on {presses}" if presses else ""
     mean, largest = (f"{part} {force_unit()}" for part in parts)
-    return f"Mean error {mean}{where}, largest {largest}; {_noticed_where(curves)}"
+    judged = f"{_noticed_where(curves)}, by {curves[0].jnds.origin}"
+    return f"Mean error {mean}{where}, largest {largest}; {judged}"
 
 
 def headline_figures(
@@ -166,7 +167,7 @@ def _force(curves: Sequence[ProbeCurve]) -> str:
     least = min(found, key=lambda c: found[c])
     where = f"{least.stroke} at {least.velocity_mm_s:g} mm/s"
     worst = f" (least: {_percent(found[least])}, {where})" if len(curves) > len(strokes) else ""
-    return f"A finger would not notice the force on {' and '.join(parts)}{worst}"
+    return f"a finger would not notice the force on {' and '.join(parts)}{worst}"
 
 
 def _vibration(curves: Sequence[ProbeCurve]) -> str:

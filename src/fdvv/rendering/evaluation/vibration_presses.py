@@ -15,6 +15,7 @@ from fdvv.device.contract import Device
 from fdvv.errors import InputError, ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.model.press import Press
 from fdvv.model.vibration import Vibration
 from fdvv.program.button import vibrations_of
@@ -174,11 +175,17 @@ def _slot_record(made: ConvertedVibration) -> tables.Slot:
 
 
 def rendered_vibration(
-    model: FDVVModel, stroke: Stroke, velocity_mm_s: float, silent: Sequence[Press], played: Sequence[Press]
+    model: FDVVModel,
+    stroke: Stroke,
+    velocity_mm_s: float,
+    silent: Sequence[Press],
+    played: Sequence[Press],
+    jnds: Jnds = LITERATURE,
 ) -> RenderedVibration:
     """Compare the cap's acceleration in presses of one velocity with the vibration of one stroke.
 
     silent, played : without and with the model's vibrations; none of the latter where nothing was played.
+    jnds : what the differences are counted in.
     """
     asked = model.vibration(stroke, velocity_mm_s)
     if asked is None:
@@ -193,7 +200,7 @@ def rendered_vibration(
     last_s = min(asked.duration_s + AROUND_s, *(cut.last_s for cut in found))
     if last_s < least_s(asked):
         return RenderedVibration(asked, "not measured: the stroke ends within one period of it")
-    return _compared(asked, found[: len(silent)], found[len(silent) :], (first_s, last_s))
+    return _compared(asked, found[: len(silent)], found[len(silent) :], (first_s, last_s), jnds)
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,7 +251,11 @@ def _sorted(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _compared(
-    asked: Vibration, silent: Sequence[_Cut], played: Sequence[_Cut], span_s: tuple[float, float]
+    asked: Vibration,
+    silent: Sequence[_Cut],
+    played: Sequence[_Cut],
+    span_s: tuple[float, float],
+    jnds: Jnds,
 ) -> RenderedVibration:
     pairs = [(cut, other) for cut in played if (other := _partner(cut, silent)) is not None]
     paired = [other for _, other in pairs] if 2 * len(pairs) > len(played) else []
@@ -253,7 +264,7 @@ def _compared(
     since_s = np.arange(-before, after + 1) / RATE_Hz
     base = _motions(paired or silent, since_s, before)
     with_it = _motions(played, since_s, before, paired) if played else None
-    error = compare_vibration(asked, base, with_it)
+    error = compare_vibration(asked, base, with_it, jnds)
     rows = [asked.acceleration_m_s2(since_s), base.acceleration_m_s2[0]]
     rows += [with_it.acceleration_m_s2[0]] if with_it else []
     still = without_slow_motion(asked, since_s, np.array(rows))

@@ -13,6 +13,7 @@ from msgspec import Meta, Struct, field, structs
 from fdvv.library.index import CatalogIndex, IndexStatus, RefusedFile, builtin_rows
 from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, Origin
 from fdvv.library.search import CatalogSearch, SearchQuery, SearchResult
+from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.studio.contract import Empty, Message, Watchers, call, message_of, watch_channel
 from fdvv.studio.studio import Studio
 
@@ -100,13 +101,14 @@ class LibraryHistogram(Message):
 class LibraryFound(Message):
     """Positions of the rows that match, in order.
 
-    distances_jnd : to the button they are to be like, in that order. without : how many would match if a
-    filter were dropped. mended : words that were read with a typo.
+    distances_jnd : to the button they are to be like, in that order. jnds : whose JNDs, in words.
+    without : how many would match if a filter were dropped. mended : words that were read with a typo.
     """
 
     epoch: int
     positions: list[int]
     distances_jnd: list[float]
+    jnds: str
     histograms: dict[str, LibraryHistogram]
     kinds: dict[str, int]
     origins: dict[str, int]
@@ -151,14 +153,15 @@ def _packed(rows: Sequence[ButtonRow]) -> str:
     return base64.b64encode(np.array(sketches, dtype="<i2").tobytes()).decode()
 
 
-def search_message(found: SearchResult, epoch: int) -> LibraryFound:
-    """Return a search result; epoch : of the rows that its positions count."""
+def search_message(found: SearchResult, epoch: int, jnds: str) -> LibraryFound:
+    """Return a search result; epoch : of the rows that its positions count. jnds : whose JNDs, in words."""
     return message_of(
         LibraryFound,
         found,
         epoch=epoch,
         positions=found.positions.tolist(),
         distances_jnd=np.round(found.distances, 3).tolist(),
+        jnds=jnds,
         histograms={
             name: LibraryHistogram(h.lowest, h.highest, h.counts.tolist())
             for name, h in found.histograms.items()
@@ -175,7 +178,7 @@ class Library:
     """The index of a studio's catalogue, ready to be searched, and the pages that watch it grow."""
 
     def __init__(self, studio: Studio) -> None:
-        self._sources = len(studio.sources)
+        self._studio, self._sources = studio, len(studio.sources)
         self.watchers = Watchers[Struct]()
         self._lock = Lock()
         self._search, self._epoch = CatalogSearch(), 0
@@ -187,6 +190,10 @@ class Library:
 
     def close(self) -> None:
         self.index.close()
+
+    @property
+    def jnds(self) -> Jnds:
+        return self._studio.jnds
 
     def status(self) -> LibraryStatus:
         now = self.index.status
@@ -223,8 +230,9 @@ def index(library: Library, ask: LibraryIndexAsk) -> LibraryIndex:
 def find(library: Library, ask: LibraryFind) -> LibraryFound:
     """Search; positions are of library.index."""
     ranges = {name: (r.low, r.high) for name, r in ask.ranges.items()}
-    found, _, indexed = library.find(SearchQuery(**{**structs.asdict(ask), "ranges": ranges}))
-    return search_message(found, indexed.epoch)
+    jnds = library.jnds if ask.like else LITERATURE
+    found, _, indexed = library.find(SearchQuery(**{**structs.asdict(ask), "ranges": ranges, "jnds": jnds}))
+    return search_message(found, indexed.epoch, jnds.origin)
 
 
 @call("library.refused")

@@ -73,9 +73,10 @@ class LibraryAlike(Message):
 
 
 class LibraryAlikes(Message):
-    """The nearest first."""
+    """The nearest first. jnds : whose JNDs the distances are counted in, in words."""
 
     alike: list[LibraryAlike]
+    jnds: str
 
 
 class LibraryCurvesAsk(Message):
@@ -163,7 +164,7 @@ class LibraryPage(Message):
 def page(studio: Studio, ask: LibraryPageAsk) -> LibraryPage:
     models = [studio.catalog.model(button_id) for button_id in ask.ids]
     return LibraryPage(
-        f"{' and '.join(m.name for m in models)}.html", buttons_page(models, ask.velocity_mm_s)
+        f"{' and '.join(m.name for m in models)}.html", buttons_page(models, ask.velocity_mm_s, studio.jnds)
     )
 
 
@@ -177,7 +178,8 @@ def search(library: Library, ask: LibraryQuery) -> LibraryRows:
 
 @call("library.like")
 def like(library: Library, ask: LibraryLikeAsk) -> LibraryAlikes:
-    found, rows, _ = library.find(SearchQuery(like=ask.id))
+    jnds = library.jnds
+    found, rows, _ = library.find(SearchQuery(like=ask.id, jnds=jnds))
     alike = [
         LibraryAlike(
             message_of(LibraryRow, rows[at]), round(float(distance), 3), *np.round(parts, 3).tolist()
@@ -185,7 +187,7 @@ def like(library: Library, ask: LibraryLikeAsk) -> LibraryAlikes:
         for at, distance, parts in zip(found.positions, found.distances, found.parts, strict=True)
         if np.isfinite(distance)
     ]
-    return LibraryAlikes(alike[: ask.limit])
+    return LibraryAlikes(alike[: ask.limit], jnds.origin)
 
 
 @call("library.curves")

@@ -99,6 +99,7 @@ class CurveIntended(Message, tag="intended"):
     noticeable_press_cN, noticeable_release_cN : just noticeable difference, mean over each stroke; see
         fdvv.model.noticeable.
     press_jnd_cN, release_jnd_cN : (n,) the same at every place; empty in older jobs.
+    jnds : whose just noticeable differences, in words; empty in older jobs.
     """
 
     velocity_mm_s: float
@@ -109,6 +110,7 @@ class CurveIntended(Message, tag="intended"):
     noticeable_release_cN: float
     press_jnd_cN: tuple[float, ...] = ()
     release_jnd_cN: tuple[float, ...] = ()
+    jnds: str = ""
 
 
 class CurveProgress(Message):

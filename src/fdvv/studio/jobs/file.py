@@ -23,6 +23,7 @@ from fdvv.io.files import read_limited, write_atomic
 from fdvv.studio.contract import Message
 from fdvv.studio.jobs.events import JobEvent
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, KindName, Order
+from fdvv.thresholds.file import FILE_NAME as JNDS_NAME
 from fdvv.twin.files import current_rig_name
 
 JOB, EVENTS = "job.json", "events.jsonl"
@@ -64,6 +65,7 @@ class JobFolder:
     known_rig : what is known of the rig from before; absent where nothing is.
     rig : the simulated rig. session : the presses or answers.
     probe : the fresh presses that judge what was learned. baseline : the same without compensation.
+    jnds : what people notice, as the project had it; absent where it had none.
     """
 
     def __init__(self, path: Path) -> None:
@@ -76,6 +78,7 @@ class JobFolder:
         self.probe = path / "probe-session"
         self.baseline = path / "baseline-session"
         self.recording = path / "capture.recording.jsonl"
+        self.jnds = path / JNDS_NAME
 
     def result(self, kind: str) -> Path:
         """The file of a result, before it is put into its place in the project."""

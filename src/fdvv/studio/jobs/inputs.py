@@ -12,10 +12,12 @@ from fdvv.errors import InputError
 from fdvv.library.catalog import Catalog
 from fdvv.model.file import model_to_json
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import LITERATURE
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS
 from fdvv.studio.devices import require_listed
 from fdvv.studio.jobs.file import JobFolder, check_name, result_file
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order, RigOrder, TuneOrder, kind_of
+from fdvv.thresholds.file import project_jnds
 from fdvv.twin.capture.participant import PARTICIPANTS
 from fdvv.twin.files import button_names, current_rig_name, load_rig, rig_to_toml
 
@@ -90,7 +92,7 @@ def _capture(order: CaptureOrder) -> Inputs:
 
 
 def _shared_files(order: RigOrder, model: FDVVModel, project: Path) -> dict[str, str | bytes]:
-    """Copy the button, the simulated rig, and what was learned before."""
+    """Copy the button, the simulated rig, what was learned before, and what people notice."""
     names = JobFolder(Path())
     rig = str(current_rig_name(order.rig))
     require_listed("rig", rig, RIGS)
@@ -102,6 +104,8 @@ def _shared_files(order: RigOrder, model: FDVVModel, project: Path) -> dict[str,
     for kind, attribute, copy in learned:
         if name := getattr(order, attribute, ""):
             files[copy.name] = result_file(project, kind, name).read_bytes()
+    if project_jnds(project) is not LITERATURE:
+        files[names.jnds.name] = (project / names.jnds.name).read_bytes()
     return files
 
 

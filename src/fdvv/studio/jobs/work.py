@@ -16,7 +16,7 @@ from fdvv.device.bench import BenchInfo
 from fdvv.device.contract import Device, DeviceInfo
 from fdvv.device.open import pressed_by_person
 from fdvv.model.model import FDVVModel
-from fdvv.model.noticeable import force_jnd_cN
+from fdvv.model.noticeable import Jnds
 from fdvv.rendering.actuation_file import load_actuation
 from fdvv.rendering.compensate import CompensationResult
 from fdvv.rendering.evaluation.noticed import noticed
@@ -30,6 +30,7 @@ from fdvv.studio.jobs import events
 from fdvv.studio.jobs.file import JobFolder
 from fdvv.studio.jobs.orders import RigOrder
 from fdvv.studio.rounding import DIGITS, finite_or_none, finite_row, rounded
+from fdvv.thresholds.file import project_jnds
 
 PressStage = Literal["compensate", "baseline", "probe"]
 
@@ -56,13 +57,28 @@ class Work:
             return Guide(notice=self.notice)
         return Guide(lambda ask: self.tell(message_of(events.PressAsked, ask)), self.notice)
 
+    @property
+    def jnds(self) -> Jnds:
+        """What people notice, as the project had it when the work was ordered."""
+        return project_jnds(self.folder.path)
+
     def intended(self, model: FDVVModel, velocities_mm_s: tuple[float, ...]) -> None:
+        jnds = self.jnds
         for velocity in sorted(velocities_mm_s):
             wanted = intended_press(model, velocity)
             x_mm, down_cN, up_cN = map(rounded, (wanted.displacement_mm, wanted.press_cN, wanted.release_cN))
-            steps_cN = (rounded(force_jnd_cN(row)) for row in (wanted.press_cN, wanted.release_cN))
-            middles_cN = noticeable_cN(model, velocity)
-            self.tell(events.CurveIntended(velocity, x_mm, down_cN, up_cN, *middles_cN, *steps_cN))
+            self.tell(
+                events.CurveIntended(
+                    velocity,
+                    x_mm,
+                    down_cN,
+                    up_cN,
+                    *noticeable_cN(model, velocity, jnds),
+                    press_jnd_cN=rounded(jnds.force_cN(wanted.press_cN)),
+                    release_jnd_cN=rounded(jnds.force_cN(wanted.release_cN)),
+                    jnds=jnds.origin,
+                )
+            )
 
     def pressed(self, travel_mm: float, stage: PressStage) -> Callable[[PressDone], None]:
         return lambda done: self.tell(press_event(done, travel_mm, stage))

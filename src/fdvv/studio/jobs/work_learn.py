@@ -83,7 +83,8 @@ def _baseline(
         work.tell(StageEvent("baseline", "pressing without compensation, to compare"))
         surface, method, tuning, _ = _uncompensated(device, model, order)
         about = (work.pressed(model.travel_mm, "baseline"), method, session, work.guide(order.device), tuning)
-        return probe(device, model, surface, order.velocities_mm_s, presses, *about).curves
+        speeds, jnds = order.velocities_mm_s, work.jnds
+        return probe(device, model, surface, speeds, presses, *about, jnds=jnds).curves
 
 
 def _probe(
@@ -101,7 +102,7 @@ def _probe(
     report_press, guide = work.pressed(model.travel_mm, "probe"), work.guide(order.device)
     speeds = order.velocities_mm_s
     about = (method, session, guide, tuning, Playback(presses), known)
-    result = probe(device, model, surface, speeds, presses, report_press, *about)
+    result = probe(device, model, surface, speeds, presses, report_press, *about, jnds=work.jnds)
     report = {**result.to_dict(), "button": order.button}
     write_atomic(work.folder.result("measured"), json.dumps(report, allow_nan=False) + "\n")
     curves = tuple(curve_progress(curve.outcome) for curve in result.curves)

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.model.noticeable import vibration_steps
 from fdvv.study.simulation.perception import PerceivedDifference, Senses
 from fdvv.units import FloatArray
 
@@ -104,8 +103,8 @@ class SimulatedPeople:
         if not difference.vibration:
             return np.zeros(self.shape)
         steps = [
-            vibration_steps(self.vibration_gain * first, senses.vibration_ratio)
-            - vibration_steps(self.vibration_gain * second, senses.vibration_ratio)
+            senses.vibration_steps(self.vibration_gain * first)
+            - senses.vibration_steps(self.vibration_gain * second)
             for first, second in difference.vibration
         ]
         weights = np.asarray([1.0, senses.release_weight])

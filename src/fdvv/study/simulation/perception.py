@@ -12,14 +12,12 @@ from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import (
+    LITERATURE,
     BEST_Hz,
-    FORCE_floor_cN,
-    FORCE_jnd_ratio,
     HEARD_s,
     THRESHOLD_um,
-    VIBRATION_jnd_ratio,
-    vibration_steps,
     vibration_threshold_um,
+    weber_steps,
 )
 from fdvv.model.vibration import Vibration
 from fdvv.units import FloatArray
@@ -34,7 +32,7 @@ PACES = 5
 class Senses:
     """Constants of feeling, of nobody in particular; docs/explanation/simulated-participants.md sweeps them.
 
-    Those of force and vibration come from fdvv.model.noticeable.
+    Those of force and vibration are the literature's (fdvv.model.noticeable), whatever a project measured.
 
     Attributes
     ----------
@@ -51,11 +49,11 @@ class Senses:
     pooling : exponent by which places add up; 2: root of the mean square, large: the largest alone.
     """
 
-    weber_ratio: float = FORCE_jnd_ratio
-    floor_cN: float = FORCE_floor_cN
+    weber_ratio: float = LITERATURE.force_ratio
+    floor_cN: float = LITERATURE.force_floor_cN
     threshold_um: float = THRESHOLD_um
     best_Hz: float = BEST_Hz
-    vibration_ratio: float = VIBRATION_jnd_ratio
+    vibration_ratio: float = LITERATURE.vibration_ratio
     pace_mm_s: float = 80.0
     pace_spread_ratio: float = 0.45
     speed_weight: float = 1.0
@@ -74,6 +72,10 @@ class Senses:
         """The speeds at which a button is felt, (PACES,), rising."""
         middles = [NormalDist().inv_cdf((one + 0.5) / PACES) for one in range(PACES)]
         return np.asarray(self.pace_mm_s * np.exp(self.pace_spread_ratio * np.asarray(middles)))
+
+    def vibration_steps(self, above: FloatArray) -> FloatArray:
+        """Return the JNDs from nothing to vibrations, about one at threshold; above : times the faintest."""
+        return weber_steps(above, self.vibration_ratio, 1 / self.vibration_ratio)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +130,7 @@ def haptic_features(
     force_cN = force_ratio * np.clip(np.stack(rows), 0.0, None)
     vibrations = [model.vibration(stroke, senses.pace_mm_s) for stroke in Stroke]
     above = np.asarray([vibration_above_threshold(one, senses) for one in vibrations])
-    return HapticFeatures(np.log1p(force_cN / senses.floor_cN) / senses.weber_ratio, above)
+    return HapticFeatures(weber_steps(force_cN, senses.weber_ratio, senses.floor_cN), above)
 
 
 def perceived_difference(
@@ -140,7 +142,7 @@ def perceived_difference(
     mean = apart.mean(axis=1)
     changing = np.sqrt(np.mean((apart - mean[:, None, :]) ** 2, axis=1))
     pairs = tuple(zip(first.vibration.tolist(), second.vibration.tolist(), strict=True))
-    steps = np.subtract(*(vibration_steps(one.vibration, senses.vibration_ratio) for one in (first, second)))
+    steps = np.subtract(*(senses.vibration_steps(one.vibration) for one in (first, second)))
     return PerceivedDifference(
         _pooled(mean, senses),
         senses.speed_weight * _pooled(changing, senses),

@@ -19,6 +19,12 @@ const FIGURES = [
   ["travel_mm", "travel", "mm", 2],
 ] as const;
 
+/** How far buttons are from the reference, by id, and whose just noticeable differences that counts. */
+export interface Distances {
+  readonly jnd: ReadonlyMap<string, number>;
+  readonly whose: string;
+}
+
 /** Return what the comparison comes to, and the next step. */
 export function conclusion(store: LibraryStore): () => Verdict | null {
   const away = distances(store);
@@ -28,9 +34,10 @@ export function conclusion(store: LibraryStore): () => Verdict | null {
     if (!first) return null;
     const others = overlay.flatMap((id) => (id === reference ? [] : (store.buttons().get(id) ?? [])));
     if (!others.length) return { sentence: about(first), next: editing(first) };
+    const known = away();
     const next = overlay.length <= MOST_SHARED ? sharing(store) : editing(first);
     const [second, ...more] = others as [LibraryButton];
-    return { sentence: more.length ? many(first, others, away()) : two(first, second, away()), next };
+    return { sentence: more.length ? many(first, others, known) : two(first, second, known), next };
   };
 }
 
@@ -50,28 +57,28 @@ export function about({ name, kind, numbers }: LibraryButton): string {
 }
 
 /** How two buttons differ: the figure that differs most, and whether a finger notices. */
-export function two(first: LibraryButton, second: LibraryButton, away: ReadonlyMap<string, number>): string {
+export function two(first: LibraryButton, second: LibraryButton, away: Distances): string {
   const off = ([name]: (typeof FIGURES)[number]) => {
     const [a, b] = [first.numbers[name] ?? 0, second.numbers[name] ?? 0];
     return a && b ? Math.abs(Math.log(a / b)) : -1;
   };
   const [name, word, unit, digits] = [...FIGURES].sort((a, b) => off(b) - off(a))[0]!;
   const values = [first, second].map((one) => figure(one.numbers[name], digits, unit));
-  const jnd = away.get(second.id);
-  const felt = jnd === undefined ? "" : `; ${jndText(jnd)} apart: ${notices(jnd)}`;
+  const jnd = away.jnd.get(second.id);
+  const felt = jnd === undefined ? "" : `; ${jndText(jnd)} apart: ${notices(jnd)}, by ${away.whose}`;
   return `${first.name} against ${second.name}: ${word} ${values.join(" against ")} ${unitText(unit)}${felt}.`;
 }
 
-function many(
+export function many(
   first: LibraryButton,
   others: readonly LibraryButton[],
-  away: ReadonlyMap<string, number>,
+  { jnd: away, whose }: Distances,
 ): string {
   const known = others.filter(({ id }) => away.has(id)).sort((a, b) => away.get(a.id)! - away.get(b.id)!);
   const [near, far] = [known[0], known.at(-1)];
   if (!near || !far || near === far) return `${others.length + 1} buttons compared with ${first.name}.`;
   const said = (one: LibraryButton) => `${one.name} (${jndText(away.get(one.id)!)})`;
-  return `${said(near)} feels nearest to ${first.name}, ${said(far)} least like it.`;
+  return `${said(near)} feels nearest to ${first.name}, ${said(far)} least like it, by ${whose}.`;
 }
 
 function jndText(jnd: number): string {
@@ -83,19 +90,20 @@ function notices(jnd: number): string {
 }
 
 /** How far every button is from the reference, JND; asked again when another becomes the reference. */
-function distances(store: LibraryStore): Signal<ReadonlyMap<string, number>> {
-  const found: Signal<ReadonlyMap<string, number>> = signal(new Map());
+function distances(store: LibraryStore): Signal<Distances> {
+  const none: Distances = { jnd: new Map(), whose: "" };
+  const found: Signal<Distances> = signal(none);
   effect(() => {
     const { reference, overlay } = store.shown();
     store.grown();
     if (!reference || overlay.length < 2) return;
     const stop = new AbortController();
-    untracked(() => found.set(new Map()));
+    untracked(() => found.set(none));
     call("library.find", asked({ ...EVERYTHING, like: reference }), stop.signal).then(
-      ({ epoch, positions, distances_jnd }) => {
+      ({ epoch, positions, distances_jnd, jnds }) => {
         if (epoch !== store.rows.epoch) return;
         const pairs = positions.map((at, i) => [store.rows.ids[at] ?? "", distances_jnd[i] ?? NaN] as const);
-        found.set(new Map(pairs.filter(([, jnd]) => Number.isFinite(jnd))));
+        found.set({ jnd: new Map(pairs.filter(([, jnd]) => Number.isFinite(jnd))), whose: jnds });
       },
       // the list itself reports what is wrong with the index
       () => undefined,

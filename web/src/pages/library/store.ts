@@ -14,6 +14,7 @@ const NOTHING: LibraryFound = {
   epoch: 0,
   positions: [],
   distances_jnd: [],
+  jnds: "",
   histograms: {},
   kinds: {},
   origins: {},
