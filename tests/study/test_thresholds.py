@@ -113,6 +113,7 @@ def test_answers_find_the_jnd_that_they_were_made_with() -> None:
     assert found.claim is None
     assert found.preference is None
     assert "Three of four comparisons notice force" in study_summary(found)
+    assert "Next: let a project judge by these figures (fdvv study jnds); " in study_summary(found)
 
 
 def test_trials_that_do_not_count_change_nothing() -> None:

@@ -238,7 +238,8 @@ def _next_of(found: StudyAnalysis) -> str:
     if not sd:
         return "Next: measure more people; one person says nothing of how people differ."
     most = max(sd, key=lambda name: sd[name])
-    return f"Next: use these figures; people differ most in {most} (SD {fixed(sd[most])} of its logarithm)."
+    differ = f"people differ most in {most} (SD {fixed(sd[most])} of its logarithm)"
+    return f"Next: let a project judge by these figures (fdvv study jnds); {differ}."
 
 
 def multiverse_sentences(found: Multiverse) -> tuple[str, ...]:
