@@ -28,9 +28,11 @@ from fdvv.rendering.session import MANIFEST
 from fdvv.rendering.session_log import PRESSES
 from fdvv.testing.conformance import plain_surface
 from fdvv.testing.scripted import ScriptedDevice
+from fdvv.thresholds.file import save_jnds
 from tests.recording.files import motive
 from tests.recording.takes import ABOUT, take
 from tests.support.damage import DAMAGES, Damage
+from tests.support.jnds import as_literature, record_of
 from tests.support.sessions import Hand, learn
 
 
@@ -52,6 +54,11 @@ def image(folder: Path) -> Path:
 def rig(folder: Path) -> Path:
     save_rig(RigModel(), folder / "a.rig.json")
     return folder / "a.rig.json"
+
+
+def jnds(folder: Path) -> Path:
+    save_jnds(record_of(as_literature("force")), folder / "jnds.json")
+    return folder / "jnds.json"
 
 
 def device(folder: Path) -> Path:
@@ -91,6 +98,7 @@ MAKERS: dict[str, tuple[Callable[[Path], Path], dict[str, object]]] = {
     "a program": (program, {"version": 1}),
     "a program's image": (image, {"states": len(load_shipped("fast-tapping").states)}),
     "a known rig": (rig, {"version": 1, "presses": 0}),
+    "JNDs of a study": (jnds, {"version": 1, "force_floor_cN": 30.0}),
     "a recording of a device": (device, {"device": "scripted", "uploads": 1, "presses": 2}),
     "a recording": (recording, {"name": "mx-clear", "takes": 2}),
     "a log (motive-1.23)": (log, {"takes": 1}),

@@ -63,7 +63,7 @@ def test_what_a_study_measured_is_what_library_comparison_and_verdict_count_in(f
     Path("project/jnds.json").unlink()
     gone = fdvv(*like, "--jnds", "project")
     assert gone.status == 2
-    assert "project/jnds.json" in gone.json["error"]["message"]
+    assert "project: project: holds no jnds.json" in gone.json["error"]["message"]
 
 
 def test_what_people_notice_decides_between_two_buttons(fdvv: Run) -> None:

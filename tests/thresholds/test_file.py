@@ -147,5 +147,5 @@ def test_a_broken_file_is_refused_in_one_line_that_names_it(tmp_path: Path, text
 
 
 def test_a_folder_without_the_file_is_no_project_that_measured(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=FILE_NAME):
+    with pytest.raises(InputError, match=r"holds no jnds\.json; write one: fdvv study jnds"):
         load_jnds(tmp_path)

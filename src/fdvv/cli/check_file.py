@@ -26,6 +26,7 @@ from fdvv.rendering.session import MANIFEST
 from fdvv.rendering.session_log import PRESSES
 from fdvv.study.files.chained_log import REMEDY as CHAIN_REMEDY
 from fdvv.study.files.chained_log import read_chained
+from fdvv.thresholds.file import load_jnds
 
 HEAD_bytes = 400
 IMAGE = b"FDVP"
@@ -35,8 +36,8 @@ REMEDY = "name a file that fdvv wrote, the folder of a session, or a log of a be
 def check_file(path: Path | str, rate_Hz: float | None = None) -> FileCheck:
     """Check what a file is by its content, and whether it is whole.
 
-    Models, programs and their images, rigs, actuations, recordings, folders of sessions and what they hold,
-    recordings of devices, trials of optimisations, logs of studies; of anything else whether it is a log that
+    Models, programs and their images, rigs, JNDs, actuations, recordings, folders of sessions and what they
+    hold, recordings of devices, trials of optimisations, logs of studies. Anything else may be a log that
     read_log reads, or a file of force curves. Never raises for what stands in a file. Raises InputError where
     there is none, or what it holds is not known. rate_Hz : of a log of bare numbers.
     """
@@ -108,6 +109,11 @@ def _rig(path: Path, kind: str) -> FileCheck:
     rig = asdict(load_rig(path))
     facts = {name: list(value) if isinstance(value, tuple) else value for name, value in rig.items()}
     return FileCheck(path, kind, {"version": 1, **facts})
+
+
+def _jnds(path: Path, kind: str) -> FileCheck:
+    facts = load_jnds(path).to_dict()
+    return FileCheck(path, kind, {"version": 1, "of": facts.pop("origin"), **facts})
 
 
 def _actuation(path: Path, kind: str) -> FileCheck:
@@ -192,6 +198,7 @@ KINDS: tuple[tuple[bytes, str, Callable[[Path, str], FileCheck]], ...] = (
     (b'"fdvv-model"', "an FDVV model", _model),
     (b'"fdvv-program"', "a program", _program),
     (b'"fdvv-rig"', "a known rig", _rig),
+    (b'"fdvv-jnds"', "JNDs of a study", _jnds),
     (b'"fdvv-actuation"', "an actuation", _actuation),
     (b'"fdvv-session"', A_SESSION, lambda path, _kind: check_session(path.parent)),
     (b'"fdvv-receipt"', A_SESSION, lambda path, _kind: check_session(path.parent)),

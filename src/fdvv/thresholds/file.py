@@ -120,7 +120,11 @@ def save_jnds(record: JndRecord, path: Path) -> None:
 
 def load_jnds(path: Path) -> Jnds:
     """Read the JNDs of a file, or of the project in a folder. InputError."""
-    path = path / FILE_NAME if path.is_dir() else path
+    if path.is_dir():
+        if not (path / FILE_NAME).exists():
+            reason, remedy = f"holds no {FILE_NAME}", "write one: fdvv study jnds STUDY --into PROJECT"
+            raise InputError(path, "project", reason, remedy)
+        path = path / FILE_NAME
     record = read_record(path, KIND, JndRecord, LARGEST_bytes)
     for place, one in enumerate(record.jnds):
         if (one.dimension == "vibration") != (one.above is not None):

@@ -67,7 +67,7 @@ def _share_correct(plan: StudyPlan, folder: Path) -> float:
     if plan.kind == "thresholds" or plan.staircase is None:
         return JND_share
     if plan.staircase.down == 1:
-        reason = "1 down settles where two are told apart by chance, which is no JND"
+        reason = "1 down settles where answers are right by chance, which is no JND"
         raise InputError(folder, "staircase.down", reason, "declare a study with 2 or 3 down")
     return target_share(plan.staircase)
 
