@@ -98,7 +98,7 @@ class OptimizePair(Message):
 
 
 class OptimizeLine(Message):
-    """Designs in a row, and which of them is liked best; None: not yet answered."""
+    """A line. stops : its designs in order. best : which is liked best, from 0; None: not yet answered."""
 
     number: int
     stops: list[dict[str, float]]
