@@ -38,4 +38,5 @@ def test_an_optimisation_with_its_verdict_takes_four_clicks_at_most(
     with Optimization.open(studio.project / "optimize" / "1") as session:
         assert said == verdict_sentence(session)
         assert session.setup.start_name == "mx-clear"
+        # 16 blocks of the start, the result and three more switches
         assert len(session.retests) == 80

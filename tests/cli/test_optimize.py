@@ -32,6 +32,8 @@ SHORT = (
     "sobol",
     "--space",
     "paper",
+    "--retest",
+    "2",
 )
 
 
@@ -44,6 +46,18 @@ def test_a_run_prints_its_trials_and_says_simulated(fdvv: Run) -> None:
     assert ran.status == 0, ran.err
     assert ran.out.startswith("temporal-pointing, easy (simulated), engine sobol, 4 trials\n")
     assert "recommended: x1_mm" in ran.out
+    assert "\nAgainst the best of 4 switches, mx-" in ran.out
+    assert "\nThe fixed design would" in ran.out
+    assert "\nnext: " in ran.out
+
+
+def test_json_has_the_end_in_figures_and_in_sentences(fdvv: Run) -> None:
+    found = run_optimize(fdvv, "run", "--switch", "mx-red", "--switch", "mx-brown", "--json").json
+    assert sorted(found["against_switches"]["switches"]) == ["mx-brown", "mx-red"]
+    assert found["against_switches"]["blocks"] == found["against_fixed"]["pairs"] == 2
+    assert [one["trials"] for one in found["final_means"]] == [2] * len(found["final_means"])
+    assert all(", simulated" in sentence for sentence in found["ending"])
+    assert run_optimize(fdvv, "alone", "--switch", "none", "--json").json["ending"] == []
 
 
 def test_json_has_the_keys_that_programs_rely_on(fdvv: Run) -> None:

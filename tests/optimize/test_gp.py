@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec import UNSET
 from scipy.stats import norm
 
 from fdvv.errors import InputError
@@ -149,7 +150,7 @@ def test_people_who_differ_in_one_way_are_known_after_few_trials() -> None:
     )
     at, fresh = rng.random((3, 3)), rng.random((200, 3))
     missed = []
-    for prior in (others, tuple(replace(trial, components=()) for trial in others)):
+    for prior in (others, tuple(replace(trial, components=UNSET) for trial in others)):
         case = problem(prior=prior)
         tried = [
             scored(i, d, float(y))

@@ -186,7 +186,7 @@ def test_a_grid_passes_on_how_people_differ(grid: tuple[Path, PopulationResult])
 def test_few_people_do_not_show_how_people_differ(grid: tuple[Path, PopulationResult]) -> None:
     plan = msgspec.structs.replace(grid[1].plan, people=3)
     columns = {name: column[: 3 * plan.designs] for name, column in grid[1].columns.items()}
-    assert all(trial.components == () for trial in PopulationResult(plan, columns).prior())
+    assert all(trial.components is msgspec.UNSET for trial in PopulationResult(plan, columns).prior())
 
 
 def test_another_plan_in_the_same_folder_is_refused(grid: tuple[Path, PopulationResult]) -> None:

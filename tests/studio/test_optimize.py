@@ -388,6 +388,41 @@ def test_a_simulated_person_plays_to_the_end_of_the_budget(
     assert "all played" in refusal(client, "next", run=run)
 
 
+def test_a_run_ends_beside_the_switches_if_it_is_asked_to(
+    ask: Callable[..., Any], own_studio: Studio
+) -> None:
+    offers = ask("offers")
+    assert offers["round_s"] == {"easy": 1.44, "hard": 0.96}
+    some = {"simulated": True, "retest": 2, "switches": True, "start": "builtin:mx-brown"}
+    run = ask("create", **{**CREATE, **some, "space": "FDV"})["run"]
+    planned = ask("detail", run=run)["retest"]
+    others = [name for name in offers["switches"] if name != "mx-brown"]
+    # the start is one of the switches and comes once in a block
+    assert (planned["total"], planned["rivals"]) == (2 * 5, others)
+    assert (planned["ending"], planned["means"]) == ([], [])
+    ask("simulate", run=run, person=3, trials=3 + 2 * 5)
+    play = own_studio.part(Optimizations).simulated(run)
+    assert play is not None
+    play._thread.join(120)
+    found = ask("detail", run=run)["retest"]
+    assert found["done"] == found["total"]
+    (sentence,) = found["ending"]
+    assert sentence.startswith("Against the best of ")
+    assert ", simulated" in sentence
+    names = [one["name"] for one in found["means"]]
+    assert names[0] == "recommended"
+    assert names[-3:] == others
+    assert {one["trials"] for one in found["means"]} == {2}
+
+
+def test_a_person_plays_the_fixed_design_of_the_papers_space_too(ask: Callable[..., Any]) -> None:
+    asked = ask("create", **{**CREATE, "switches": True, "retest": 2})["run"]
+    found = ask("detail", run=asked)["retest"]
+    assert found["rivals"] == [*ask("offers")["switches"], "the fixed design"]
+    assert found["total"] == 2 * 7
+    assert ask("detail", run=ask("create", **CREATE)["run"])["retest"]["rivals"] == []
+
+
 def test_presses_of_people_and_simulated_ones_are_never_mixed(
     ask: Callable[..., Any], client: TestClient
 ) -> None:

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Protocol
 
+import msgspec
+
 from fdvv.errors import ModelError
 from fdvv.optimize.space import DesignSpace
 from fdvv.task.score import Objective, Score
@@ -42,7 +44,9 @@ class Trial:
     state : how far it is. scores : by objective, when done. reason : of a failure.
     origin : who suggested it: an engine's name, "start" (the person's own button) or "person".
     components : of a design that several people scored: what a person of one standard deviation along each
-        principal component of the people adds to the score; empty: nothing is known of how they differ.
+        principal component of the people adds to the score; UNSET: nothing is known of how they differ.
+    rival : at the end of a run what is played in the place of a design of the run, by its name; else UNSET,
+        so that records of all other trials are as they were before there were rivals.
     """
 
     number: int
@@ -52,7 +56,8 @@ class Trial:
     suggested: dict[str, float] | None = None
     reason: str = ""
     origin: str = ""
-    components: tuple[float, ...] = ()
+    components: tuple[float, ...] | msgspec.UnsetType = msgspec.UNSET
+    rival: str | msgspec.UnsetType = msgspec.UNSET
 
 
 class Answer(StrEnum):

@@ -78,7 +78,7 @@ class SimulatedPlay:
                 return False
             if trial.state is TrialState.SUGGESTED:
                 trial = session.show(trial.number)
-            model = session.model(trial.design)
+            model = session.button(trial)
         # the person learns from every press, so the trials before this one count; the session is left while
         # the trial is simulated, which takes long, so that pages can read the run
         before = task.rounds * trial.number

@@ -145,7 +145,7 @@ class PlayedTrial:
                 require_player(session.setup, simulated=False)
                 self.task, self.seed = pointing_of(session.setup), session.setup.seed
                 trial = _open_trial(session, number)
-                self.model = session.model(trial.design, f"trial {number + 1}")
+                self.model = session.button(trial, f"trial {number + 1}")
                 self._rounds = TaskRounds(runs.folder(run))
                 if trial.state is TrialState.SUGGESTED:
                     session.show(number)

@@ -37,7 +37,7 @@ def try_on_strip(
     """
     seed = session.setup.seed + trial.number
     try:
-        image = compile_button(session.model(trial.design), limits=Limits(device.settings())).image
+        image = compile_button(session.button(trial), limits=Limits(device.settings())).image
         device.upload_program(image)
     except (InputError, RefusedError) as error:
         return session.fail(trial.number, str(error))
@@ -111,7 +111,7 @@ def run_on_any_strip(
     def sit_down(trial: Trial) -> None:
         # the presser reads the list at each round: it finds there the presses of the trial that goes on
         seed = play_seed(player.seed, trial.number)
-        presses[:] = simulate_task(task, session.model(trial.design), player.user, seed)
+        presses[:] = simulate_task(task, session.button(trial), player.user, seed)
 
     presser = played_presser(port, presses)
     yield from run_on_strip(session, device, strip, rounds=task.rounds, ready=sit_down, presser=presser)

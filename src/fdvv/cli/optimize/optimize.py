@@ -19,9 +19,11 @@ from fdvv.cli.optimize.options import (
 )
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.begin import RunRequest, begin_run
-from fdvv.optimize.run.player import POINTING, player_of
+from fdvv.optimize.run.ending import beaten_by
+from fdvv.optimize.run.player import POINTING, played_min, player_of
 from fdvv.optimize.run.report import optimize_html, optimize_report
 from fdvv.optimize.run.session import Optimization, replay_differences
+from fdvv.optimize.run.verdict import verdict_kind
 from fdvv.report.report import write_report
 
 LAST = 8
@@ -53,7 +55,18 @@ def optimize() -> None:
 @ui.option("--buttons", is_flag=True, help="Of the paper's space: only designs that are buttons.")
 @ui.option("--wide", is_flag=True, help="Of a button: also what no real button is like.")
 @ui.option(
-    "--retest", type=click.IntRange(0, 1000), default=40, help="Pairs of trials, result against start."
+    "--retest",
+    type=click.IntRange(0, 1000),
+    default=40,
+    help="Blocks of trials at the end: each has the start, the result and what --switch adds once.",
+)
+@ui.option(
+    "--switch",
+    "switches",
+    multiple=True,
+    metavar="BUTTON",
+    help="Played at the end too, and the best fixed design of the paper's space; repeatable. none: the start "
+    "alone, as for a real person. With a simulated one all four shipped switches.",
 )
 @ui.option(
     "--within", metavar="RIG", help="Only designs that this rig can render: a *.rig.json or a shipped one."
@@ -142,12 +155,21 @@ def _request(
         raise click.UsageError(f"on a strip one plays {POINTING}, not {arguments['task']}")
     name, options = engine
     simulated = person if strip in (None, "host") else None
-    return RunRequest(engine=name, options=options, budget=trials, person=simulated, **arguments)
+    switches = arguments.pop("switches") or None
+    return RunRequest(
+        engine=name, options=options, budget=trials, person=simulated, switches=switches, **arguments
+    )
 
 
 def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool) -> None:
     ui.print_warnings(session.warnings)
-    budget = session.setup.budget + session.retest_left + len(session.retests)
+    at_end = session.retest_left + len(session.retests)
+    budget = session.setup.budget + at_end
+    if not session.setup.simulated:
+        search, end = (f"{played_min(session.setup, n):.0f} min" for n in (session.setup.budget, at_end))
+        ui.print_stderr(
+            f"presses take {search} for {session.setup.budget} trials, {end} for {at_end} at the end"
+        )
     with ui.progress("trials", budget) as move:
         try:
             if play is None:
@@ -192,4 +214,15 @@ def _print(session: Optimization, document: dict[str, Any]) -> None:
         click.echo(f"recommended: {', '.join(values)}")
     click.echo(f"kept in {session.folder}")
     if document["verdict"]:
-        click.echo(document["verdict"])
+        for sentence in (document["verdict"], *document["ending"]):
+            ui.print_wrapped(sentence)
+        ui.print_wrapped(f"next: {_next_step(session)}")
+
+
+def _next_step(session: Optimization) -> str:
+    if beaten := beaten_by(session):
+        return f"take {beaten}; fdvv optimize report {session.folder} draws the designs"
+    if verdict_kind(session) == "better":
+        return f"fdvv optimize report {session.folder} draws both designs"
+    again = f"--trials {2 * session.setup.budget}"
+    return f"keep {session.setup.start_name}, or search longer in a new folder with {again}"

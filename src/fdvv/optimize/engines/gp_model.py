@@ -331,8 +331,9 @@ def prior_basis(problem: Problem) -> Basis | None:
     few = [done[i] for i in _spread(len(done), MOST)]
     objective, d = problem.objectives[0], len(problem.space.names)
     scores = observed(problem.space, objective, few)
-    count = min(len(trial.components) for trial in few)
-    rows = [trial.components[:count] for trial in few]
+    known = [trial.components or () for trial in few]
+    count = min(map(len, known))
+    rows = [components[:count] for components in known]
     components = objective.sign * np.array(rows, dtype=np.float64).reshape(len(few), count)
     unknown = np.full(len(few), np.nan)
     columns = [(scores.values, scores.errors), *((column.copy(), unknown) for column in components.T)]

@@ -10,6 +10,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec import UNSET
 
 from fdvv.errors import InputError, ModelError
 from fdvv.eventlog import Journal, JournalKind
@@ -79,7 +80,7 @@ class PopulationResult:
         components = _components(apart)
         scores = [Score(float(m), float(s) or None) for m, s in zip(values.mean(axis=1), errors, strict=True)]
         return tuple(
-            Trial(i, design, TrialState.DONE, {name: score}, origin="population", components=tuple(more))
+            Trial(i, design, TrialState.DONE, {name: score}, None, "", "population", tuple(more) or UNSET)
             for i, (design, score, more) in enumerate(zip(self.designs, scores, components, strict=True))
         )
 

@@ -14,10 +14,12 @@ from fdvv.button.open import open_button
 from fdvv.errors import InputError
 from fdvv.optimize.experiment.setup import LEVELS
 from fdvv.optimize.model_space import model_space, neutral_design
+from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.people.groups import PAPER_GROUP
 from fdvv.optimize.population.population import RESULT_FILE, PopulationResult, read_population
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.player import POINTING, SIMULATED_PAIRS, about_player, task_named
+from fdvv.optimize.run.rivals import NONE, PEOPLE, SWITCHES, Rival, fixed_rivals, switch_rivals
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS, SUFFIX
@@ -94,7 +96,9 @@ class RunRequest:
     wide : bounds are those of `model_space`, not of real buttons. buttons : of the paper's space only designs
         that are buttons, see `button_constraints`. within : a rig that must be able to render
         every design: a shipped one's name, or a *.rig.json. prior : folder of a finished grid of others.
-    retest : pairs of trials that retest the result.
+    retest : blocks of trials that end the run. switches : played in them beside start and result, built in or
+        files, and with them the best fixed design where the space has one; None: SWITCHES where the person
+        is simulated, else none, since each takes a real person minutes.
     task, level, presses : what is played. engine, options, budget, seed : of the run.
     person, group, rig : the simulated one, of which group, and what is pressed; person None: a human plays.
     """
@@ -103,6 +107,7 @@ class RunRequest:
     wide: bool = False
     buttons: bool = False
     retest: int = SIMULATED_PAIRS
+    switches: Sequence[str] | None = None
     vary: Sequence[str] = ("FDV",)
     within: str | None = None
     prior: Path | None = None
@@ -135,6 +140,7 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
             budget=request.budget,
             start=start,
             prior=_prior(request),
+            rivals=_rivals(request, space, start),
             simulated=request.person is not None,
             about=_about(request),
         )
@@ -148,6 +154,19 @@ def _space(request: RunRequest, rig_id: str | None) -> tuple[SpaceSetup, dict[st
     base = open_button(request.space)
     setup = model_space_setup(base, request.vary, {} if request.wide else None, rig_id)
     return setup, neutral_design(model_space(base, request.vary, setup.bounds), base)
+
+
+def _rivals(request: RunRequest, space: SpaceSetup, start: dict[str, float] | None) -> tuple[Rival, ...]:
+    """Return what is played at the end beside start and result; nothing where nothing is played."""
+    wanted = request.switches
+    if wanted is None:
+        wanted = (NONE,) if request.person is None else SWITCHES
+    switches = switch_rivals(wanted, (request.space or "", start))
+    if not request.retest or not switches:
+        return ()
+    fixed = space.kind == "paper" and request.task == POINTING
+    group = request.group if request.person is not None else PEOPLE
+    return switches + (fixed_rivals(paper_space(), request.level, group) if fixed else ())
 
 
 def _about(request: RunRequest) -> dict[str, Any]:

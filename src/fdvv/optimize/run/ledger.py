@@ -116,8 +116,8 @@ class Ledger:
     def lines(self) -> tuple[Line, ...]:
         return tuple(self._lines)
 
-    def suggest(self, design: Design, origin: str) -> Trial:
-        trial = Trial(len(self._trials), dict(design), origin=origin)
+    def suggest(self, design: Design, origin: str, rival: str = "") -> Trial:
+        trial = Trial(len(self._trials), dict(design), origin=origin, rival=rival or msgspec.UNSET)
         self._keep("trial", trial)
         return trial
 

@@ -54,7 +54,7 @@ class SimulatedPlayer:
             return None
         # a run killed in the middle of a trial has shown it already
         shown = trial if trial.state is TrialState.SHOWN else session.show(trial.number)
-        model = session.model(shown.design)
+        model = session.button(shown)
         if refusal := refusal_of(model, self.rig):
             return session.fail(shown.number, refusal)
         seed = play_seed(self.seed, shown.number)
@@ -89,6 +89,11 @@ def task_named(name: str, level: str | None, presses: int = 20) -> Task:
         return RapidTapping(presses) if name == TAPPING else Accuracy(presses)
     except ModelError as error:
         raise InputError("presses", str(presses), str(error), "give more") from error
+
+
+def played_min(setup: OptimizeSetup, trials: int) -> float:
+    """Return how long so many trials of temporal pointing take, in minutes, without breaks between them."""
+    return trials * setup.presses * TemporalPointing(setup.level or "easy").period_s / 60
 
 
 SIMULATED_PAIRS = 40

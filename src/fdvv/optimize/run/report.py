@@ -13,6 +13,7 @@ from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.problem import Trial, TrialState
+from fdvv.optimize.run.ending import final_report
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.verdict import at_bound, retest_of, verdict_sentence
 from fdvv.report import style
@@ -100,7 +101,9 @@ SIMULATED = "a simulated person pressed the twin; no human and no hardware took 
 def optimize_report(session: Optimization) -> dict[str, Any]:
     """Return trials, the recommended design and how the run was made; units are in the names.
 
-    at_bound : its values that are the least or the most allowed. retest : see `Retest`; None of none.
+    at_bound : its values that are the least or the most allowed. retest, against_fixed : see `Retest`;
+    against_switches : see `AgainstSwitches`; None of none. final_means : of all that was played at the end.
+    verdict, ending : in sentences.
     """
     setup, best, retest = session.setup, best_of(session), retest_of(session)
     return {
@@ -109,6 +112,7 @@ def optimize_report(session: Optimization) -> dict[str, Any]:
         "task": setup.task,
         "level": setup.level,
         "seed": setup.seed,
+        "objective": session.problem.objectives[0].name,
         "budget": setup.budget,
         "finished": session.finished,
         "trials": [trial_report(trial) for trial in session.trials],
@@ -116,6 +120,7 @@ def optimize_report(session: Optimization) -> dict[str, Any]:
         "at_bound": at_bound(session.space, best, session.start) if best else {},
         "retest": asdict(retest) if retest else None,
         "verdict": verdict_sentence(session),
+        **final_report(session),
         "simulated": setup.simulated,
     }
 
@@ -167,13 +172,17 @@ def control_points(design: dict[str, float]) -> FloatArray | None:
 def _verdict(report: dict[str, Any]) -> Section | None:
     if report["verdict"] is None:
         return None
-    text, retest = [report["verdict"]], report["retest"]
-    if retest:
-        text.append(
-            f"Start and recommended design were played again, blind, in {retest['pairs']} pairs of drawn "
-            f"order; the chance that the design is better is {100 * retest['chance']:.1f} %."
-        )
-    return Section("Verdict", tuple(text))
+    text, means = [report["verdict"], *report["ending"]], report["final_means"]
+    if not means:
+        return Section("Verdict", tuple(text))
+    most = max(one["trials"] for one in means)
+    text.append(f"All were played again, blind, in {most} blocks of drawn order; each block has each once.")
+    label = score_label(report["objective"])
+    rows = (
+        (one["name"], str(one["trials"]), "–" if one["mean"] is None else f"{one['mean']:.1f}")
+        for one in means
+    )
+    return Section("Verdict", tuple(text), (), (Table(("played", "trials", f"mean {label}"), tuple(rows)),))
 
 
 def _found(session: Optimization, report: dict[str, Any]) -> Section:

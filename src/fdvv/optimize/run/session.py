@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
-
-import numpy as np
 
 from fdvv.errors import InputError, ModelError
 from fdvv.io.files import require_new_folder, write_atomic
+from fdvv.model.file import model_from_json
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.multi_objective import ParetoFront, pareto_front
 from fdvv.optimize.engines.registry import LINE_ENGINES, engine_of, line_engine_of, pair_engine_of
 from fdvv.optimize.problem import OPEN, Answer, Comparison, Engine, Line, Trial, TrialState
+from fdvv.optimize.run.blocks import Block, Played, blocks_of, in_drawn_order, played_in_block
 from fdvv.optimize.run.ledger import Ledger, Step, Suggested, steps_before
+from fdvv.optimize.run.rivals import named_rivals
 from fdvv.optimize.run.setup import (
     SETUP_FILE,
     OptimizeSetup,
@@ -56,6 +58,8 @@ class Optimization:
         self.warnings = ledger.warnings
         self._ledger = ledger
         self._given: set[int] = set()
+        self._rivals = named_rivals(setup.rivals)
+        self._found: tuple[int, dict[str, float] | None] = (-1, None)
 
     @classmethod
     def create(cls, folder: Path, setup: OptimizeSetup, project: Path | None = None) -> Optimization:
@@ -90,7 +94,7 @@ class Optimization:
 
     @property
     def retests(self) -> tuple[Trial, ...]:
-        """The trials of the retest that count, two of every pair, in the order they are played in."""
+        """The trials of the retest that count, block by block, in the order they are played in."""
         retests = (trial for trial in self._ledger.trials if trial.origin == RETEST)
         return tuple(trial for trial in retests if trial.state is not TrialState.ABANDONED)
 
@@ -136,14 +140,33 @@ class Optimization:
         return self.searched and self.retest_left == 0 and not any(t.state in OPEN for t in self.retests)
 
     @property
+    def blocks(self) -> tuple[Block, ...]:
+        """The blocks of the retest that are whole."""
+        over = [one for one in self.retests if one.state not in OPEN]
+        return blocks_of(over, self.start, self._block_size) if over else ()
+
+    @property
     def retest_left(self) -> int:
         """How many trials or comparisons of the retest are still to be suggested or answered."""
-        pairs = self.setup.retest_pairs if self.start is not None else 0
-        if not pairs or (self.searched and self.recommended() in (None, self.start)):
-            return 0
+        blocks = self.setup.retest_pairs
         if self.setup.preference:
-            return pairs - sum(one.answer is not None for one in self.retest_comparisons)
-        return max(0, 2 * pairs - len(self.retests))
+            alike = self.searched and self.recommended() in (None, self.start)
+            answered = sum(one.answer is not None for one in self.retest_comparisons)
+            return 0 if alike or self.start is None else blocks - answered
+        return max(0, blocks * self._block_size - len(self.retests)) if blocks else 0
+
+    @property
+    def _block_size(self) -> int:
+        """How many trials a block has, or is going to have; 0 where there is nothing to compare."""
+        if self.searched:
+            size = len(self._played())
+            return size if size > 1 else 0
+        start = self.setup.start
+        return 2 + sum(start is None or one.design != start for one in self.setup.rivals)
+
+    def _played(self) -> tuple[Played, ...]:
+        start, found = self.start, self.recommended()
+        return played_in_block(start, found, self.setup.rivals) if start and found else ()
 
     def ask(self, count: int = 1) -> tuple[Trial, ...]:
         """Return the next trials, at most count: first those left open by an earlier run, then new ones.
@@ -184,10 +207,17 @@ class Optimization:
 
     def recommended(self) -> dict[str, float] | None:
         """Return `best`, or the knee of the front; None while nothing is done. What is retested stays."""
-        retested = [one.design for one in self.retests]
+        retested = [one.design for one in self.retests if not one.rival]
         retested += [design for one in self.retest_comparisons for design in (one.first, one.second)]
         if fixed := next((design for design in retested if design != self.start), None):
             return fixed
+        known = sum(trial.state not in OPEN for trial in self.trials)
+        known += sum(one.answer is not None for one in self.comparisons)
+        if self._found[0] != known:  # an engine's model takes long
+            self._found = known, self._recommended()
+        return self._found[1]
+
+    def _recommended(self) -> dict[str, float] | None:
         try:
             several = len(self.problem.objectives) > 1 and not self.setup.preference
             return self.front().knee().design if several else self.best()
@@ -197,23 +227,22 @@ class Optimization:
     def retest(self) -> Trial | None:
         """Return the next trial of the retest, on the disk when this returns; None where there is none.
 
-        Each pair of trials is one of the start and one of the recommended design, in an order that is drawn:
-        who plays does not know which is which.
+        Each block has the start, the recommended design and every rival once, in an order that is drawn: who
+        plays does not know which is which.
         """
         if open_ := next((one for one in self.retests if one.state in OPEN), None):
             return open_
         if self.setup.preference or not self.searched or not self.retest_left:
             return None
-        count = len(self.retests)
-        return self._ledger.suggest(self._blind(count // 2)[count % 2], RETEST)
+        played = self._played()
+        block, place = divmod(len(self.retests), len(played))
+        one = in_drawn_order(played, self.setup.seed, block)[place]
+        return self._ledger.suggest(one.design, RETEST, one.rival)
 
     def _blind(self, pair: int) -> tuple[dict[str, float], dict[str, float]]:
-        """Return both designs of a pair in its drawn order; every two pairs have both orders."""
-        start, found = self.start, self.recommended()
-        assert start is not None
-        assert found is not None
-        turned = bool(np.random.default_rng([self.setup.seed, pair // 2, 1]).integers(2)) != bool(pair % 2)
-        return (found, start) if turned else (start, found)
+        """Return both designs of a comparison in its drawn order."""
+        first, second = in_drawn_order(self._played(), self.setup.seed, pair)
+        return first.design, second.design
 
     def edit(self, number: int, design: Design) -> Trial:
         """Put a person's own design in the place of a suggestion that was not shown yet.
@@ -300,6 +329,13 @@ class Optimization:
 
     def model(self, design: Design, name: str = "design") -> FDVVModel:
         return self._designer(design).renamed(name)
+
+    def button(self, trial: Trial, name: str = "design") -> FDVVModel:
+        """Return the button that a trial plays: its design, or the switch that takes its place."""
+        rival = self._rivals.get(trial.rival) if trial.rival else None
+        if rival is None or rival.model is None:
+            return self.model(trial.design, name)
+        return model_from_json(json.dumps(rival.model), rival.name).renamed(name)
 
     def close(self) -> None:
         self._ledger.close()

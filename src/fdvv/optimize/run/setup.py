@@ -22,6 +22,7 @@ from fdvv.optimize.model_space import model_of, model_space
 from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.problem import Problem, Trial
 from fdvv.optimize.realistic import realistic_bounds, realistic_cN
+from fdvv.optimize.run.rivals import Rival
 from fdvv.optimize.space import Constraint, Design, DesignSpace, Parameter
 from fdvv.rendering.feasibility import CurveFeasibility, feasibility
 from fdvv.rendering.rig_catalog import AvailableRig, RigCatalog
@@ -121,8 +122,9 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     task, level : what a person does, as tasks are named; level None where there is one only.
     budget : trials, or comparisons, that may be asked; failed ones count, abandoned ones do not.
     start : a person's own design, tried first. prior : finished trials of others to begin from.
+    rivals : what is played beside start and result at the end, their names differ.
     about : whatever else belongs to a run: who presses, on what, how many PRESSES make a score, how many
-        pairs of trials RETEST the result, and the NAME of the button it starts from.
+        blocks of trials RETEST the result, and the NAME of the button it starts from.
     """
 
     PRESSES: ClassVar[str] = "presses"
@@ -141,6 +143,7 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     budget: Annotated[int, Meta(ge=1, le=100_000)] = 30
     start: dict[str, float] | None = None
     prior: tuple[Trial, ...] = ()
+    rivals: tuple[Rival, ...] = ()
     simulated: bool = False
     about: dict[str, Any] = {}
     versions: dict[str, str] = msgspec.field(default_factory=versions)
@@ -159,7 +162,7 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
 
     @property
     def retest_pairs(self) -> int:
-        """How many pairs of trials, or comparisons, retest the result; 0 in runs of an earlier fdvv."""
+        """How many blocks of trials, or comparisons, retest the result; 0 in runs of an earlier fdvv."""
         pairs = self.about.get(self.RETEST)
         return pairs if isinstance(pairs, int) else 0
 

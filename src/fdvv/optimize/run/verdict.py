@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from fdvv.optimize.problem import Answer, TrialState
+from fdvv.optimize.problem import Answer, Trial, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.space import Design, DesignSpace
 
@@ -48,19 +48,19 @@ def retest_of(session: Optimization) -> Retest | None:
 
 
 def _of_scores(session: Optimization) -> Retest | None:
-    objective, start = session.problem.objectives[0], session.start
-    trials = session.retests
-    pairs = [pair for pair in zip(trials[::2], trials[1::2], strict=False) if _scored(*pair)]
-    better = []
-    for one, other in pairs:
-        before, after = (other, one) if other.design == start else (one, other)
-        values = (trial.scores[objective.name].value for trial in (before, after))
-        better.append(objective.sign * -float(np.diff(list(values))[0]))
-    return paired(better)
+    pairs = [(block.found, block.start) for block in session.blocks if block.found is not block.start]
+    return paired(gains(session, pairs))
 
 
-def _scored(*trials: object) -> bool:
-    return all(getattr(trial, "state", None) is TrialState.DONE for trial in trials)
+def gains(session: Optimization, pairs: Sequence[tuple[Trial, Trial]]) -> list[float]:
+    """Return by how much the first of two trials is better, of those where both are scored."""
+    objective = session.problem.objectives[0]
+    both = ([one.scores[objective.name].value for one in pair] for pair in pairs if scored(*pair))
+    return [objective.sign * (other - mine) for mine, other in both]
+
+
+def scored(*trials: Trial) -> bool:
+    return all(trial.state is TrialState.DONE for trial in trials)
 
 
 def paired(better: Sequence[float]) -> Retest | None:
@@ -92,12 +92,53 @@ def _of_answers(session: Optimization) -> Retest | None:
     return Retest(len(said), found.share - 0.5, found.low - 0.5, found.high - 0.5, chance)
 
 
+@dataclass(frozen=True)
+class Phrase:
+    """How a difference in an objective is written.
+
+    Attributes
+    ----------
+    better, worse : in words. unit : shown. scale : by which a value is multiplied for it. digits : shown.
+    """
+
+    better: str
+    worse: str
+    unit: str
+    scale: float = 1.0
+    digits: int = 0
+
+    def number(self, value: float) -> str:
+        """Write a value without its unit."""
+        text = f"{self.scale * value:.{self.digits}f}"
+        return (text if float(text) else text.lstrip("-")).replace("-", "−")
+
+    def difference(self, value: float) -> str:
+        """Write how much better one of two is, or how much worse below 0."""
+        return f"{self.number(abs(value))} {self.unit} {self.better if value > 0 else self.worse}"
+
+    def doubt(self, low: float, high: float, chance: float) -> str:
+        """Write an interval and the chance of being better, in brackets."""
+        interval = f"95 %: {self.number(low)} to {self.number(high)} {self.unit}"
+        return f"({interval}; chance of being better {chance_text(chance)})"
+
+
+def chance_text(chance: float) -> str:
+    """Write a chance in per cent; no finite number of trials makes one certain."""
+    if chance > 0.999:
+        return "over 99.9 %"
+    return "below 0.1 %" if chance < 0.001 else f"{100 * chance:.1f} %"
+
+
 PHRASES = {
-    "asynchrony_ms": ("closer to the bullet", "farther from the bullet", "ms", 1.0, 0),
-    "rate_Hz": ("faster", "slower", "taps per second", 1.0, 2),
-    "errors_ratio": ("fewer errors", "more errors", "%", 100.0, 1),
+    "asynchrony_ms": Phrase("closer to the bullet", "farther from the bullet", "ms"),
+    "rate_Hz": Phrase("faster", "slower", "taps per second", digits=2),
+    "errors_ratio": Phrase("fewer errors", "more errors", "%", 100.0, 1),
 }
-"""Of a first objective: better and worse in words, the unit, by what a value is multiplied, digits."""
+
+
+def phrase_of(session: Optimization) -> Phrase:
+    """Return how differences in a run's first objective are written."""
+    return PHRASES.get(session.problem.objectives[0].name, Phrase("better", "worse", "", digits=2))
 
 
 def verdict_kind(session: Optimization) -> Kind | None:
@@ -124,22 +165,14 @@ def verdict_sentence(session: Optimization) -> str | None:
         share = f"95 %: {100 * (found.low + 0.5):.0f} to {100 * (found.high + 0.5):.0f} %"
         end = "." if kind == "better" else f"; keep {name}."
         return f"Preferred to {name} in {count} of {found.pairs} answers ({share}){end}"
-    better, worse, unit, scale, digits = PHRASES.get(
-        session.problem.objectives[0].name, ("better", "worse", "", 1.0, 2)
-    )
-    low, high, by = (_number(scale * value, digits) for value in (found.low, found.high, found.difference))
+    phrase = phrase_of(session)
+    doubt, by = phrase.doubt(found.low, found.high, found.chance), phrase.difference(found.difference)
     if kind == "same":
-        return f"No difference found (95 %: {low} to {high} {unit}){played}; keep {name}."
+        return f"No difference found {doubt}{played}; keep {name}."
     if kind == "better":
-        return f"{by} {unit} {better} than {name} (95 %: {low} to {high} {unit}){played}."
-    low, high = (_number(-scale * value, digits) for value in (found.high, found.low))
-    by = _number(-scale * found.difference, digits)
-    return f"{by} {unit} {worse} than {name} (95 %: {low} to {high} {unit}){played}; keep {name}."
-
-
-def _number(value: float, digits: int) -> str:
-    text = f"{value:.{digits}f}"
-    return (text if float(text) else text.lstrip("-")).replace("-", "−")
+        return f"{by} than {name} {doubt}{played}."
+    doubt = phrase.doubt(-found.high, -found.low, found.chance)
+    return f"{by} than {name} {doubt}{played}; keep {name}."
 
 
 def at_bound(

@@ -11,6 +11,7 @@ from fdvv.errors import FdvvError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.problem import OPEN, Answer, TrialState
+from fdvv.optimize.run.ending import FinalMean, ending_sentences, final_means
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.verdict import (
     Kind,
@@ -116,11 +117,12 @@ class OptimizeSimulated(Message):
 
 
 class OptimizeRetest(Message):
-    """The start and the recommended design, played again blind.
+    """The start and the recommended design, played again blind, beside rivals if there are any.
 
     done, total : trials, or comparisons. open : number of the trial under way. at_bound : values of the
     recommended design that are the "least" or the "most" allowed. sentence, kind, found : what was found;
-    None before its end, found also where nothing was to be retested.
+    None before its end, found also where nothing was to be retested. rivals : names of what is played too.
+    ending : sentences on them. means : of all that was played; empty before the end.
     """
 
     done: int
@@ -130,6 +132,9 @@ class OptimizeRetest(Message):
     sentence: str | None
     kind: Kind | None
     found: Retest | None
+    rivals: list[str]
+    ending: list[str]
+    means: list[FinalMean]
 
 
 class OptimizeDetail(Message):
@@ -278,6 +283,9 @@ def retest_state(session: Optimization) -> OptimizeRetest:
         verdict_sentence(session),
         verdict_kind(session),
         retest_of(session) if session.finished else None,
+        [one.name for one in session.setup.rivals if one.design is None or one.design != session.start],
+        list(ending_sentences(session)),
+        list(final_means(session)) if session.finished else [],
     )
 
 

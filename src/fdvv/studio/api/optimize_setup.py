@@ -10,10 +10,13 @@ from fdvv.errors import InputError, ModelError
 from fdvv.live.press_subject import button_choices
 from fdvv.optimize.engines.registry import LINE_ENGINES, engine_names, pair_engine_names
 from fdvv.optimize.model_space import model_space, neutral_design
-from fdvv.optimize.paper_space import paper_design_like
+from fdvv.optimize.paper_space import paper_design_like, paper_space
+from fdvv.optimize.people.groups import PAPER_GROUP
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.begin import offered_grid, offered_grids
+from fdvv.optimize.run.rivals import PEOPLE, SWITCHES, Rival, fixed_rivals, switch_rivals
 from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup
+from fdvv.optimize.space import Design
 from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.optimize import OTHERS, START, TITLE, Level, Name, Number, OptimizeAsk
 from fdvv.studio.contract import Empty, Message, Offer, call
@@ -21,7 +24,7 @@ from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.play_trials import pressed_devices
 from fdvv.studio.played_trial import TASK, playable, pointing_of
 from fdvv.studio.studio import Studio
-from fdvv.task.pointing import LEVELS_px_s
+from fdvv.task.pointing import LEVELS_px_s, TemporalPointing
 from fdvv.task.score import Objective
 
 
@@ -30,7 +33,8 @@ class OptimizeOffers(Message):
 
     engines : read scores. pair_engines : read which of two is preferred. line_engines : read where on a line
     it feels best. spaces : of designs. objectives : beside the first. starts : buttons that a run may start
-    from. others : grids of the project that a run in the paper's space may begin from.
+    from. others : grids of the project that a run in the paper's space may begin from. switches : may be
+    played at the end. round_s : of a press, by level.
     """
 
     engines: list[Offer]
@@ -42,6 +46,8 @@ class OptimizeOffers(Message):
     objectives: list[Offer]
     starts: list[Offer]
     others: list[Offer]
+    switches: list[str]
+    round_s: dict[str, float]
 
 
 class OptimizeDevices(Message):
@@ -59,7 +65,8 @@ class OptimizeCreate(Message):
     the engine suggests. rig : must be able to render every design; None asks for none.
     budget : trials, comparisons or lines.
     task_presses : of a score, 20 in the paper. others : a grid to begin from, in the paper's space; None
-    begins from nothing. retest : pairs of trials, or comparisons, of the result with the start.
+    begins from nothing. retest : blocks of trials, or comparisons, of the result with the start.
+    switches : the shipped switches are in these blocks too, and in the paper's space the best fixed design.
     """
 
     title: Name
@@ -76,6 +83,7 @@ class OptimizeCreate(Message):
     task_presses: Annotated[int, Meta(ge=2, le=100)] = 20
     others: Annotated[str, Meta(max_length=300)] | None = None
     retest: Annotated[int, Meta(ge=0, le=200)] = 6
+    switches: bool = False
 
 
 PAPER = "paper"
@@ -114,6 +122,8 @@ def offers(studio: Studio, _ask: Empty) -> OptimizeOffers:
         [Offer(name, about) for name, about in OBJECTIVE_DESCRIPTIONS.items()],
         [Offer(choice.id, choice.name) for choice in button_choices(studio.catalog)],
         [Offer(name, grid.about) for name, grid in offered_grids(studio.project).items()],
+        list(SWITCHES),
+        {level: TemporalPointing(level).period_s for level in LEVELS_px_s},
     )
 
 
@@ -138,6 +148,7 @@ def create(studio: Studio, ask: OptimizeCreate) -> OptimizeAsk:
         budget=ask.budget,
         start=start,
         prior=prior,
+        rivals=_rivals(ask, start),
         about={
             TITLE: ask.title.strip(),
             START: ask.start,
@@ -162,6 +173,16 @@ def _start_name(studio: Studio, ask: OptimizeCreate) -> str:
     names = {choice.id: choice.name for choice in button_choices(studio.catalog)}
     name = names.get(ask.start, name)
     return f"the paper's design nearest to {name}" if ask.space == PAPER else name
+
+
+def _rivals(ask: OptimizeCreate, start: Design | None) -> tuple[Rival, ...]:
+    """Return what is played at the end beside start and result; the paper's design near a switch is none."""
+    if not ask.switches or ask.preference:
+        return ()
+    if ask.space != PAPER:
+        return switch_rivals(SWITCHES, ((ask.start or "").removeprefix("builtin:"), start))
+    group = PAPER_GROUP if ask.simulated else PEOPLE
+    return switch_rivals(SWITCHES) + fixed_rivals(paper_space(), ask.level, group)
 
 
 def _space(studio: Studio, ask: OptimizeCreate) -> tuple[SpaceSetup, dict[str, float] | None]:

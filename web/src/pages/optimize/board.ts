@@ -88,8 +88,14 @@ export class Board {
     if (last !== null)
       return `${this.scored(last)} ${spent ? "The run is over: see the result." : "Play the next one when you are ready."}`;
     if (spent) return "The run is over: see the result.";
-    if (this.store.retesting()) return "The best design and your button come in a drawn order.";
+    if (this.store.retesting()) return this.drawn();
     return "Press so that the key goes down as the bullet reaches the middle of the zone.";
+  }
+
+  private drawn(): string {
+    const rivals = this.store.detail()?.retest.rivals.length ?? 0;
+    const also = rivals ? `, and ${rivals} others` : "";
+    return `The best design and your button${also} come in a drawn order.`;
   }
 
   private scored(number: number): string {
@@ -97,7 +103,7 @@ export class Board {
     const name = this.store.objective();
     const { label, unit } = named(name);
     if (trial?.state === "shown") return `Trial ${number + 1} is being scored.`;
-    if (!trial) return "It is scored; which of the two it was is not shown.";
+    if (!trial) return "It is scored; which button it was is not shown.";
     if (!this.scores()) return `Trial ${number + 1} is done.`;
     return trial.state === "done"
       ? `Trial ${number + 1}: ${label} ${scoreText(trial.scores[name], unit)}.`

@@ -21,7 +21,8 @@ export function said(store: RunStore, detail: OptimizeDetail, pace: Pace): Verdi
   const { retest, row, simulated } = detail;
   if (retest.sentence) return found(store, detail, retest.sentence);
   const one = detail.on_lines ? "line" : row.preference ? "comparison" : "trial";
-  const again = `the best design against ${detail.start_name}, blind: ${Math.min(retest.done + 1, retest.total)} of ${retest.total}`;
+  const others = retest.rivals.length ? ` and ${retest.rivals.length} others` : "";
+  const again = `the best design against ${detail.start_name}${others}, blind: ${Math.min(retest.done + 1, retest.total)} of ${retest.total}`;
   const now = store.retesting() ? again : `${one} ${Math.min(row.spent + 1, row.budget)} of ${row.budget}`;
   if (simulated?.running) {
     const left_s = pace.left_s(simulated.done, simulated.total, performance.now());
