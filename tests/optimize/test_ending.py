@@ -231,7 +231,7 @@ def test_a_person_plays_no_switches_unless_they_are_asked_for(tmp_path: Path) ->
         assert FIXED not in [one.name for one in session.setup.rivals]
 
 
-def test_switches_that_cannot_be_told_apart_or_do_not_exist_are_refused(tmp_path: Path) -> None:
+def test_switches_of_one_name_and_unknown_ones_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no such file or built-in button"):
         switch_rivals(["no-such-switch"])
     with pytest.raises(InputError, match="is named beside others"):
