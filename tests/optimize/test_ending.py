@@ -220,8 +220,10 @@ def test_a_start_that_is_recommended_is_still_compared_with_the_switches(tmp_pat
 def test_a_person_plays_no_switches_unless_they_are_asked_for(tmp_path: Path) -> None:
     with begin_run(tmp_path / "a", RunRequest(space="paper", person=None)) as session:
         assert session.setup.rivals == ()
+        assert session.setup.retest_pairs == 40
     with begin_run(tmp_path / "b", RunRequest(space="paper", person=1)) as session:
         assert [one.name for one in session.setup.rivals] == [*SWITCHES, FIXED]
+        assert session.setup.retest_pairs == 16
         paper = session.setup.rivals[-1].design
     with begin_run(tmp_path / "c", RunRequest(space="paper", group="diverse")) as session:
         assert session.setup.rivals[-1].design != paper

@@ -18,7 +18,13 @@ from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.people.groups import PAPER_GROUP
 from fdvv.optimize.population.population import RESULT_FILE, PopulationResult, read_population
 from fdvv.optimize.problem import Trial
-from fdvv.optimize.run.player import POINTING, SIMULATED_PAIRS, about_player, task_named
+from fdvv.optimize.run.player import (
+    POINTING,
+    SIMULATED_BLOCKS,
+    SIMULATED_PAIRS,
+    about_player,
+    task_named,
+)
 from fdvv.optimize.run.rivals import NONE, PEOPLE, SWITCHES, Rival, fixed_rivals, switch_rivals
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup
@@ -96,9 +102,10 @@ class RunRequest:
     wide : bounds are those of `model_space`, not of real buttons. buttons : of the paper's space only designs
         that are buttons, see `button_constraints`. within : a rig that must be able to render
         every design: a shipped one's name, or a *.rig.json. prior : folder of a finished grid of others.
-    retest : blocks of trials that end the run. switches : played in them beside start and result, built in or
-        files, and with them the best fixed design where the space has one; None: SWITCHES where the person
-        is simulated, else none, since each takes a real person minutes.
+    retest : blocks of trials that end the run; None: SIMULATED_PAIRS, with switches
+        SIMULATED_BLOCKS. switches : played in them beside start and result, built in or files, and with them
+        the best fixed design where the space has one; None: SWITCHES where the person is simulated, else
+        none, since each takes a real person minutes.
     task, level, presses : what is played. engine, options, budget, seed : of the run.
     person, group, rig : the simulated one, of which group, and what is pressed; person None: a human plays.
     """
@@ -106,7 +113,7 @@ class RunRequest:
     space: str | None = None
     wide: bool = False
     buttons: bool = False
-    retest: int = SIMULATED_PAIRS
+    retest: int | None = None
     switches: Sequence[str] | None = None
     vary: Sequence[str] = ("FDV",)
     within: str | None = None
@@ -129,6 +136,7 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
     with _shelf_of(request.within) as (project, rig_id):
         space, start = _space(request, rig_id)
         task = task_named(request.task, request.level, request.presses)
+        rivals = _rivals(request, space, start)
         setup = OptimizeSetup(
             space=space,
             engine=request.engine,
@@ -140,9 +148,9 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
             budget=request.budget,
             start=start,
             prior=_prior(request),
-            rivals=_rivals(request, space, start),
+            rivals=rivals,
             simulated=request.person is not None,
-            about=_about(request),
+            about=_about(request, SIMULATED_BLOCKS if rivals else SIMULATED_PAIRS),
         )
         return Optimization.create(folder, setup, project)
 
@@ -162,15 +170,15 @@ def _rivals(request: RunRequest, space: SpaceSetup, start: dict[str, float] | No
     if wanted is None:
         wanted = (NONE,) if request.person is None else SWITCHES
     switches = switch_rivals(wanted, (request.space or "", start))
-    if not request.retest or not switches:
+    if request.retest == 0 or not switches:
         return ()
     fixed = space.kind == "paper" and request.task == POINTING
     group = request.group if request.person is not None else PEOPLE
     return switches + (fixed_rivals(paper_space(), request.level, group) if fixed else ())
 
 
-def _about(request: RunRequest) -> dict[str, Any]:
-    retest = {OptimizeSetup.RETEST: request.retest}
+def _about(request: RunRequest, blocks: int) -> dict[str, Any]:
+    retest = {OptimizeSetup.RETEST: blocks if request.retest is None else request.retest}
     if request.person is None:
         return {OptimizeSetup.PRESSES: request.presses, **retest}
     return {**about_player(request.person, request.rig, request.presses, request.group), **retest}

@@ -98,6 +98,8 @@ def played_min(setup: OptimizeSetup, trials: int) -> float:
 
 SIMULATED_PAIRS = 40
 """Of a retest; 20 presses of a simulated person take 25 ms."""
+SIMULATED_BLOCKS = 16
+"""Of a retest with four switches, one of them the start: as many trials."""
 
 
 def about_player(person: int, rig: str, presses: int, group: str = PAPER_GROUP) -> dict[str, Any]:
