@@ -1,1 +1,1 @@
-import{Et as e,Mr as t,Vn as n,Xr as r,Zr as i,br as a,ii as o,ur as s,yr as c,zr as l}from"./shared.js";function u(u,d){i(d,!0);let f=n(d,`tooltip`,3,!1);e.create(t(()=>f()));var p=a(),m=l(p);s(m,()=>d.children??o),c(u,p),r()}export{u as t};
+import{Br as e,Et as t,Nr as n,Qr as r,Vn as i,Zr as a,ai as o,br as s,dr as c,xr as l}from"./shared.js";function u(u,d){r(d,!0);let f=i(d,`tooltip`,3,!1);t.create(n(()=>f()));var p=l(),m=e(p);c(m,()=>d.children??o),s(u,p),a()}export{u as t};
