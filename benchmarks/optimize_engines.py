@@ -40,11 +40,13 @@ from benchmarks.optimize_tables import (
 )
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_records
+from fdvv.optimize.button_constraints import button_constraints
 from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.paper_space import paper_space
+from fdvv.optimize.people.groups import PAPER_GROUP
 from fdvv.optimize.population.plan import PopulationPlan, optimise
 from fdvv.optimize.population.population import read_population, run_population
-from fdvv.optimize.problem import Problem, Trial
+from fdvv.optimize.problem import Engine, Problem, Trial
 from fdvv.optimize.space import Design
 from fdvv.parallel.open import open_executor
 from fdvv.task.score import Score
@@ -93,14 +95,24 @@ class Runner:
     folder: Path
     first_seed: int = FIRST_SEED
     variants: Mapping[str, Variant] = field(default_factory=lambda: dict(VARIANTS))
+    group: str = PAPER_GROUP
+    buttons: bool = False
+
+    def engine(self, variant: Variant) -> Engine:
+        """Make the engine of a variant."""
+        return engine_of(variant.engine, variant.options)
+
+    def prior(self, variant: Variant, level: str) -> tuple[Trial, ...]:
+        """Return what others scored, of a variant that begins from it."""
+        return prior_of(self.folder, variant.prior, level) if variant.prior else ()
 
     def __call__(self, run: Run) -> dict[str, list[float]]:
         """Return true values (ms) after LOOKS evaluations, by variant: the baseline answers in two ways."""
         variant = self.variants[run.variant]
-        person, seed = Person(self.first_seed, run.person, run.level), self.first_seed + run.seed
-        prior = prior_of(self.folder, variant.prior, run.level) if variant.prior else ()
-        problem = Problem(paper_space(), person.task.objectives, seed, prior)
-        engine = engine_of(variant.engine, variant.options)
+        person = Person(self.first_seed, run.person, run.level, self.group)
+        seed, space = self.first_seed + run.seed, paper_space(button_constraints() if self.buttons else ())
+        problem = Problem(space, person.task.objectives, seed, self.prior(variant, run.level))
+        engine = self.engine(variant)
 
         def evaluate(design: Design, trial: int) -> dict[str, Score]:
             return person.score(design, 1000 * seed + trial)
@@ -176,6 +188,11 @@ def compare(folder: Path, runs: Sequence[Run], runner: Runner, processes: int) -
     return found
 
 
+def kept_runs(folder: Path) -> dict[Run, list[float]]:
+    """Read the runs in a folder."""
+    return dict(_kept(folder / RUNS_FILE))
+
+
 def _kept(path: Path) -> Iterator[tuple[Run, list[float]]]:
     for record, _ in read_records(path, KIND):
         one = record["run"]
@@ -184,7 +201,7 @@ def _kept(path: Path) -> Iterator[tuple[Run, list[float]]]:
 
 def _chosen(folder: Path, names: Sequence[str]) -> dict[Run, list[float]]:
     """Read what is there of named engines, of all if none is named, and of the baseline."""
-    kept = dict(_kept(folder / RUNS_FILE))
+    kept = kept_runs(folder)
     chosen = {BASELINE, SMOOTHED, *names} if names else {run.variant for run in kept}
     return common({run: values for run, values in kept.items() if run.variant in chosen})
 

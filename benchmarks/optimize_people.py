@@ -14,8 +14,9 @@ from scipy.special import ndtri
 
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.paper_space import paper_model
+from fdvv.optimize.people.groups import PAPER_GROUP, group_named
 from fdvv.optimize.people.simulate import score_design, simulate_task
-from fdvv.optimize.people.user import SimulatedUser, UserSettings, draw_user, spread_factor, timing_spread_s
+from fdvv.optimize.people.user import SimulatedUser, draw_user, spread_factor, timing_spread_s
 from fdvv.optimize.space import Design
 from fdvv.task.pointing import LOST_ms, TemporalPointing
 from fdvv.task.score import Score
@@ -38,18 +39,18 @@ class Person:
 
     Attributes
     ----------
-    seed, number : of the draw. settings : of the population.
+    seed, number : of the draw. group : of people, see fdvv.optimize.people.groups.
     """
 
     seed: int
     number: int
     level: str
-    settings: UserSettings | None = None
+    group: str = PAPER_GROUP
 
     @property
     def user(self) -> SimulatedUser:
         """Draw the person."""
-        return _user(self.seed, self.number, self.settings)
+        return _user(self.seed, self.number, self.group)
 
     @property
     def task(self) -> TemporalPointing:
@@ -66,14 +67,8 @@ class Person:
 
 
 @lru_cache(maxsize=256)
-def _user(seed: int, number: int, settings: UserSettings | None) -> SimulatedUser:
-    return draw_user(number, seed, settings)
-
-
-def shifted() -> UserSettings:
-    """Return a population that is wrong on purpose."""
-    middle = SimulatedUser()
-    return UserSettings(replace(middle, **{n: getattr(middle, n) * r for n, r in SHIFTED.items()}))
+def _user(seed: int, number: int, group: str) -> SimulatedUser:
+    return draw_user(number, seed, group_named(group))
 
 
 def expected_ms(

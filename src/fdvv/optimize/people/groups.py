@@ -10,11 +10,11 @@ from fdvv.optimize.people.user import SPREADS, SimulatedUser, UserSettings
 
 DIVERSE = UserSettings(
     SimulatedUser(
-        bias_ms=0.0,
+        bias_ms=-18.0,
         block_ms=15.0,
         anticipated_ratio=0.3,
         isochrony_ratio=0.0,
-        adaptation_ratio=0.17,
+        adaptation_ratio=0.05,
         pace_mm_s=70.0,
         learning_ratio=0.2,
         fatigue_ratio=0.1,
