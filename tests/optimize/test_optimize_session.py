@@ -210,6 +210,17 @@ def test_lines_are_kept_resumed_and_replayed_and_then_the_result_is_compared(tmp
     assert replay_differences(tmp_path / "run") == ()
 
 
+def test_a_recommendation_follows_every_line_that_is_answered(tmp_path: Path) -> None:
+    setup = OptimizeSetup(task="preference", engine="preference-line", budget=3, seed=2)
+    with Optimization.create(tmp_path / "run", setup) as session:
+        assert session.recommended() is None
+        for best in (8, 0, 3):
+            line = session.line()
+            assert line is not None
+            session.choose(line.number, best)
+            assert session.recommended() == session.best()
+
+
 def test_only_a_run_of_lines_has_lines(tmp_path: Path) -> None:
     setup = OptimizeSetup(task="preference", engine="preference")
     with (

@@ -211,8 +211,7 @@ class Optimization:
         retested += [design for one in self.retest_comparisons for design in (one.first, one.second)]
         if fixed := next((design for design in retested if design != self.start), None):
             return fixed
-        known = sum(trial.state not in OPEN for trial in self.trials)
-        known += sum(one.answer is not None for one in self.comparisons)
+        known = sum(trial.state not in OPEN for trial in self.trials) + self.answered
         if self._found[0] != known:  # an engine's model takes long
             self._found = known, self._recommended()
         return self._found[1]
