@@ -11,21 +11,22 @@ What is shown is the true value of what an engine recommends after so many evalu
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.optimize_engines import Runner, Variant, compare, kept_runs, runs_of
-from benchmarks.optimize_rivals import any_engine
+from benchmarks.optimize_rivals import FixedDesign, ScikitOptimize
 from benchmarks.optimize_tables import BUDGET, LEVELS, LOOKS, PEOPLE, SEEDS, Run, common, curves
+from fdvv.io.files import write_atomic
 from fdvv.optimize.engines.search import draw_feasible
 from fdvv.optimize.population.plan import PopulationPlan
-from fdvv.optimize.population.population import read_population, run_population
-from fdvv.optimize.problem import Engine, Problem, Trial
+from fdvv.optimize.population.population import run_population
+from fdvv.optimize.problem import Engine, Problem
 from fdvv.parallel.open import open_executor
 from fdvv.stats.share import share
 from fdvv.task.pointing import TemporalPointing
@@ -36,12 +37,14 @@ FEW = 30
 """Runs of what is not the question: every person once."""
 POOL_FILE = "buttons.npy"
 FIXED, DEFAULT, WARM, STRONG = "fixed design", "gp", "gp, warm", "scikit-optimize"
+WHO = "others"
+"""Whose scores a warm start begins from, see benchmarks.optimize_engines.prior_of."""
 MAIN = (FIXED, DEFAULT, STRONG, WARM)
 VARIANTS: Mapping[str, Variant] = {
-    FIXED: Variant(FIXED, prior="others", budget=1, runs=SEEDS * PEOPLE),
+    FIXED: Variant(FIXED, prior=WHO, budget=1, runs=SEEDS * PEOPLE),
     DEFAULT: Variant("gp", runs=SEEDS * PEOPLE),
     STRONG: Variant(STRONG, runs=SEEDS * PEOPLE),
-    WARM: Variant("gp", prior="others", budget=BUDGET // 2, runs=SEEDS * PEOPLE),
+    WARM: Variant("gp", prior=WHO, budget=BUDGET // 2, runs=SEEDS * PEOPLE),
     "gp-ei": Variant("gp-ei", runs=FEW),
     "gp-ei, tuned": Variant("gp-ei", {"startup": 10}, runs=FEW),
     "scikit-optimize, five random designs": Variant(STRONG, {"startup": 5}, runs=FEW),
@@ -60,15 +63,9 @@ class DiverseRunner(Runner):
     buttons: bool = True
 
     def engine(self, variant: Variant) -> Engine:
-        return any_engine(variant.engine, variant.options, np.load(self.folder / POOL_FILE))
-
-    def prior(self, variant: Variant, level: str) -> tuple[Trial, ...]:
-        return _others(self.folder, level) if variant.prior else ()
-
-
-@cache
-def _others(folder: Path, level: str) -> tuple[Trial, ...]:
-    return read_population(folder / f"others-{level}").prior()
+        if variant.engine == STRONG:
+            return ScikitOptimize(np.load(self.folder / POOL_FILE), **variant.options)
+        return FixedDesign() if variant.engine == FIXED else super().engine(variant)
 
 
 def prepare(folder: Path, processes: int) -> None:
@@ -85,7 +82,7 @@ def prepare(folder: Path, processes: int) -> None:
                 group=GROUP,
                 buttons=True,
             )
-            run_population(folder / f"others-{level}", plan, executor)
+            run_population(folder / f"{WHO}-{level}", plan, executor)
     path = folder / POOL_FILE
     if not path.exists():
         rng, space = np.random.default_rng(OTHERS_SEED), PopulationPlan(buttons=True).space
@@ -93,9 +90,9 @@ def prepare(folder: Path, processes: int) -> None:
         places = draw_feasible(
             problem, lambda n: rng.random((8 * n, len(space.names))), np.empty((0, len(space.names))), POOL
         )
-        with path.with_suffix(".tmp").open("wb") as file:
-            np.save(file, places)
-        path.with_suffix(".tmp").replace(path)
+        buffer = io.BytesIO()
+        np.save(buffer, places)
+        write_atomic(path, buffer.getvalue())
 
 
 def by_person(found: Mapping[Run, Sequence[float]], variant: str, level: str, look: int) -> dict[int, float]:

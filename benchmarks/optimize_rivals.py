@@ -5,16 +5,15 @@ scikit-optimize is no dependency: ``pip install scikit-optimize`` where the comp
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from fdvv.optimize.engines.gp_model import finished
-from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.engines.search import random_places
-from fdvv.optimize.problem import Engine, Problem, Trial
+from fdvv.optimize.problem import Problem, Trial
 from fdvv.units import FloatArray
 
 
@@ -91,10 +90,3 @@ class FixedDesign:
         del trials
         name, others = problem.objectives[0].name, finished(problem, problem.prior)
         return dict(others[int(np.argmin([trial.scores[name].value for trial in others]))].design)
-
-
-def any_engine(name: str, options: Mapping[str, Any], pool: FloatArray) -> Engine:
-    """Make a rival, or an engine of the project."""
-    if name == "scikit-optimize":
-        return ScikitOptimize(pool, **options)
-    return FixedDesign() if name == "fixed design" else engine_of(name, options)

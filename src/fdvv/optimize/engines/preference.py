@@ -25,6 +25,7 @@ LENGTH = 0.4
 NOISE = 0.3
 """SD of an answer's noise, parts of worth's own."""
 STEPS = 50
+Rows = np.ndarray[tuple[int], np.dtype[np.intp]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,16 +94,21 @@ def kernel_of(dimensions: int, length: float = LENGTH) -> Any:
     return Matern(length * np.sqrt(dimensions), nu=2.5)
 
 
+def distinct(places: FloatArray) -> tuple[FloatArray, Rows]:
+    """Return each place of (n, d) once, (m, d), and which of these each is, (n,)."""
+    once = fresh(places, np.empty((0, places.shape[1])))
+    return once, np.abs(places[:, None] - once[None]).max(axis=2).argmin(axis=1)
+
+
 def believe_answers(space: DesignSpace, comparisons: Sequence[Comparison]) -> PreferenceBelief | None:
     """Learn from answered comparisons; None without any. Raises BuildError without scikit-learn."""
     answered = [one for one in comparisons if one.answer is not None]
     if not answered:
         return None
     both = space.to_unit([design for one in answered for design in (one.first, one.second)])
-    places = fresh(both, np.empty((0, both.shape[1])))
-    rows = np.abs(both[:, None] - places[None]).max(axis=2).argmin(axis=1).reshape(-1, 2)
+    places, rows = distinct(both)
     pairs, counts = [], []
-    for (first, second), one in zip(rows.tolist(), answered, strict=True):
+    for (first, second), one in zip(rows.reshape(-1, 2).tolist(), answered, strict=True):
         if first == second:
             continue
         share = {Answer.FIRST: 1.0, Answer.SECOND: 0.0, Answer.EQUAL: 0.5}[one.answer or Answer.EQUAL]

@@ -15,8 +15,8 @@ from itertools import islice
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.optimize.engines.preference import PreferenceBelief, kernel_of
-from fdvv.optimize.engines.search import FEW, draw_feasible, fresh, generator, holds
+from fdvv.optimize.engines.preference import PreferenceBelief, distinct, kernel_of
+from fdvv.optimize.engines.search import FEW, draw_feasible, generator, holds
 from fdvv.optimize.problem import Line, Problem
 from fdvv.optimize.space import DesignSpace
 from fdvv.units import FloatArray
@@ -36,8 +36,8 @@ def believe_lines(space: DesignSpace, lines: Sequence[Line]) -> PreferenceBelief
     if not answered:
         return None
     stops = space.to_unit([design for one in answered for design in one.stops])
-    places = fresh(stops, np.empty((0, stops.shape[1])))
-    rows = iter(np.abs(stops[:, None] - places[None]).max(axis=2).argmin(axis=1).tolist())
+    places, found = distinct(stops)
+    rows = iter(found.tolist())
     pairs: list[tuple[int, int]] = []
     for one in answered:
         felt = list(islice(rows, len(one.stops)))

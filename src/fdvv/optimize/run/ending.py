@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.blocks import Block
 from fdvv.optimize.run.rivals import FIXED
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.verdict import Kind, Retest, gains, paired, phrase_of, scored
+from fdvv.optimize.run.verdict import Kind, Retest, gains, kind_of, paired, phrase_of, scored
 from fdvv.stats.best_of import against_best
 
 
@@ -37,7 +37,7 @@ class AgainstSwitches:
 
     @property
     def kind(self) -> Kind:
-        return "better" if self.low > 0 else "worse" if self.high < 0 else "same"
+        return kind_of(self.low, self.high)
 
 
 @dataclass(frozen=True)
@@ -115,9 +115,12 @@ def _mean(session: Optimization, name: str, trials: Sequence[Trial]) -> FinalMea
 
 def ending_sentences(session: Optimization) -> tuple[str, ...]:
     """Return what a finished run says beside its verdict: of the best switch, then of the fixed design."""
-    if not session.finished:
-        return ()
-    switches, fixed = against_switches(session), against_fixed(session)
+    return _sentences(session, against_switches(session), against_fixed(session)) if session.finished else ()
+
+
+def _sentences(
+    session: Optimization, switches: AgainstSwitches | None, fixed: Retest | None
+) -> tuple[str, ...]:
     said = (switches and _of_switches(session, switches), fixed and _of_fixed(session, fixed))
     return tuple(sentence for sentence in said if sentence)
 
@@ -157,12 +160,10 @@ def _played(session: Optimization) -> str:
 
 def final_report(session: Optimization) -> Mapping[str, object]:
     """Return the end of a run by name, as ``--json`` prints it."""
-    from dataclasses import asdict
-
     switches, fixed = against_switches(session), against_fixed(session)
     return {
         "against_switches": asdict(switches) if switches else None,
         "against_fixed": asdict(fixed) if fixed else None,
         "final_means": [asdict(one) for one in final_means(session)],
-        "ending": list(ending_sentences(session)),
+        "ending": list(_sentences(session, switches, fixed)) if session.finished else [],
     }

@@ -20,6 +20,11 @@ PARTS = {"bump_cN": ("bump_mm", "snap_mm"), "vibration_gain_ratio": ("vibration_
 Kind = Literal["better", "same", "worse"]
 
 
+def kind_of(low: float, high: float) -> Kind:
+    """Return what the interval of a difference says, positive where a design is better."""
+    return "better" if low > 0 else "worse" if high < 0 else "same"
+
+
 @dataclass(frozen=True)
 class Retest:
     """How much better the recommended design is than the start, the same person playing both blind.
@@ -39,7 +44,7 @@ class Retest:
 
     @property
     def kind(self) -> Kind:
-        return "better" if self.low > 0 else "worse" if self.high < 0 else "same"
+        return kind_of(self.low, self.high)
 
 
 def retest_of(session: Optimization) -> Retest | None:

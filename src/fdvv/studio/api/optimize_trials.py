@@ -10,6 +10,7 @@ from msgspec import Meta
 
 from fdvv.errors import InputError
 from fdvv.optimize.problem import Answer
+from fdvv.optimize.run.ledger import Suggested
 from fdvv.optimize.run.session import Optimization
 from fdvv.project.patch import record_of
 from fdvv.studio.api.optimize import Name, Number, OptimizeAsk
@@ -94,10 +95,15 @@ def next_trial(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeTrialA
     """Return the open trial, or ask the engine for one."""
     with _changed(optimizations, ask.run) as session:
         trial = next(iter(open_trials(session) or session.ask()), None) or session.retest()
-        if trial is None:
-            remedy = "look at what was found, or begin another run"
-            raise InputError("optimise", f"run {ask.run}", "its trials are all played", remedy)
-        return OptimizeTrialAsk(ask.run, trial.number)
+        remedy = "look at what was found, or begin another run"
+        return OptimizeTrialAsk(ask.run, _number(ask, trial, "its trials are all played", remedy))
+
+
+def _number(ask: OptimizeAsk, waiting: Suggested | None, reason: str, remedy: str) -> int:
+    """Return the number of what waits to be tried or answered. InputError where nothing does."""
+    if waiting is None:
+        raise InputError("optimise", f"run {ask.run}", reason, remedy)
+    return waiting.number
 
 
 @call("optimize.edit")
@@ -119,11 +125,8 @@ def abandon(optimizations: Optimizations, ask: OptimizeTrialAsk) -> OptimizeTria
 def next_pair(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizePairAsk:
     """Return the open comparison, or ask the engine for one."""
     with _changed(optimizations, ask.run) as session:
-        waiting = session.compare()
-        if waiting is None:
-            reason, remedy = "its comparisons are all made", "look at what was found"
-            raise InputError("optimise", f"run {ask.run}", reason, remedy)
-        return OptimizePairAsk(ask.run, waiting.number)
+        reason, remedy = "its comparisons are all made", "look at what was found"
+        return OptimizePairAsk(ask.run, _number(ask, session.compare(), reason, remedy))
 
 
 @call("optimize.answer")
@@ -137,11 +140,8 @@ def answer(optimizations: Optimizations, ask: OptimizeAnswer) -> OptimizePairAsk
 def next_line(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeLineAsk:
     """Return the open line, or ask the engine for one."""
     with _changed(optimizations, ask.run) as session:
-        waiting = session.line()
-        if waiting is None:
-            reason, remedy = "its lines are all answered", "compare what was found, or begin another run"
-            raise InputError("optimise", f"run {ask.run}", reason, remedy)
-        return OptimizeLineAsk(ask.run, waiting.number)
+        reason, remedy = "its lines are all answered", "compare what was found, or begin another run"
+        return OptimizeLineAsk(ask.run, _number(ask, session.line(), reason, remedy))
 
 
 @call("optimize.choose")
