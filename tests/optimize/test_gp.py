@@ -244,3 +244,29 @@ def test_places_are_arrays_of_the_unit_cube() -> None:
     place: FloatArray = SPACE.to_unit(engine_of("gp").suggest(Problem(SPACE, problem().objectives), []))
     assert place.shape == (1, 8)
     assert np.all((place >= 0) & (place <= 1))
+
+
+def test_the_length_of_the_space_is_what_the_kernel_expects_unless_the_engine_has_its_own() -> None:
+    designs = [{"p0_mm": at, "p1_mm": 1.0, "p2_mm": 1.0} for at in (-2.0, 0.0, 1.0, 4.0)]
+    tried = [scored(i, design, bowl_ms(design)) for i, design in enumerate(designs)]
+    found = {
+        length: believe(scores_of(BOWL, problem().objectives[0], tried), length=length).kernel.k2.length_scale
+        for length in (0.2, 0.45)
+    }
+    # nothing was varied along these, so that the prior alone speaks
+    np.testing.assert_allclose(found[0.2][1:], 0.2 * np.sqrt(3), rtol=0.05)
+    np.testing.assert_allclose(found[0.45][1:], 0.45 * np.sqrt(3), rtol=0.05)
+    smooth, space = engine_of("gp"), replace(BOWL, length=0.45)
+    same = engine_of("gp", {"length": 0.45}).suggest(problem(), tried)
+    assert smooth.suggest(problem(space), tried) == same != smooth.suggest(problem(), tried)
+    with pytest.raises(InputError, match="length"):
+        engine_of("gp", {"length": 0.0})
+
+
+def test_the_process_begins_after_as_many_designs_as_it_is_asked_to() -> None:
+    three = run(engine_of("sobol"), problem(), 3)
+    net = engine_of("sobol").suggest(problem(), three)
+    assert engine_of("gp", {"startup": 4}).suggest(problem(), three) == net
+    assert engine_of("gp").suggest(problem(), three) != net
+    with pytest.raises(InputError, match="startup"):
+        engine_of("gp", {"startup": 0})

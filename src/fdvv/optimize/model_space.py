@@ -14,7 +14,7 @@ from fdvv.model.bump import find_bump
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.model.vibration import Vibration
-from fdvv.optimize.space import Constraint, Design, DesignSpace, Parameter
+from fdvv.optimize.space import BUTTON_LENGTH, Constraint, Design, DesignSpace, Parameter
 from fdvv.units import FloatArray
 
 Apply = Callable[[FDVVModel, float], FDVVModel]
@@ -287,7 +287,7 @@ def model_space(
     own = [handle.parameter for name, handle in known.items() if name in chosen]
     parameters = tuple(Parameter(p.name, *limits[p.name]) if p.name in limits else p for p in own)
     held = _held(chosen, base, known, LARGEST_cN if most_cN is None else most_cN)
-    return DesignSpace(f"variations of {base.name}", parameters, (*held, *constraints))
+    return DesignSpace(f"variations of {base.name}", parameters, (*held, *constraints), BUTTON_LENGTH)
 
 
 def neutral_design(space: DesignSpace, base: FDVVModel) -> dict[str, float]:

@@ -15,7 +15,7 @@ from fdvv.errors import InputError
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel, Provenance
 from fdvv.model.vibration import Mode, Vibration
-from fdvv.optimize.space import Constraint, Design, DesignSpace, Parameter
+from fdvv.optimize.space import BUTTON_LENGTH, Constraint, Design, DesignSpace, Parameter
 from fdvv.units import FloatArray
 
 PAPER_TRAVEL_mm = 6.2
@@ -37,7 +37,7 @@ def paper_space(constraints: tuple[Constraint, ...] = ()) -> DesignSpace:
     along = (Parameter(f"x{i + 1}_mm", edges[i], edges[i + 1] - APART_mm) for i in range(3))
     force = (Parameter(f"y{i + 1}_cN", low_cN, high_cN) for i in range(3))
     points = (Parameter(f"{what}_mm", 0.5, 5.5) for what in ("actuation", "vibration"))
-    return DesignSpace("paper", (*along, *force, *points), constraints)
+    return DesignSpace("paper", (*along, *force, *points), constraints, BUTTON_LENGTH)
 
 
 def paper_model(design: Design, name: str = "design") -> FDVVModel:

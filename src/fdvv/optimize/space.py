@@ -13,6 +13,9 @@ import numpy.typing as npt
 from fdvv.errors import InputError, ModelError
 from fdvv.units import FloatArray
 
+LENGTH, BUTTON_LENGTH = 0.2, 0.45
+"""Over which scores are expected to change, see `DesignSpace`: of anything, and of a button by a person, on
+whom differences between buttons come out smoothed (chosen on simulated people who judge no engine)."""
 Design = Mapping[str, float]
 """A value for every parameter of a space, by its name; the unit is the last part of the name."""
 
@@ -71,11 +74,13 @@ class DesignSpace:
     Attributes
     ----------
     name : of the space. parameters : at least one, names differ. constraints : any number.
+    length : over which a score is expected to change, in ranges times the root of their number.
     """
 
     name: str
     parameters: tuple[Parameter, ...]
     constraints: tuple[Constraint, ...] = ()
+    length: float = LENGTH
 
     def __post_init__(self) -> None:
         names = [one.name for one in self.parameters]

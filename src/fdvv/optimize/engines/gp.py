@@ -108,8 +108,9 @@ def log_success(space: DesignSpace, trials: Sequence[Trial], places: FloatArray)
     return np.asarray(np.log1p(-SURE * np.exp(-0.5 * squared / NEAR**2)).sum(axis=1))
 
 
-STARTUP = 5
-"""Designs of an even net before the process may learn; the paper's library began with as many."""
+def _check_startup(count: int) -> None:
+    if count < 1:
+        raise InputError("engine", "startup", f"is {count}", "give at least one design")
 
 
 @dataclass(frozen=True)
@@ -122,12 +123,16 @@ class GPEngine:
 
     Parameters
     ----------
+    startup : designs of an even net before the process may learn, at least one.
+    length : over which scores are expected to change, see `DesignSpace`; None: as the space says.
     trend : the person learns or tires: scores have a part that runs with the log of the trial's number.
     forget : trials after which an old score's variance counts double; None: all count alike.
     trial_s, build_s : seconds of a trial, and of a new value by parameter (`ChangeCost`); with them
         improvement is sought per second.
     """
 
+    startup: int = 3
+    length: float | None = None
     trend: bool = False
     forget: float | None = None
     trial_s: float = 60.0
@@ -137,6 +142,9 @@ class GPEngine:
     def __post_init__(self) -> None:
         if self.forget is not None and not self.forget > 0:
             raise InputError("engine", "forget", f"is {self.forget}", "give a number of trials above 0")
+        _check_startup(self.startup)
+        if self.length is not None and not 0 < self.length < np.inf:
+            raise InputError("engine", "length", f"is {self.length}", "give a length above 0")
 
     def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
         tried = tried_places(problem.space, trials)
@@ -144,7 +152,7 @@ class GPEngine:
         expected = prior_basis(case)
         if not done and expected:
             return problem.space.of_unit(self._expected_best(case, expected, tried, count))
-        if len(done) < (1 if expected else STARTUP):
+        if len(done) < (1 if expected else self.startup):
             return problem.space.of_unit(sobol_places(problem, tried, count))
         belief = self._believed(case, done, len(trials))
         for trial in trials:
@@ -200,7 +208,7 @@ class GPEngine:
             scores = replace(scores, trend=np.log1p(number) - np.log1p(now))
         if self.forget is not None:
             scores = replace(scores, faded=2.0 ** ((now - number) / self.forget))
-        return believe(scores, prior_basis(problem))
+        return believe(scores, prior_basis(problem), length=self.length or problem.space.length)
 
 
 @dataclass(frozen=True)
@@ -226,8 +234,7 @@ class GPExpectedImprovement:
     name: str = field(default="gp-ei", init=False)
 
     def __post_init__(self) -> None:
-        if self.startup < 1:
-            raise InputError("engine", "startup", f"is {self.startup}", "give at least one random design")
+        _check_startup(self.startup)
 
     def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
         """Suggest, see Engine. Raises ModelError on several objectives."""

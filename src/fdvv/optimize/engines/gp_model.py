@@ -20,12 +20,12 @@ import numpy.typing as npt
 from fdvv.errors import ModelError
 from fdvv.optimize.engines.search import missing
 from fdvv.optimize.problem import Problem, Trial, TrialState
-from fdvv.optimize.space import DesignSpace
+from fdvv.optimize.space import LENGTH, DesignSpace
 from fdvv.task.score import Objective
 from fdvv.units import FloatArray
 
-LENGTH = (0.2, 0.7)
-"""Prior of a log length: mean is log of this times the root of d, SD the second; ranges are 1 wide."""
+LENGTH_SPREAD = 0.7
+"""SD of the prior of a log length; its mean is that of the space, times the root of d, ranges 1 wide."""
 SIGNAL, SIGNAL_BESIDE = (0.1, 0.5), (-1.2, 0.7)
 KNOWN_NOISE, UNKNOWN_NOISE = (-4.0, 1.0), (-2.0, 1.0)
 """Priors of log variances, parts of the scores' own: of f, alone or beside what others' trials explain, and
@@ -161,11 +161,16 @@ class Belief:
 
 
 def believe(
-    observed: Observed, basis: Basis | None = None, starts: int = 2, few: npt.NDArray[np.int64] | None = None
+    observed: Observed,
+    basis: Basis | None = None,
+    starts: int = 2,
+    few: npt.NDArray[np.int64] | None = None,
+    length: float = LENGTH,
 ) -> Belief:
     """Learn from at least one score. Raises BuildError without scikit-learn.
 
     few : scores that the kernel's numbers are fitted to, by place; all, unless there are very many.
+    length : that is expected of the kernel, as `DesignSpace` has it.
     """
     values, basis = observed.values, basis and basis.about(observed.places)
     centre = float(np.mean(values))
@@ -181,7 +186,7 @@ def believe(
         rest = (values - centre) / scale - H @ weights
         some = slice(None) if few is None else few
         priors = SIGNAL if basis is None else SIGNAL_BESIDE, KNOWN_NOISE if known.all() else UNKNOWN_NOISE
-        kernel, white = _fitted(observed.places[some], rest[some], fixed[some], priors, starts)
+        kernel, white = _fitted(observed.places[some], rest[some], fixed[some], priors, starts, length)
         belief = Belief(observed, kernel, fixed + white * faded, centre, scale, basis)
         weights = belief.weights
     assert belief is not None
@@ -209,13 +214,13 @@ def pooled(errors: FloatArray) -> FloatArray:
 
 
 def _fitted(
-    X: FloatArray, y: FloatArray, fixed: FloatArray, priors: tuple[Prior, Prior], starts: int
+    X: FloatArray, y: FloatArray, fixed: FloatArray, priors: tuple[Prior, Prior], starts: int, length: float
 ) -> tuple[Any, float]:
     """Fit lengths, signal and what is left as noise; return the kernel without the noise, and the noise."""
     d = X.shape[1]
     signal, noise = priors
-    mean = np.array([signal[0], *[np.log(LENGTH[0] * np.sqrt(d))] * d, noise[0]])
-    spread = np.array([signal[1], *[LENGTH[1]] * d, noise[1]])
+    mean = np.array([signal[0], *[np.log(length * np.sqrt(d))] * d, noise[0]])
+    spread = np.array([signal[1], *[LENGTH_SPREAD] * d, noise[1]])
     numbers = (1.0, BOUNDS), (np.exp(mean[1:-1]), BOUNDS), (np.exp(noise[0]), NOISE_BOUNDS)
     search = _search(mean, spread, starts)
     # two places nearly the same would leave the matrix singular
@@ -297,7 +302,8 @@ def observed(space: DesignSpace, objective: Objective, done: Sequence[Trial]) ->
 def believed_best(problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
     """Recommend the tried design whose posterior mean is best. Raises ModelError."""
     done = best_of(problem, trials)
-    return believe(observed(problem.space, problem.objectives[0], done)).best_of(done)
+    scores = observed(problem.space, problem.objectives[0], done)
+    return believe(scores, length=problem.space.length).best_of(done)
 
 
 class RecommendsBelievedBest:

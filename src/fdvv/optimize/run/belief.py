@@ -46,7 +46,7 @@ def best_design(run: Optimization) -> BestDesign:
 def _scored(run: Optimization) -> BestDesign:
     design, done = run.best(), finished(run.problem, run.trials)
     objective = run.problem.objectives[0]
-    belief = believe(observed(run.space, objective, done))
+    belief = believe(observed(run.space, objective, done), length=run.space.length)
     mean, deviation = (float(column[0]) for column in belief.predict(run.space.to_unit([design])))
     mean *= objective.sign
     return BestDesign(design, mean, *_interval(mean, deviation), None, len(done))
