@@ -31,7 +31,11 @@ LAST = 8
 folder_argument = click.argument("folder", type=ui.FOLDER)
 
 
-MODULES = {"experiment": "optimize.experiment", "population": "optimize.population"}
+MODULES = {
+    "experiment": "optimize.experiment",
+    "group": "optimize.group",
+    "population": "optimize.population",
+}
 
 
 @click.group(cls=ui.LazyGroup, modules=MODULES)

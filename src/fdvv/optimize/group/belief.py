@@ -1,0 +1,162 @@
+"""One Gaussian process over the scores of several people: what they share, and how each departs from it.
+
+A score of person p at place x is y = b_p + f(x) + g_p(x) + noise. f is shared by all, g_p belongs to p alone,
+and b_p is how well p does altogether. f and g_p have one Matern-5/2 kernel with a length per parameter and
+variances of their own. This is a hierarchical process (Hensman, Lawrence and Rattray, BMC Bioinformatics 14,
+252, 2013), with compound symmetry between people.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fdvv.errors import ModelError
+from fdvv.optimize.engines.gp_model import Observed, believe, pooled
+from fdvv.optimize.space import LENGTH
+from fdvv.units import FloatArray
+
+PRIORS = ((0.0, 1.0), (-0.5, 1.0), (0.0, 1.0), (-4.0, 1.0))
+"""Mean and SD of the log variances of f, g, b and of noise beyond the known errors, parts of the scores' own
+variance within a person."""
+FITTED = 200
+"""Scores that lengths are fitted to; of more, as many spread evenly."""
+
+
+@dataclass(frozen=True, eq=False)
+class GroupScores:
+    """Scores of several people, smaller is better.
+
+    Attributes
+    ----------
+    people : (n,) who scored, from 0; everybody at least once. places : (n, d) of the unit cube.
+    values, errors : (n,) score and its standard error; errors nan where unknown.
+    """
+
+    people: npt.NDArray[np.int64]
+    places: FloatArray
+    values: FloatArray
+    errors: FloatArray
+
+    def __post_init__(self) -> None:
+        if np.unique(self.people).size < 2 or set(self.people.tolist()) != set(range(self.count)):
+            raise ModelError("a group needs scores of at least two people, numbered from 0")
+
+    @property
+    def count(self) -> int:
+        """How many people there are."""
+        return int(self.people.max()) + 1
+
+
+@dataclass(frozen=True, eq=False)
+class GroupBelief:
+    """The posterior of f + g_p; what a person does altogether is not in it.
+
+    Attributes
+    ----------
+    scores : learned from. kernel : of scikit-learn, of variance 1. noise : (n,) variances, standardised.
+    shared, own, level : variances of f, g and b, standardised. centre, scale : that standardised the scores.
+    """
+
+    scores: GroupScores
+    kernel: Any
+    noise: FloatArray
+    shared: float
+    own: float
+    level: float
+    centre: float
+    scale: float
+
+    @cached_property
+    def _factor(self) -> tuple[FloatArray, bool]:
+        from scipy.linalg import cho_factor
+
+        same = _same(self.scores.people, self.scores.people)
+        parts = self._between(self.scores.places, self.scores.people) + self.level * same
+        lower: tuple[FloatArray, bool] = cho_factor(parts + np.diag(self.noise), lower=True)
+        return lower
+
+    def _between(self, places: FloatArray, people: npt.NDArray[np.int64]) -> FloatArray:
+        """Return the covariance of f + g_p, (n, m), between the scores and m places of people."""
+        cross = self.kernel(self.scores.places, places)
+        return np.asarray(cross * (self.shared + self.own * _same(self.scores.people, people)))
+
+    def means(self, places: FloatArray) -> FloatArray:
+        """Return what each person is expected to score at places (m, d), (people, m)."""
+        from scipy.linalg import cho_solve
+
+        alpha = cho_solve(self._factor, (self.scores.values - self.centre) / self.scale)
+        rows = [
+            self._between(places, np.full(len(places), person)).T @ alpha
+            for person in range(self.scores.count)
+        ]
+        return np.asarray(self.centre + self.scale * np.array(rows))
+
+    def differences(self, first: FloatArray, second: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return by how much each person scores more at the first place than at the second.
+
+        first, second : (people, d), a place for each person.
+
+        Returns the means (people,) and their covariance (people, people).
+        """
+        from scipy.linalg import cho_solve
+
+        everybody = np.arange(self.scores.count)
+        cross = self._between(first, everybody) - self._between(second, everybody)
+        mean = self.scale * cross.T @ cho_solve(self._factor, (self.scores.values - self.centre) / self.scale)
+        k = self.kernel
+        prior = k(first) - k(first, second) - k(second, first) + k(second)
+        prior = prior * (self.shared + self.own * np.eye(self.scores.count))
+        covariance = prior - cross.T @ cho_solve(self._factor, cross)
+        return mean, np.asarray(self.scale**2 * covariance)
+
+
+def believe_group(scores: GroupScores, length: float = LENGTH) -> GroupBelief:
+    """Learn from the scores of all. Raises BuildError without scikit-learn.
+
+    length : over which a score is expected to change, see `DesignSpace`.
+    """
+    people, count = scores.people, np.bincount(scores.people)
+    own = scores.values - (np.bincount(people, scores.values) / count)[people]
+    centre, scale = float(scores.values.mean()), float(own.std()) or 1.0
+    few = np.unique(np.linspace(0, own.size - 1, min(FITTED, own.size)).astype(np.int64))
+    alike = believe(Observed(scores.places, own, scores.errors), few=few, length=length)
+    errors = np.nan_to_num(pooled(scores.errors) / scale) ** 2
+    matern = alike.kernel.k2
+    variances = _variances(matern(scores.places), people, (scores.values - centre) / scale, errors)
+    shared, personal, level, white = variances.tolist()
+    return GroupBelief(scores, matern, errors + white, shared, personal, level, centre, scale)
+
+
+def _same(some: npt.NDArray[np.int64], others: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+    return np.asarray(some[:, None] == others[None])
+
+
+def _variances(M: FloatArray, people: npt.NDArray[np.int64], y: FloatArray, errors: FloatArray) -> FloatArray:
+    """Return the most probable variances of f, g, b and of further noise, (4,)."""
+    from scipy.linalg import cho_factor, cho_solve
+    from scipy.optimize import minimize
+
+    same = _same(people, people)
+    parts = [M, M * same, same.astype(np.float64), np.eye(y.size)]
+    middle, spread = np.array(PRIORS).T
+    fixed = np.diag(errors + 1e-8)
+
+    def cost(theta: FloatArray) -> tuple[float, FloatArray]:
+        sizes = np.exp(theta)
+        factor = cho_factor(sum((s * p for s, p in zip(sizes, parts, strict=True)), fixed), lower=True)
+        inverse = cho_solve(factor, np.eye(y.size))
+        alpha, off = inverse @ y, (theta - middle) / spread
+        value = 0.5 * y @ alpha + np.log(np.diag(factor[0])).sum() + 0.5 * off @ off
+        slope = [
+            0.5 * s * np.sum((inverse - np.outer(alpha, alpha)) * p)
+            for s, p in zip(sizes, parts, strict=True)
+        ]
+        return float(value), np.array(slope) + off / spread
+
+    found = minimize(cost, middle, jac=True, method="L-BFGS-B", bounds=[(-9.0, 4.0)] * 4)
+    return np.exp(found.x)

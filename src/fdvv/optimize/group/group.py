@@ -1,0 +1,147 @@
+"""Runs of several people side by side: the button that is best for all of them, and each person's own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fdvv.errors import InputError
+from fdvv.model.model import FDVVModel
+from fdvv.optimize.engines.gp_model import finished, score_table
+from fdvv.optimize.group.belief import GroupBelief, GroupScores, believe_group
+from fdvv.optimize.problem import Trial
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import OptimizeSetup, designer_of
+from fdvv.optimize.run.verdict import Retest
+from fdvv.optimize.space import Design, DesignSpace
+
+GROUP = "group"
+
+
+@dataclass(frozen=True)
+class PersonalRun:
+    """What one person's run came to.
+
+    Attributes
+    ----------
+    name : the person's, that of the run's folder. setup, space : of the run.
+    trials : scored in the search. own : the design that is recommended to this person.
+    played : presses that the person has made, those of the end too.
+    """
+
+    name: str
+    setup: OptimizeSetup
+    space: DesignSpace
+    trials: tuple[Trial, ...]
+    own: dict[str, float]
+    played: int
+
+
+@dataclass(frozen=True, eq=False)
+class Group:
+    """Several people, the button for all of them and each person's own.
+
+    Attributes
+    ----------
+    runs : one per person. design : best for all on average, by what is believed of each of them.
+    believed : (people,) by how much each person's own is expected to be better than it, in the objective's
+        unit. sd : (people,) of these. gain : their mean, see `believed_gain`.
+    """
+
+    runs: tuple[PersonalRun, ...]
+    design: dict[str, float]
+    believed: tuple[float, ...]
+    sd: tuple[float, ...]
+    gain: Retest
+
+    @property
+    def simulated(self) -> bool:
+        """Whether all are simulated, so that they can press again at once."""
+        return all(run.setup.simulated for run in self.runs)
+
+    def model(self, design: Design, name: str = GROUP) -> FDVVModel:
+        """Return the button that a design is. InputError where designs are another program's numbers."""
+        return designer_of(self.runs[0].setup.space)(design).renamed(name)
+
+
+def read_personal_run(folder: Path) -> PersonalRun:
+    """Read a run. InputError where it is not over, compares designs or has several objectives."""
+    with Optimization.open(folder) as session:
+        own = session.recommended() if session.searched else None
+        if session.setup.preference or len(session.problem.objectives) > 1:
+            raise InputError(
+                folder, "run", "has no single score", "use runs that are scored in one objective"
+            )
+        if own is None:
+            raise InputError(
+                folder, "run", "is not over", "go on with it: fdvv optimize resume, or the studio"
+            )
+        played = session.setup.presses * (len(session.trials) + len(session.retests))
+        done = tuple(finished(session.problem, session.trials))
+        return PersonalRun(folder.resolve().name, session.setup, session.space, done, own, played)
+
+
+def read_personal_runs(folders: Sequence[Path]) -> tuple[PersonalRun, ...]:
+    """Read the runs of several people, one each. InputError where they cannot be compared."""
+    if len({folder.resolve() for folder in folders}) < max(2, len(folders)):
+        raise InputError(
+            "runs", "people", "are fewer than two, or one comes twice", "name a folder per person"
+        )
+    runs = tuple(read_personal_run(folder) for folder in folders)
+    for folder, run in zip(folders[1:], runs[1:], strict=True):
+        if different := _differs(runs[0], run):
+            remedy = "use runs of one space, task and objective"
+            raise InputError(folder, different, f"differs from that of {folders[0]}", remedy)
+    people = [run.setup.about.get("player") for run in runs]
+    for number, person in enumerate(people):
+        if person is not None and person in people[:number]:
+            other = folders[people.index(person)]
+            raise InputError(folders[number], "person", f"is the same as that of {other}", "leave one out")
+    return runs
+
+
+def _differs(one: PersonalRun, other: PersonalRun) -> str:
+    """Return what keeps two runs from being compared; empty if nothing does."""
+    if (one.space.parameters, one.setup.space) != (other.space.parameters, other.setup.space):
+        return "space"
+    first, second = ((run.setup.task, run.setup.level, run.setup.presses) for run in (one, other))
+    if first != second:
+        return "task"
+    return "" if one.setup.objectives == other.setup.objectives else "objective"
+
+
+def group_of(runs: Sequence[PersonalRun]) -> Group:
+    """Find the tried design that is best for all on average, and what each person's own gains over it.
+
+    Raises BuildError without scikit-learn.
+    """
+    space, objective = runs[0].space, runs[0].setup.objectives[0]
+    values, errors = score_table([objective], [trial for run in runs for trial in run.trials])
+    tried = [trial.design for run in runs for trial in run.trials]
+    people = np.repeat(np.arange(len(runs)), [len(run.trials) for run in runs])
+    scores = GroupScores(people, space.to_unit(tried), values[:, 0], errors[:, 0].copy())
+    belief = believe_group(scores, space.length)
+    best = tried[int(np.argmin(belief.means(scores.places).mean(axis=0)))]
+    return _group(tuple(runs), dict(best), belief)
+
+
+def _group(runs: tuple[PersonalRun, ...], design: dict[str, float], belief: GroupBelief) -> Group:
+    space = runs[0].space
+    everybody = space.to_unit([design] * len(runs))
+    own = space.to_unit([run.own for run in runs])
+    mean, covariance = belief.differences(everybody, own)
+    sd = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    gain = believed_gain(float(mean.mean()), float(np.sqrt(max(0.0, covariance.mean()))), len(runs))
+    return Group(runs, design, tuple(mean.tolist()), tuple(sd.tolist()), gain)
+
+
+def believed_gain(mean: float, sd: float, people: int) -> Retest:
+    """Return a gain that is believed of people, a normal distribution, with its 95 % interval and chance."""
+    from scipy.stats import norm
+
+    half = float(norm.ppf(0.975)) * sd
+    chance = float(norm.cdf(mean / sd)) if sd > 0 else float(np.heaviside(mean, 0.5))
+    return Retest(people, mean, mean - half, mean + half, chance)

@@ -1,0 +1,106 @@
+"""What several people share, and how each departs from it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fdvv.errors import ModelError
+from fdvv.optimize.group.belief import GroupBelief, GroupScores, believe_group
+from fdvv.units import FloatArray
+
+PEOPLE, EACH = 4, 30
+ERROR_ms = 1.0
+
+
+def scores(apart: float, seed: int = 0, offsets: FloatArray | None = None) -> GroupScores:
+    """Make bowls over two parameters: the lowest point of person p is apart from that of the others."""
+    random = np.random.default_rng(seed)
+    people = np.repeat(np.arange(PEOPLE), EACH)
+    places = random.random((people.size, 2))
+    low = 0.5 + apart * (people / (PEOPLE - 1) - 0.5)
+    values = 60.0 * ((places[:, 0] - low) ** 2 + (places[:, 1] - 0.5) ** 2)
+    values = values + ERROR_ms * random.standard_normal(people.size)
+    if offsets is not None:
+        values = values + offsets[people]
+    return GroupScores(people, places, values, np.full(people.size, ERROR_ms))
+
+
+def along(count: int = 41) -> FloatArray:
+    return np.column_stack([np.linspace(0, 1, count), np.full(count, 0.5)])
+
+
+def test_the_posterior_is_that_of_one_gaussian_over_scores_and_new_places() -> None:
+    belief = believe_group(scores(0.6))
+    new = np.random.default_rng(3).random((5, 2))
+    found = belief.means(new)
+    places = np.vstack([belief.scores.places, new])
+    for person in range(PEOPLE):
+        people = np.append(belief.scores.people, [person] * 5)
+        same = people[:, None] == people[None]
+        f = belief.kernel(places) * (belief.shared + belief.own * same)
+        n = belief.scores.people.size
+        K = f[:n, :n] + belief.level * same[:n, :n] + np.diag(belief.noise)
+        y = (belief.scores.values - belief.centre) / belief.scale
+        wanted = belief.centre + belief.scale * f[n:, :n] @ np.linalg.solve(K, y)
+        np.testing.assert_allclose(found[person], wanted, rtol=1e-7)
+
+
+def test_differences_are_those_of_the_means_with_a_covariance_of_their_own() -> None:
+    belief = believe_group(scores(0.6))
+    first, second = np.random.default_rng(4).random((2, PEOPLE, 2))
+    mean, covariance = belief.differences(first, second)
+    everybody = np.arange(PEOPLE)
+    wanted = belief.means(first)[everybody, everybody] - belief.means(second)[everybody, everybody]
+    np.testing.assert_allclose(mean, wanted, atol=1e-9)
+    np.testing.assert_allclose(covariance, covariance.T, atol=1e-9)
+    assert np.linalg.eigvalsh(covariance).min() > -1e-9
+    # a design against itself: no difference, and no doubt
+    mean, covariance = belief.differences(first, first)
+    np.testing.assert_allclose([mean, np.diag(covariance)], 0.0, atol=1e-9)
+
+
+def lowest(belief: GroupBelief) -> FloatArray:
+    """Return where along the first parameter each person's scores are lowest."""
+    return np.asarray(along()[np.argmin(belief.means(along()), axis=1), 0])
+
+
+def test_people_who_differ_have_a_lowest_place_each_and_those_who_are_alike_one() -> None:
+    apart, alike = believe_group(scores(0.6)), believe_group(scores(0.0))
+    np.testing.assert_allclose(lowest(apart), [0.2, 0.4, 0.6, 0.8], atol=0.1)
+    np.testing.assert_allclose(lowest(alike), 0.5, atol=0.08)
+    assert alike.own < 0.1 * alike.shared < apart.own
+
+
+def test_how_well_somebody_does_altogether_changes_nothing_of_which_design_is_better() -> None:
+    offsets = np.array([0.0, 40.0, -30.0, 10.0])
+    plain, moved = believe_group(scores(0.6)), believe_group(scores(0.6, offsets=offsets))
+    np.testing.assert_allclose(lowest(moved), lowest(plain), atol=0.05)
+    first, second = along(PEOPLE), along(PEOPLE)[::-1]
+    np.testing.assert_allclose(
+        moved.differences(first, second)[0], plain.differences(first, second)[0], atol=2.0
+    )
+
+
+def test_differences_lie_within_their_intervals_as_often_as_stated() -> None:
+    hit = []
+    for seed in range(40):
+        belief = believe_group(scores(0.5, seed))
+        first, second = np.random.default_rng([seed, 1]).random((2, PEOPLE, 2))
+        low = np.column_stack([0.5 + 0.5 * (np.arange(PEOPLE) / (PEOPLE - 1) - 0.5), np.full(PEOPLE, 0.5)])
+        truth = 60.0 * (((first - low) ** 2).sum(axis=1) - ((second - low) ** 2).sum(axis=1))
+        mean, covariance = belief.differences(first, second)
+        hit += (np.abs(mean - truth) < 1.96 * np.sqrt(np.diag(covariance))).tolist()
+    assert 0.88 <= np.mean(hit) <= 1.0
+
+
+def test_scores_without_errors_are_learned_from_too() -> None:
+    unknown = replace(scores(0.6), errors=np.full(PEOPLE * EACH, np.nan))
+    np.testing.assert_allclose(lowest(believe_group(unknown)), [0.2, 0.4, 0.6, 0.8], atol=0.1)
+
+
+def test_one_person_is_no_group() -> None:
+    with pytest.raises(ModelError, match="two people"):
+        replace(scores(0.6), people=np.zeros(PEOPLE * EACH, dtype=np.int64))
