@@ -3,7 +3,8 @@
 A score of person p at place x is y = b_p + f(x) + g_p(x) + noise. f is shared by all, g_p belongs to p alone,
 and b_p is how well p does altogether. f and g_p have one Matern-5/2 kernel with a length per parameter and
 variances of their own. This is a hierarchical process (Hensman, Lawrence and Rattray, BMC Bioinformatics 14,
-252, 2013), with compound symmetry between people.
+252, 2013), with compound symmetry between people. Where all scores are above 0, y is their logarithm: a few
+presses that miss make a score several times as large, and would hide what differs between all others.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from fdvv.units import FloatArray
 PRIORS = ((0.0, 1.0), (-0.5, 1.0), (0.0, 1.0), (-4.0, 1.0))
 """Mean and SD of the log variances of f, g, b and of noise beyond the known errors, parts of the scores' own
 variance within a person."""
+DRAWS = 4000
 FITTED = 200
 """Scores that lengths are fitted to; of more, as many spread evenly."""
 
@@ -58,11 +60,13 @@ class GroupBelief:
 
     Attributes
     ----------
-    scores : learned from. kernel : of scikit-learn, of variance 1. noise : (n,) variances, standardised.
-    shared, own, level : variances of f, g and b, standardised. centre, scale : that standardised the scores.
+    scores : learned from; logarithmic : by their logarithms. kernel : of scikit-learn, of variance 1.
+    noise : (n,) variances, standardised. shared, own, level : variances of f, g and b, standardised.
+    centre, scale : that standardised the scores, or their logarithms.
     """
 
     scores: GroupScores
+    logarithmic: bool
     kernel: Any
     noise: FloatArray
     shared: float
@@ -80,39 +84,47 @@ class GroupBelief:
         lower: tuple[FloatArray, bool] = cho_factor(parts + np.diag(self.noise), lower=True)
         return lower
 
+    @cached_property
+    def _solved(self) -> FloatArray:
+        from scipy.linalg import cho_solve
+
+        values = np.log(self.scores.values) if self.logarithmic else self.scores.values
+        return np.asarray(cho_solve(self._factor, (values - self.centre) / self.scale))
+
     def _between(self, places: FloatArray, people: npt.NDArray[np.int64]) -> FloatArray:
         """Return the covariance of f + g_p, (n, m), between the scores and m places of people."""
         cross = self.kernel(self.scores.places, places)
         return np.asarray(cross * (self.shared + self.own * _same(self.scores.people, people)))
 
+    def _score(self, standardised: FloatArray) -> FloatArray:
+        values = self.centre + self.scale * standardised
+        return np.exp(values) if self.logarithmic else values
+
     def means(self, places: FloatArray) -> FloatArray:
-        """Return what each person is expected to score at places (m, d), (people, m)."""
-        from scipy.linalg import cho_solve
+        """Return the score that each person is as likely to exceed as not at places (m, d), (people, m)."""
+        everybody = range(self.scores.count)
+        rows = [self._between(places, np.full(len(places), one)).T @ self._solved for one in everybody]
+        return self._score(np.array(rows))
 
-        alpha = cho_solve(self._factor, (self.scores.values - self.centre) / self.scale)
-        rows = [
-            self._between(places, np.full(len(places), person)).T @ alpha
-            for person in range(self.scores.count)
-        ]
-        return np.asarray(self.centre + self.scale * np.array(rows))
-
-    def differences(self, first: FloatArray, second: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return by how much each person scores more at the first place than at the second.
+    def differences(self, first: FloatArray, second: FloatArray) -> FloatArray:
+        """Draw by how much each person scores more at the first place than at the second.
 
         first, second : (people, d), a place for each person.
 
-        Returns the means (people,) and their covariance (people, people).
+        Returns DRAWS draws of the posterior, (DRAWS, people), the same for the same places.
         """
         from scipy.linalg import cho_solve
 
-        everybody = np.arange(self.scores.count)
-        cross = self._between(first, everybody) - self._between(second, everybody)
-        mean = self.scale * cross.T @ cho_solve(self._factor, (self.scores.values - self.centre) / self.scale)
-        k = self.kernel
-        prior = k(first) - k(first, second) - k(second, first) + k(second)
-        prior = prior * (self.shared + self.own * np.eye(self.scores.count))
+        people = np.tile(np.arange(self.scores.count), 2)
+        places = np.vstack([first, second])
+        cross = self._between(places, people)
+        prior = self.kernel(places) * (self.shared + self.own * _same(people, people))
         covariance = prior - cross.T @ cho_solve(self._factor, cross)
-        return mean, np.asarray(self.scale**2 * covariance)
+        drawn = np.random.default_rng(0).multivariate_normal(
+            cross.T @ self._solved, covariance, DRAWS, method="eigh"
+        )
+        score = self._score(drawn)
+        return np.asarray(score[:, : self.scores.count] - score[:, self.scores.count :])
 
 
 def believe_group(scores: GroupScores, length: float = LENGTH) -> GroupBelief:
@@ -120,16 +132,17 @@ def believe_group(scores: GroupScores, length: float = LENGTH) -> GroupBelief:
 
     length : over which a score is expected to change, see `DesignSpace`.
     """
-    people, count = scores.people, np.bincount(scores.people)
-    own = scores.values - (np.bincount(people, scores.values) / count)[people]
-    centre, scale = float(scores.values.mean()), float(own.std()) or 1.0
-    few = np.unique(np.linspace(0, own.size - 1, min(FITTED, own.size)).astype(np.int64))
-    alike = believe(Observed(scores.places, own, scores.errors), few=few, length=length)
-    errors = np.nan_to_num(pooled(scores.errors) / scale) ** 2
-    matern = alike.kernel.k2
-    variances = _variances(matern(scores.places), people, (scores.values - centre) / scale, errors)
-    shared, personal, level, white = variances.tolist()
-    return GroupBelief(scores, matern, errors + white, shared, personal, level, centre, scale)
+    people, logarithmic = scores.people, bool((scores.values > 0).all())
+    values = np.log(scores.values) if logarithmic else scores.values
+    errors = scores.errors / scores.values if logarithmic else scores.errors
+    apart = values - (np.bincount(people, values) / np.bincount(people))[people]
+    centre, scale = float(values.mean()), float(apart.std()) or 1.0
+    few = np.unique(np.linspace(0, values.size - 1, min(FITTED, values.size)).astype(np.int64))
+    matern = believe(Observed(scores.places, apart, errors), few=few, length=length).kernel.k2
+    known = np.nan_to_num(pooled(errors) / scale) ** 2
+    variances = _variances(matern(scores.places), people, (values - centre) / scale, known)
+    shared, own, level, white = variances.tolist()
+    return GroupBelief(scores, logarithmic, matern, known + white, shared, own, level, centre, scale)
 
 
 def _same(some: npt.NDArray[np.int64], others: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:

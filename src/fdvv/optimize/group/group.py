@@ -17,6 +17,7 @@ from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup, designer_of
 from fdvv.optimize.run.verdict import Retest
 from fdvv.optimize.space import Design, DesignSpace
+from fdvv.units import FloatArray
 
 GROUP = "group"
 
@@ -132,16 +133,17 @@ def _group(runs: tuple[PersonalRun, ...], design: dict[str, float], belief: Grou
     space = runs[0].space
     everybody = space.to_unit([design] * len(runs))
     own = space.to_unit([run.own for run in runs])
-    mean, covariance = belief.differences(everybody, own)
-    sd = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    gain = believed_gain(float(mean.mean()), float(np.sqrt(max(0.0, covariance.mean()))), len(runs))
-    return Group(runs, design, tuple(mean.tolist()), tuple(sd.tolist()), gain)
+    drawn = belief.differences(everybody, own)
+    believed, sd = drawn.mean(axis=0), drawn.std(axis=0)
+    return Group(runs, design, tuple(believed.tolist()), tuple(sd.tolist()), believed_gain(drawn))
 
 
-def believed_gain(mean: float, sd: float, people: int) -> Retest:
-    """Return a gain that is believed of people, a normal distribution, with its 95 % interval and chance."""
-    from scipy.stats import norm
+def believed_gain(drawn: FloatArray) -> Retest:
+    """Return the mean gain of people that draws (n, people) of their posterior let expect.
 
-    half = float(norm.ppf(0.975)) * sd
-    chance = float(norm.cdf(mean / sd)) if sd > 0 else float(np.heaviside(mean, 0.5))
-    return Retest(people, mean, mean - half, mean + half, chance)
+    Its interval holds 95 % of the draws; the chance is the share of those above 0.
+    """
+    means = drawn.mean(axis=1)
+    low, high = np.percentile(means, [2.5, 97.5])
+    chance = float(np.mean(means > 0) + 0.5 * np.mean(means == 0))
+    return Retest(drawn.shape[1], float(means.mean()), float(low), float(high), chance)
