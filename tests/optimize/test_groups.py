@@ -10,7 +10,7 @@ import pytest
 from fdvv.errors import InputError
 from fdvv.model.file import load_builtin
 from fdvv.optimize.paper_space import paper_design_like, paper_model
-from fdvv.optimize.people.groups import DIVERSE, GROUPS, group_named
+from fdvv.optimize.people.groups import DIVERSE, GROUPS, TAPPERS, group_named
 from fdvv.optimize.people.press_simulator import PressSimulator
 from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.people.user import SimulatedUser, UserSettings, draw_user, draw_users
@@ -38,6 +38,12 @@ def test_the_groups_have_names_and_others_are_refused() -> None:
     assert set(GROUPS) == {"paper", "diverse"}
     with pytest.raises(InputError, match="use one of paper, diverse"):
         group_named("everybody")
+
+
+def test_tappers_are_the_paper_s_people_with_a_limit() -> None:
+    tappers = draw_users(40, 3, TAPPERS)
+    assert [replace(one, strokes_Hz=0.0) for one in tappers] == list(draw_users(40, 3))
+    assert all(5.0 < one.strokes_Hz < 7.1 for one in tappers)
 
 
 def test_a_population_is_drawn_of_its_group_and_tries_only_buttons_if_asked_to() -> None:

@@ -8,13 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.errors import InputError
+from fdvv.errors import InputError, ModelError
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.people.press_simulator import PressSimulator, refusal_of
 from fdvv.optimize.people.simulate import score_design, simulate_task
 from fdvv.optimize.people.user import SimulatedUser
+from fdvv.program.library import load_shipped
+from fdvv.program.surface import flat as flat_surface
 from fdvv.task.accuracy import Accuracy
 from fdvv.task.pointing import LOST_ms, TemporalPointing
 from fdvv.task.tapping import RapidTapping
@@ -148,6 +150,50 @@ def test_taps_follow_each_other_on_one_clock() -> None:
     keys = [key for press in presses for key in press.activations_s]
     assert len(keys) > 15
     assert (np.diff(keys) > 0.05).all()
+
+
+def test_a_program_of_the_button_is_tapped_as_its_model_is() -> None:
+    """The program `button` is the MX Red with weak forces raised; below its key they are the model's."""
+    taps = [
+        np.concatenate([press.activations_s for press in simulate_task(RapidTapping(), button, STILL, 3)])
+        for button in (load_shipped("button"), load_builtin("mx-red"))
+    ]
+    assert taps[0] == pytest.approx(taps[1], abs=2e-3)
+
+
+def test_fast_tapping_is_tapped_faster_than_its_base_by_the_same_hand() -> None:
+    fast, base = (
+        score_design(RapidTapping(), button, SimulatedUser(), 0)["rate_Hz"].value
+        for button in (load_shipped("fast-tapping"), load_builtin("mx-red"))
+    )
+    assert fast > 1.2 * base
+
+
+def test_no_more_strokes_are_made_than_a_finger_can() -> None:
+    """Of strokes, not keys: each round is one, and the last key's round tells how long they took."""
+    task, slow = RapidTapping(60), replace(SimulatedUser(), strokes_Hz=4.0)
+    rounds = simulate_task(task, load_shipped("rapid-trigger"), slow, 0)
+    keys = [press.activations_s[0] for press in rounds]
+    assert (len(keys) - 1) / (keys[-1] - keys[0]) == pytest.approx(4.0, rel=0.05)
+
+
+def test_a_limit_that_nobody_reaches_changes_no_tap() -> None:
+    alone = simulate_task(RapidTapping(), BROWN, SimulatedUser(), 0)
+    assert simulate_task(RapidTapping(), BROWN, replace(SimulatedUser(), strokes_Hz=1e3), 0) == alone
+
+
+def test_programs_are_tapped_and_nothing_else() -> None:
+    with pytest.raises(ModelError, match="only tap programs"):
+        simulate_task(EASY, load_shipped("fast-tapping"), SimulatedUser(), 0)
+
+
+def test_a_program_that_is_refused_is_not_tapped() -> None:
+    button = load_shipped("button")
+    sticks = replace(button, surfaces=tuple(flat_surface(one.name, -20.0) for one in button.surfaces))
+    assert "may not lift the cap" in refusal_of(sticks)
+    assert all(
+        press.activations_s == () for press in simulate_task(RapidTapping(), sticks, SimulatedUser(), 0)
+    )
 
 
 def test_a_twitching_finger_triggers_a_light_key_more_often_than_a_heavy_one() -> None:

@@ -43,18 +43,14 @@ def test_a_whole_study_of_simulated_people_ends_in_a_report(tmp_path: Path) -> N
         simulate_timing(study, 4)
 
 
-def test_simulated_people_tap_at_a_rate_that_fingers_have(tmp_path: Path) -> None:
-    buttons = TAPPING.replace('kind = "program"', 'kind = "button"').replace("fast-tapping", "mx-clear")
-    study = frozen(tmp_path / "study", buttons)
-    simulate_timing(study, 1, seed=4)
-    rows = unseal_timing(study, PASSPHRASE, "me", "a test").rows
-    assert len(rows) == 2
-    assert all(2 < row.score < 12 for row in rows)
-
-
-def test_programs_are_left_to_people(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="one force surface"):
-        simulate_timing(frozen(tmp_path / "study", TAPPING), 1)
+def test_simulated_people_tap_buttons_and_programs_at_rates_that_fingers_have(tmp_path: Path) -> None:
+    study = frozen(tmp_path / "study", TAPPING)
+    simulate_timing(study, 2, seed=4)
+    scores = unseal_timing(study, PASSPHRASE, "me", "a test")
+    assert scores.simulated
+    assert sorted({row.condition for row in scores.rows}) == ["fast", "red"]
+    assert all(row.counts and 3 < row.score < 12 for row in scores.rows)
+    assert study.verify(passphrase=PASSPHRASE) == ()
 
 
 def test_taps_are_kept_by_seconds_from_the_first() -> None:

@@ -39,6 +39,9 @@ DIVERSE = UserSettings(
 )
 """People whose best buttons differ: early and late, quick and slow, each relies on a cue of their own."""
 
+TAPPERS = UserSettings(SimulatedUser(strokes_Hz=6.0), {**SPREADS, "strokes_Hz": 0.08})
+"""The paper's people with the limit of a finger that taps: 5.1 to 7.0 strokes a second."""
+
 PAPER_GROUP = "paper"
 GROUPS: Mapping[str, UserSettings] = MappingProxyType({PAPER_GROUP: UserSettings(), "diverse": DIVERSE})
 """By name: `paper` reproduces the means of CHI 2020, where everybody presses late."""

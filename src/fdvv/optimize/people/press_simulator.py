@@ -1,4 +1,4 @@
-"""A design under a simulated finger on the twin, settled once and pressed often. Simulated."""
+"""A button or program under a simulated finger on the twin, settled once and pressed often. Simulated."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.people.user import SimulatedUser
 from fdvv.program.button import compile_button
+from fdvv.program.check import require_accepted
+from fdvv.program.compile import compile_program
+from fdvv.program.program import Program
 from fdvv.protocol.tables import Settings
 from fdvv.twin.files import load_rig
 from fdvv.twin.finger import Finger, Impedance, PressVariability
@@ -51,17 +54,21 @@ class PressTrace:
 
 
 @lru_cache(maxsize=512)
-def _compiled(model: FDVVModel, rig_name: str) -> bytes:
-    if not model.of(Stroke.PRESS):
-        raise InputError(model.name, "curves", "it has no press to feel", "merge one into it")
-    return compile_button(model, limits=rig_limits(known_rig(rig_name)[0])).image
+def _compiled(button: FDVVModel | Program, rig_name: str) -> bytes:
+    limits = rig_limits(known_rig(rig_name)[0])
+    if isinstance(button, Program):
+        require_accepted(button)
+        return compile_program(button, limits).image
+    if not button.of(Stroke.PRESS):
+        raise InputError(button.name, "curves", "it has no press to feel", "merge one into it")
+    return compile_button(button, limits=limits).image
 
 
-def refusal_of(model: FDVVModel, rig_name: str = "ideal") -> str:
+def refusal_of(button: FDVVModel | Program, rig_name: str = "ideal") -> str:
     """Return why the firmware of a rig cannot hold a design, else "". Raises InputError on an unknown rig."""
     known_rig(rig_name)
     try:
-        PressSimulator(model, SimulatedUser(), rig_name)
+        PressSimulator(button, SimulatedUser(), rig_name)
     except (InputError, ModelError) as error:
         return str(error)
     return ""
@@ -95,21 +102,30 @@ def _finger(user: SimulatedUser) -> Finger:
 
 
 class PressSimulator:
-    """A design under one person's finger. The same draws give the same presses.
+    """A design, or a program, under one person's finger. The same draws give the same presses.
 
     Attributes
     ----------
-    model, rig, user, finger : what is pressed, on what, by whom. tick_s : of the controller.
+    button, rig, user, finger : what is pressed, on what, by whom. travel_mm : of the button. tick_s : of the
+        controller.
 
     Raises InputError if the rig's firmware cannot hold the design or there is no such rig.
     """
 
-    def __init__(self, model: FDVVModel, user: SimulatedUser, rig_name: str = "ideal") -> None:
-        self.model, self.user, self.finger = model, user, _finger(user)
+    def __init__(self, button: FDVVModel | Program, user: SimulatedUser, rig_name: str = "ideal") -> None:
+        self.button, self.user, self.finger = button, user, _finger(user)
+        self.travel_mm = button.travel_mm
         self.rig, settings = known_rig(rig_name)
         self.tick_s = self.rig.controller.tick_s
         self._pool = _pool(rig_name)
-        self._settled = self._settle(_compiled(model, rig_name), settings)
+        self._settled = self._settle(_compiled(button, rig_name), settings)
+
+    @property
+    def model(self) -> FDVVModel:
+        """Return the model whose force is felt. ModelError of a program, which has more than one."""
+        if isinstance(self.button, Program):
+            raise ModelError(f"the program {self.button.name} has no one force to feel")
+        return self.button
 
     def press(
         self, random: np.random.Generator, push_ratio: float = 1.0, pace_ratio: float = 1.0
@@ -149,12 +165,12 @@ class PressSimulator:
         rest, push, pace, stiff = np.clip(random.standard_normal(4), -3, 3).tolist()
         stiffness = user.stiffness_N_m * max(0.1, 1 + user.stiffness_spread_ratio * stiff)
         pushed_cN = user.push_cN * push_ratio * max(0.1, 1 + user.push_spread_ratio * push)
-        travel_m = m_from_mm(self.model.travel_mm)
+        travel_m = m_from_mm(self.travel_mm)
         end_m = travel_m + depth_m(self.finger, N_from_cN(pushed_cN), stiffness)
         pace_mm_s = user.pace_mm_s * pace_ratio * max(0.1, 1 + user.pace_spread_ratio * pace)
         # of the person's usual push: who pushes harder goes deeper in the same time
         usual_mm = self._usual_mm(stiffness)
-        longer = (usual_mm + self.model.travel_mm - KEY_mm) / usual_mm
+        longer = (usual_mm + self.travel_mm - KEY_mm) / usual_mm
         press_s = max(SHORTEST_s, usual_mm / pace_mm_s * longer ** (1 - user.isochrony_ratio))
         return self._gesture(user.rest_cN + user.rest_spread_cN * rest, end_m, press_s, stiffness)
 
@@ -180,7 +196,7 @@ class PressSimulator:
 
     def _until_stop(self, rig: InteractiveRig, count: int, first: int) -> InteractiveTicks:
         """Advance by count ticks, or fewer once the cap was at the stop and the key is down."""
-        parts, done, travel_mm = [rig.advance(first)], first, self.model.travel_mm
+        parts, done, travel_mm = [rig.advance(first)], first, self.travel_mm
         while done < count and not (parts[-1].displacement_mm.max() >= travel_mm and parts[-1].key[-1]):
             parts.append(rig.advance(min(self.ticks_in(PIECE_s), count - done)))
             done += parts[-1].t_s.size

@@ -13,6 +13,7 @@ from fdvv.model.model import FDVVModel
 from fdvv.optimize.people.percept import Percept, bottom_at, percept_of, tactile_events
 from fdvv.optimize.people.press_simulator import PressSimulator, PressTrace, known_rig
 from fdvv.optimize.people.user import SimulatedUser, aim_s, spread_factor, timing_spread_s, tiredness
+from fdvv.program.program import Program
 from fdvv.task.accuracy import Accuracy
 from fdvv.task.pointing import TemporalPointing
 from fdvv.task.score import Score
@@ -71,7 +72,7 @@ class Hand:
 
     def _learn(self, press: PressTrace) -> bool:
         """Push harder from now on if the press did not reach the stop; return whether so."""
-        weak = bottom_at(press, self._bench.model.travel_mm) is None
+        weak = bottom_at(press, self._bench.travel_mm) is None
         if weak:
             self.push_ratio = min(HARDEST, self._bench.user.harder_ratio * self.push_ratio)
         return weak
@@ -82,7 +83,7 @@ class Hand:
         return percept_of(bench.user, events, float(press.t_s[-1]))
 
     def _effort_N_s(self, press: PressTrace, start: int) -> float:
-        end = bottom_at(press, self._bench.model.travel_mm)
+        end = bottom_at(press, self._bench.travel_mm)
         tick_s = float(press.t_s[1] - press.t_s[0])
         return float(np.sum(press.ticks.force_cN[start:end])) * 0.01 * tick_s
 
@@ -113,18 +114,20 @@ def tap(
     """Tap on one rig without a break, as shallowly as the key lets one.
 
     A cap that has not come up is pressed from where it is. A shorter stroke is made at the same speed, so
-    that it takes less time.
+    that it takes less time; who has a limit of strokes a second waits for the rest of the cycle.
     """
     user, push = bench.user, Hand(bench, random).push_ratio
+    shortest_s = 1 / user.strokes_Hz if user.strokes_Hz else 0.0
     rig, start_s, reach = bench.settled(random, 1), 0.0, 1.0
     for number in range(task.rounds):
         strength = max(0.1, 1.0 - tiredness(user, before + number))
         whole = bench.draw(random, push * strength, strength)
         press_s, end_m = reach * whole.press_s, whole.start_m + reach * (whole.end_m - whole.start_m)
-        cycle_s = 2 * press_s + DWELL_s + PAUSE_s
+        pause_s = max(PAUSE_s, shortest_s - 2 * press_s - DWELL_s)
+        cycle_s = 2 * press_s + DWELL_s + pause_s
         clock, motor = random.standard_normal(2).tolist()
         late_s = user.clock_ratio * cycle_s * clock + 1e-3 * user.motor_ms * motor
-        onset_s = max(0.0, PAUSE_s + late_s)
+        onset_s = max(0.0, pause_s + late_s)
         gesture = replace(
             whole, end_m=end_m, onset_s=onset_s, press_s=press_s, dwell_s=DWELL_s, release_s=press_s
         )
@@ -171,7 +174,7 @@ def _twitch(bench: PressSimulator, random: np.random.Generator) -> tuple[float, 
 
 def simulate_task(
     task: Task,
-    model: FDVVModel,
+    button: FDVVModel | Program,
     user: SimulatedUser,
     seed: int,
     *,
@@ -180,6 +183,7 @@ def simulate_task(
 ) -> tuple[TaskPress, ...]:
     """Simulate a person who does a task on a button, press by press: same arguments, same presses.
 
+    button : of rapid tapping it may be a program.
     rig : name of a shipped rig (TASK_RIGS); on `ideal` the finger feels the model's own force.
     presses_before : made in this session before, for users who learn or tire.
 
@@ -189,9 +193,11 @@ def simulate_task(
     """
     if not isinstance(task, TemporalPointing | RapidTapping | Accuracy):
         raise ModelError(f"simulated people cannot play {task.name}")
+    if isinstance(button, Program) and not isinstance(task, RapidTapping):
+        raise ModelError(f"simulated people only tap programs, they cannot play {task.name} on {button.name}")
     known_rig(rig)
     try:
-        bench = PressSimulator(model, user, rig)
+        bench = PressSimulator(button, user, rig)
     except (InputError, ModelError):
         return unplayed(task)
     play: Any = {TemporalPointing: point, RapidTapping: tap, Accuracy: go_or_hold}[type(task)]
@@ -200,7 +206,7 @@ def simulate_task(
 
 def score_design(
     task: Task,
-    model: FDVVModel,
+    button: FDVVModel | Program,
     user: SimulatedUser,
     seed: int,
     *,
@@ -208,7 +214,7 @@ def score_design(
     presses_before: int = 0,
 ) -> dict[str, Score]:
     """Score a design as simulate_task plays it."""
-    return task.scores(simulate_task(task, model, user, seed, rig=rig, presses_before=presses_before))
+    return task.scores(simulate_task(task, button, user, seed, rig=rig, presses_before=presses_before))
 
 
 def point(

@@ -20,6 +20,7 @@ AT_LEAST_0 = (
     "effort_noise_ratio",
     "learning_ratio",
     "fatigue_ratio",
+    "strokes_Hz",
 )
 FREE = ("bias_ms", "anticipated_ms", "rest_cN")
 RATIOS = (
@@ -61,6 +62,7 @@ class SimulatedUser:
     pace_spread_ratio, push_spread_ratio, stiffness_spread_ratio : from press to press.
     learning_ratio, learning_presses : extra spread of timing at first, and presses in which it falls to 1/e.
     fatigue_ratio : of spread added, and of force and pace lost, per thousand presses.
+    strokes_Hz : most strokes a second, down and up, of rapid tapping; 0: as many as pace and length allow.
 
     ModelError on anything impossible.
     """
@@ -97,6 +99,7 @@ class SimulatedUser:
     learning_ratio: float = 0.0
     learning_presses: float = 60.0
     fatigue_ratio: float = 0.0
+    strokes_Hz: float = 0.0
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
@@ -137,6 +140,7 @@ DIFFERENT = (
     "learning_ratio",
     "fatigue_ratio",
     "block_ms",
+    "strokes_Hz",
 )
 """What people may differ in; new names go to the end, for a person's draws come in this order."""
 

@@ -7,14 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fdvv.errors import InputError, ModelError
-from fdvv.model.model import FDVVModel
+from fdvv.errors import ModelError
 from fdvv.optimize.experiment.setup import WeekGap, a_week_later
 from fdvv.optimize.people.press_simulator import refusal_of
 from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.people.user import SimulatedUser
 from fdvv.optimize.run.player import play_seed
-from fdvv.program.program import Program
 from fdvv.study.simulation.participant import filled_page
 from fdvv.task.rounds import ClockSource, RoundTiming
 from fdvv.task.tapping import RapidTapping
@@ -25,8 +23,8 @@ from fdvv.timing.session.participant import BegunTrial, TimingParticipant
 
 TIMING = RoundTiming(ClockSource.DEVICE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, "button")
 """Of simulated presses: target and key are on one clock, without any delay."""
-MOST_TAPS = 25
-"""Taps a second that are simulated; people make far fewer."""
+MOST_STROKES = 10
+"""Strokes a second that are simulated of tapping; people make fewer (TAPPERS)."""
 
 
 @dataclass
@@ -55,7 +53,7 @@ class SimulatedTimer:
         """Play a trial, or what is left of it, round by round."""
         begun = participant.begin(number, "simulated")
         button = begun.button or _on_the_table(participant, begun)
-        if isinstance(button, FDVVModel) and (refusal := refusal_of(button, self.rig)):
+        if refusal := refusal_of(button, self.rig):
             participant.fail(number, refusal)
             return begun
         for press in self._rounds(participant, begun, button)[begun.kept :]:
@@ -65,13 +63,10 @@ class SimulatedTimer:
     def _rounds(
         self, participant: TimingParticipant, begun: BegunTrial, button: Button
     ) -> Sequence[TaskPress]:
-        if isinstance(button, Program):
-            reason = "simulated people press buttons of one force surface only"
-            raise InputError("simulate", button.name, reason, "leave the program out, or ask people")
         plan, face = participant.study.plan, begun.face
         user = self.user if face.phase == "training" else self._later(participant)
         seed = play_seed(self.seed, user.number, face.number)
-        task = RapidTapping(MOST_TAPS * plan.tap_s) if plan.tapping else begun.task
+        task = RapidTapping(MOST_STROKES * plan.tap_s) if plan.tapping else begun.task
         before = face.number * plan.trial_rounds if face.phase == "training" else 0
         found = simulate_task(task, button, user, seed, rig=self.rig, presses_before=before)
         return seconds_of(found, plan.tap_s) if plan.tapping else found

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize.people.user import draw_user
+from fdvv.optimize.people.groups import TAPPERS
+from fdvv.optimize.people.user import SimulatedUser, UserSettings, draw_user
 from fdvv.study.simulation.sessions import PAGE_s, SimulatedClock
 from fdvv.timing.files.study import TimingStudy
 from fdvv.timing.plan.plan import DAY_s
@@ -59,7 +60,7 @@ def simulate_timing(
     they press; orders and codes are drawn as for people. rig : what renders buttons. progress : trials done
     and in all.
 
-    InputError on a study that is not frozen or has people in it, and on programs. On Ctrl-C who has not
+    InputError on a study that is not frozen or has people in it. On Ctrl-C who has not
     finished is withdrawn and deleted. OSError.
     """
     wanted = study.plan.people if people is None else people
@@ -68,9 +69,6 @@ def simulate_timing(
     if any(not person.simulated for person in study.people()):
         reason = "has people, and cannot have simulated ones beside them"
         raise InputError(study.folder, "study", reason, "declare another study for them")
-    if any(one.kind == "program" for one in study.plan.conditions):
-        reason = "simulated people press buttons of one force surface only"
-        raise InputError(study.folder, "conditions", reason, "simulate a study without programs")
     sessions: list[SimulatedTiming] = []
     missing = wanted - len(finished(study))
     for done in range(missing):
@@ -79,8 +77,13 @@ def simulate_timing(
             progress(round(100 * (done + part)), 100 * missing)
 
         number = len(study.people())
-        sessions.append(_session(study, SimulatedTimer(draw_user(number, seed), seed, rig), report))
+        sessions.append(_session(study, SimulatedTimer(_user(study, number, seed), seed, rig), report))
     return SimulatedTimingStudy(tuple(sessions), finished(study))
+
+
+def _user(study: TimingStudy, number: int, seed: int) -> SimulatedUser:
+    """Draw one person of a study, who of tapping has a finger's limit."""
+    return draw_user(number, seed, TAPPERS if study.plan.tapping else UserSettings())
 
 
 def finished(study: TimingStudy) -> tuple[str, ...]:
