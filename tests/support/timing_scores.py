@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import product
 
 import numpy as np
@@ -24,5 +25,5 @@ def made_scores(
     ):
         score = 85 + 10 * i - gain * (c == 0) + person[p] + slope[p, c] + 4 * random.standard_normal()
         place = f"P{p + 1:02d}", level, round_, c, len(rows), "K4", one.name
-        rows.append(ScoreRow(*place, "page", 1, 20, score, 4.0, 0.05, 7.0, "", simulated))
+        rows.append(ScoreRow(*place, "page", 1, 20, score, 4.0, 0.05, math.nan, 7.0, "", simulated))
     return TimingScores(plan, tuple(rows))

@@ -7,7 +7,7 @@ import pytest
 
 from fdvv.errors import ModelError
 from fdvv.task.accuracy import Accuracy
-from fdvv.task.tapping import RapidTapping
+from fdvv.task.tapping import RapidTapping, REPEAT_s, strokes_Hz
 from fdvv.task.task import Task, TaskPress
 
 
@@ -41,6 +41,19 @@ def test_one_who_never_gets_through_has_a_rate_of_nothing() -> None:
     assert (scores["rate_Hz"].value, scores["interval_spread_ratio"].value) == (0.0, 1.0)
     with pytest.raises(ModelError, match="no round"):
         RapidTapping().scores([])
+
+
+def test_strokes_are_the_presses_that_a_finger_can_make() -> None:
+    strokes = [TaskPress(None, (0.2 * i,)) for i in range(20)]
+    kicked = [TaskPress(None, (0.2 * i, 0.2 * i + 0.03, 0.2 * i + 0.06)) for i in range(20)]
+    assert strokes_Hz(strokes) == strokes_Hz(kicked) == pytest.approx(5.0)
+    assert RapidTapping().scores(kicked)["rate_Hz"].value == pytest.approx(59 / 3.86)
+
+
+def test_a_button_that_repeats_by_itself_counts_no_faster_than_the_bound() -> None:
+    itself = [TaskPress(None, tuple(0.025 * i for i in range(200)))]
+    assert strokes_Hz(itself) <= 1 / REPEAT_s
+    assert np.isnan(strokes_Hz([TaskPress(None, (0.0, 0.03, 0.2))]))
 
 
 def test_false_triggers_and_misses_are_counted_each_over_its_own_rounds() -> None:

@@ -13,7 +13,7 @@ from fdvv.timing.analysis import paper
 from fdvv.timing.analysis.analyse import analyse_timing, people_needed
 from fdvv.timing.analysis.report import timing_dict, timing_html
 from fdvv.timing.analysis.scores import TimingScores, read_scores, scores_text
-from fdvv.timing.analysis.sentences import next_sentence, verdict_sentence
+from fdvv.timing.analysis.sentences import next_sentence, strokes_sentence, verdict_sentence
 from fdvv.timing.files.study import TimingStudy
 from fdvv.timing.plan.plan import TimingClaim, TimingPlan
 from fdvv.timing.plan.plan_file import read_timing_plan, timing_template
@@ -136,3 +136,17 @@ def test_a_claimed_rate_is_reached_missed_or_open() -> None:
         found = analyse_timing(TimingScores(tapping(at_least), scores.rows))
         assert found.holds is False
         assert word in verdict_sentence(found)
+
+
+def test_keys_that_the_button_pressed_are_told_from_strokes(tmp_path: Path) -> None:
+    scores = made_scores(tapping(8.0), 5, -20.0)
+    assert strokes_sentence(analyse_timing(scores)) == ""
+    rows = tuple(
+        replace(row, strokes_Hz=row.score * (0.5 if row.condition == "MX Red" else 0.99))
+        for row in scores.rows
+    )
+    found = analyse_timing(TimingScores(scores.plan, rows))
+    mean = found.means[0].mean
+    assert strokes_sentence(found).endswith(f"The finger made {mean / 2:.2f} on MX Red a second.")
+    assert f"by {mean / 2:.2f} strokes of the finger, reaches the claimed 8" in verdict_sentence(found)
+    assert strokes_sentence(found) in timing_html(found, tmp_path, "a test")

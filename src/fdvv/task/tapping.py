@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,9 @@ from fdvv.errors import ModelError
 from fdvv.task.score import Objective, Score
 from fdvv.task.task import TaskPress
 
+REPEAT_s = 0.08
+"""A finger does not press again so soon: it makes 5 to 7 strokes a second (Repp 2005). A key that does was
+pressed by the button, which kicked, bounced or repeated (the bound is assumed)."""
 RATE, UNEVEN = Objective("rate_Hz", larger_is_better=True), Objective("interval_spread_ratio")
 
 
@@ -54,3 +58,15 @@ class RapidTapping:
             RATE.name: Score(rate, rate * ratio / float(np.sqrt(intervals.size))),
             UNEVEN.name: Score(ratio, ratio / float(np.sqrt(2 * intervals.size))),
         }
+
+
+def strokes_Hz(presses: Sequence[TaskPress]) -> float:
+    """Return the strokes a second of the finger, nan of fewer than three.
+
+    A press of the key within REPEAT_s of a stroke is none.
+    """
+    strokes: list[float] = []
+    for key_s in sorted(key for press in presses for key in press.activations_s):
+        if not strokes or key_s - strokes[-1] >= REPEAT_s:
+            strokes.append(key_s)
+    return (len(strokes) - 1) / (strokes[-1] - strokes[0]) if len(strokes) > 2 else math.nan

@@ -20,7 +20,7 @@ from fdvv.study.plan.plan_file import STUDY_FILE
 from fdvv.timing.analysis.analyse import TimingAnalysis, analyse_timing
 from fdvv.timing.analysis.report import capitalised, timing_dict, timing_html
 from fdvv.timing.analysis.scores import SCORES_FILE, TimingScores, read_scores
-from fdvv.timing.analysis.sentences import measure_of, next_sentence, verdict_sentence
+from fdvv.timing.analysis.sentences import measure_of, next_sentence, strokes_sentence, verdict_sentence
 from fdvv.timing.analysis.unseal import TRAINING_FILE
 from fdvv.timing.files.progress import DUE, TimingProgress, timing_progress
 from fdvv.timing.files.study import TimingStudy, button_problems
@@ -186,7 +186,12 @@ def _print(found: TimingAnalysis) -> None:
     ui.print_wrapped(f"{capitalised(verdict_sentence(found))} {next_sentence(found)}")
     columns = ["button", "level", f"{measure} ({unit})", "SD of people"]
     rows = [[one.condition, one.level, one.mean, one.people_sd] for one in found.means]
+    if plan.tapping:
+        columns.append(f"strokes ({unit})")
+        rows = [[*row, one.strokes_Hz] for row, one in zip(rows, found.means, strict=True)]
     ui.print_table(columns, rows, left=2, digits=dict.fromkeys(columns[2:], 2))
+    if strokes := strokes_sentence(found):
+        ui.print_wrapped(strokes)
     contrasts = [
         [one.rival, interval_text(one.mixed.value, 2), one.mixed.t, _p(one.holm_p), _p(one.flip_p)]
         for one in found.rivals

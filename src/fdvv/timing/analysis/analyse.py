@@ -32,6 +32,7 @@ class ConditionMean:
     ----------
     mean : over people, in the score's unit. people_sd : between people, rounds averaged first. rounds_sd :
         between all rounds, as the paper's STD may be. lost_ratio : share of presses lost; nan of tapping.
+    strokes_Hz : the finger's own strokes a second, mean over trials; nan but of tapping.
     people : with a score.
     """
 
@@ -41,6 +42,7 @@ class ConditionMean:
     people_sd: float
     rounds_sd: float
     lost_ratio: float
+    strokes_Hz: float
     people: int
 
 
@@ -195,6 +197,7 @@ def _mean(scores: TimingScores, condition: str, level: str) -> ConditionMean:
     people = sorted({row.person for row in rows})
     by_person = [np.mean([row.score for row in rows if row.person == name]) for name in people]
     lost = [row.lost_ratio for row in rows if math.isfinite(row.lost_ratio)]
+    strokes = [row.strokes_Hz for row in rows if math.isfinite(row.strokes_Hz)]
     values = [row.score for row in rows]
     return ConditionMean(
         condition,
@@ -203,6 +206,7 @@ def _mean(scores: TimingScores, condition: str, level: str) -> ConditionMean:
         float(np.std(by_person, ddof=1)) if len(people) > 1 else math.nan,
         float(np.std(values, ddof=1)) if len(values) > 1 else math.nan,
         float(np.mean(lost)) if lost else math.nan,
+        float(np.mean(strokes)) if strokes else math.nan,
         len(people),
     )
 

@@ -36,6 +36,7 @@ from fdvv.timing.analysis.sentences import (
     measure_of,
     next_sentence,
     rival_sentences,
+    strokes_sentence,
     verdict_sentence,
 )
 from fdvv.timing.analysis.unseal import TRAINING_FILE
@@ -142,7 +143,9 @@ def _results(found: TimingAnalysis) -> Section:
     svg = figure_svg(plot_score_bars(_bars(found), f"{measure} ({unit})", simulated=found.simulated), measure)
     note = "Error bars are 1 SD between people; a dot is a person. Marks compare with the first bar, Holm's."
     figures = (svg,) if len(found.scores.complete) > 1 else ()
-    return Section("Results", (*sentences, note, *found.notes), figures, _anova_tables(found))
+    strokes = strokes_sentence(found)
+    texts = *sentences, *((strokes,) if strokes else ()), note, *found.notes
+    return Section("Results", texts, figures, _anova_tables(found))
 
 
 def _bars(found: TimingAnalysis) -> list[ScoreBars]:

@@ -34,6 +34,7 @@ class ScoreRow:
     on : what was pressed, see `Surface`. attempts : how often it was begun. rounds : that count.
     score, error : what it scored first, and its standard error; nan where it was given up.
     lost_ratio : share of presses that missed or came too early; nan of tapping.
+    strokes_Hz : of tapping, the finger's own strokes a second, see `fdvv.task.tapping.strokes_Hz`; else nan.
     gap_days : since the end of the training; nan without one. excluded : why it does not count, or empty.
     simulated : a simulated participant pressed.
     """
@@ -51,6 +52,7 @@ class ScoreRow:
     score: float
     error: float
     lost_ratio: float
+    strokes_Hz: float
     gap_days: float
     excluded: str
     simulated: bool

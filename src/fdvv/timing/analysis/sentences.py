@@ -5,8 +5,12 @@ from __future__ import annotations
 import math
 
 from fdvv.report.prose import interval_text, listed, p_text
-from fdvv.timing.analysis.analyse import Rivalry, TimingAnalysis, better_of, people_needed
+from fdvv.task.tapping import REPEAT_s
+from fdvv.timing.analysis.analyse import ConditionMean, Rivalry, TimingAnalysis, better_of, people_needed
 from fdvv.timing.plan.plan import TimingPlan
+
+VISIBLE_ratio = 0.95
+"""Of the presses of a key: where fewer are strokes of the finger, sentences say so."""
 
 
 def measure_of(plan: TimingPlan) -> tuple[str, str]:
@@ -58,7 +62,25 @@ def _rate_part(found: TimingAnalysis) -> str:
         return ""
     word = {True: "reaches", False: "does not reach", None: "may or may not reach"}[rate.reached]
     value = interval_text(rate.rate_Hz, 2)
-    return f"; its rate, {value} taps a second, {word} the claimed {rate.at_least_Hz:g}"
+    own = [one for one in repeated(found) if one.condition == rate.condition]
+    strokes = f", by {own[0].strokes_Hz:.2f} strokes of the finger" if own else ""
+    return f"; its rate, {value} taps a second{strokes}, {word} the claimed {rate.at_least_Hz:g}"
+
+
+def repeated(found: TimingAnalysis) -> tuple[ConditionMean, ...]:
+    """Return the buttons of a tapping study that pressed their own key, visibly more than the finger did."""
+    return tuple(one for one in found.means if one.strokes_Hz < VISIBLE_ratio * one.mean)
+
+
+def strokes_sentence(found: TimingAnalysis) -> str:
+    """Return how many strokes the finger made where the key went down more often; empty where it did not."""
+    if not (own := repeated(found)):
+        return ""
+    strokes = listed([f"{one.strokes_Hz:.2f} on {one.condition}" for one in own])
+    return (
+        f"Not every press of a key is a stroke: those within {1e3 * REPEAT_s:.0f} ms of a stroke came from "
+        f"the button, which kicked or bounced. The finger made {strokes} a second."
+    )
 
 
 def next_sentence(found: TimingAnalysis) -> str:

@@ -16,6 +16,7 @@ from fdvv.study.files.chained_log import read_chained
 from fdvv.study.files.layout import PEOPLE, SCHEDULE_FILE, SESSION_FILE, UNSEALED
 from fdvv.study.files.people import Person, open_schedule, people_of
 from fdvv.study.files.seal import KeyHolder
+from fdvv.task.tapping import strokes_Hz
 from fdvv.timing.analysis.scores import SCORES_FILE, ScoreRow, TimingScores, scores_text
 from fdvv.timing.files.study import TimingStudy
 from fdvv.timing.plan.events import RoundKept, TimedBegun, timing_event
@@ -100,7 +101,7 @@ def _rows(one: UnsealedSession) -> Iterator[ScoreRow]:
         if face.number not in one.begun:
             continue
         score = state.scores.get(face.number, {})
-        first, lost = score.get(name), score.get("lost_ratio")
+        first, lost, counting = score.get(name), score.get("lost_ratio"), state.counting(face.number)
         begun = one.begun[face.number]
         given_up = "its button could not be rendered" if face.number in state.skipped else ""
         yield ScoreRow(
@@ -113,10 +114,11 @@ def _rows(one: UnsealedSession) -> Iterator[ScoreRow]:
             condition=one.conditions[face.number],
             on=begun.on,
             attempts=state.attempts[face.number],
-            rounds=len(state.counting(face.number)),
+            rounds=len(counting),
             score=first.value if first else math.nan,
             error=first.error if first and first.error is not None else math.nan,
             lost_ratio=lost.value if lost else math.nan,
+            strokes_Hz=strokes_Hz([one.press for one in counting]) if plan.tapping else math.nan,
             gap_days=math.nan if state.trained_s is None else (begun.at_s - state.trained_s) / DAY_s,
             excluded=CHANGED if one.suspect else given_up or ("" if first else "it was not finished"),
             simulated=one.person.simulated,
