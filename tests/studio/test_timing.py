@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from functools import partialmethod
 from typing import Any
 
+import numpy as np
 import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 
@@ -221,6 +222,44 @@ def test_of_a_switch_the_latency_counts_that_the_plan_states_and_of_a_key_that_o
             late_ms = 1e3 * (one["activations_s"][0] - one["target_s"])
             assert late_ms == pytest.approx(-100.0 - DISPLAY_ms - one["timing"]["input_ms"], abs=1e-6)
     assert study.verify() == ()
+
+
+@pytest.fixture
+def tapping(own_studio: Studio) -> TimingStudy:
+    """A frozen study of tapping on two programs; its sessions are open."""
+    plan = timing_text(tapping=True, pages=False).partition("[[conditions]]")[0]
+    for name in ("fast-tapping", "rapid-trigger"):
+        plan += f'[[conditions]]\nname = "{name}"\nkind = "program"\nbutton = "{name}"\n'
+    study = frozen_timing(own_studio.project, plan)
+    own_studio.part(Studies).open_sessions(NAME, PASSPHRASE, None)
+    return study
+
+
+def test_taps_on_the_twin_keep_the_hand_s_times_even_where_they_come_all_at_once(
+    tapping: TimingStudy, client: TestClient, ask: Callable[..., Any]
+) -> None:
+    with client.websocket_connect(LIVE) as socket:
+        screen = Screen(socket)
+        screen.sit(ask("studies.seat")["seat"])
+        assert screen.begin()["rounds"] == 3
+        taps_ms = 1e3 * time.monotonic() + 125.0 * np.arange(8)
+        for at_ms in taps_ms.tolist():
+            screen.say("down", at_ms=at_ms)
+            screen.say("up", at_ms=at_ms + 40.0)
+        time.sleep(2.5)  # until they were all made, on a busy machine too
+        for number, start_ms in enumerate(taps_ms[0] + 1e3 * np.arange(3), start=1):
+            over = screen_round(number) | {
+                "start_ms": start_ms,
+                "end_ms": start_ms + 999.9,
+                "target_ms": None,
+            }
+            screen.say("round", **over)
+            screen.hear("kept")
+    keys_s = np.concatenate([one["activations_s"] for one in recorded(tapping, "round")])
+    assert keys_s.size == taps_ms.size
+    delays_s = keys_s - 1e-3 * taps_ms
+    assert 0.003 < delays_s.min() < delays_s.max() < 0.03
+    assert np.ptp(delays_s[1:]) < 0.004
 
 
 def test_a_round_without_a_press_is_a_miss_and_is_kept(study: TimingStudy, screen: Screen) -> None:

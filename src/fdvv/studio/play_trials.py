@@ -13,6 +13,7 @@ from fdvv.device.open import open_device, pressed_by_person
 from fdvv.errors import DeviceError, InputError
 from fdvv.live.binary_finger import BinaryFinger
 from fdvv.live.device_key import DeviceKey
+from fdvv.live.hand_moves import HandMove, HandMoves
 from fdvv.live.press import LiveEventKind, LivePress, PressTimes
 from fdvv.live.press_subject import PressSubject
 from fdvv.live.run import LiveFrame, LiveRun
@@ -27,8 +28,6 @@ from fdvv.task.rounds import ClockSource, RoundTiming
 
 log = logging.getLogger("fdvv.studio")
 CLOCK = time.monotonic
-LONGEST_s = 5.0
-"""No hold lasts longer, whatever a page says."""
 LET_GO_cN = 1.0
 """A finger that pushes no harder has let go."""
 DOWN = (LiveEventKind.ACTUATION, LiveEventKind.LEVEL)
@@ -58,26 +57,34 @@ class LiveTrial(Generic[RoundAsk, RoundKept]):
     """A trial under the finger.
 
     played : the trial, which keeps its rounds. subject : its button, on its rig. tell : to the page.
+    finger : what presses; the one that presses to the bottom if None.
     """
 
-    def __init__(self, played: PlayedRounds[RoundAsk, RoundKept], subject: PressSubject, tell: Tell) -> None:
+    def __init__(
+        self,
+        played: PlayedRounds[RoundAsk, RoundKept],
+        subject: PressSubject,
+        tell: Tell,
+        finger: BinaryFinger | None = None,
+    ) -> None:
         self.played, self._tell = played, tell
-        self._times, self._hand = PressTimes(), BinaryFinger.of(subject)
-        self._faulted, self._pressed_s = False, (0.0, 0.0)
+        self._times, self._hand = PressTimes(), finger or BinaryFinger.of(subject)
+        self._faulted, self._moves = False, HandMoves()
         down_mm, up_mm = subject.actuation_mm or 0.0, subject.reset_mm or 0.0
         self._key, self._by_travel = TravelKey(down_mm, min(down_mm, up_mm)), False
         self._came_ms = deque[tuple[float, float]](maxlen=10)  # a round has a handful of presses
         press = LivePress(subject, seed=played.seed)
+        self._hand.up(press)
         self.run = LiveRun(press, self._show, log.warning, lambda reason: tell(Over(reason)), CLOCK)
 
     def down(self, at_ms: float) -> None:
         """Press the simulated finger down; at_ms : when the hand pressed."""
         self._came_ms.append((at_ms, 1e3 * CLOCK()))
-        self.run.ask(lambda press: self._press(press, at_ms / 1e3))
+        self._move(HandMove(True, at_ms / 1e3))
 
     def up(self, at_ms: float) -> None:
         """Release after as long as the hand held: less input latency this time shortens no press."""
-        self.run.ask(lambda press: self._release(press, at_ms / 1e3))
+        self._move(HandMove(False, at_ms / 1e3))
 
     def follow(self, at_ms: float, displacement_mm: float, velocity_mm_s: float) -> None:
         """Have the cap go where a key of the person's keyboard was at at_ms.
@@ -96,17 +103,23 @@ class LiveTrial(Generic[RoundAsk, RoundKept]):
         self.run.close()
         self.played.close()
 
-    def _press(self, press: LivePress, hand_s: float) -> None:
-        self._pressed_s = press.time_s, hand_s
-        self._times.led(press.time_s, hand_s)
-        self._hand.down(press)
+    def _move(self, move: HandMove) -> None:
+        def take(press: LivePress) -> None:
+            self._moves.add(move, press.time_s)
+            self._make(press)
 
-    def _release(self, press: LivePress, hand_s: float) -> None:
-        pressed_s, since_s = self._pressed_s
-        if press.time_s < pressed_s + min(hand_s - since_s, LONGEST_s):
-            self.run.ask(lambda later: self._release(later, hand_s))
-        else:
-            self._hand.up(press)
+        self.run.ask(take)
+
+    def _make(self, press: LivePress) -> None:
+        """Make the moves of the hand that are due, and look again while some wait."""
+        while move := self._moves.due(press.time_s):
+            if move.down:
+                self._times.led(press.time_s, move.hand_s)
+                self._hand.down(press)
+            else:
+                self._hand.up(press)
+        if self._moves:
+            self.run.ask(self._make)
 
     def _show(self, seen: LiveFrame) -> None:
         for event in seen.events:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 
 from fdvv.errors import ModelError
+from fdvv.live.binary_finger import BinaryFinger
 from fdvv.live.device_key import DeviceKey
 from fdvv.live.press_subject import PressSubject, model_subject, program_subject
 from fdvv.model.model import FDVVModel
@@ -24,10 +25,15 @@ class TimedRounds:
     """Where the rounds of one beginning of a trial are kept.
 
     participant : whose they are. number : of the trial. kept : of its rounds already.
+
+    Attributes
+    ----------
+    seed : of everything random in its simulation. tapping : a round is a second of tapping.
     """
 
     def __init__(self, participant: TimingParticipant, number: int, kept: int) -> None:
         self.seed = participant.state.started.seed
+        self.tapping = participant.study.plan.tapping
         self._participant, self._number, self._kept, self._over = participant, number, kept, False
 
     def keep(self, ask: TimingRound, activations_s: tuple[float, ...], timing: RoundTiming) -> TimingKept:
@@ -83,4 +89,5 @@ def button_trial(
     if key:
         return DeviceTrial(rounds, key, button), None
     subject = program_subject(button) if isinstance(button, Program) else model_subject(button)
-    return LiveTrial(rounds, subject, tell), subject
+    finger = BinaryFinger.tapping(subject) if rounds.tapping else BinaryFinger.of(subject)
+    return LiveTrial(rounds, subject, tell, finger), subject
