@@ -138,7 +138,7 @@ def test_a_claimed_rate_is_reached_missed_or_open() -> None:
         assert word in verdict_sentence(found)
 
 
-def test_keys_that_the_button_pressed_are_told_from_strokes(tmp_path: Path) -> None:
+def test_keys_that_the_button_pressed_are_no_strokes(tmp_path: Path) -> None:
     scores = made_scores(tapping(8.0), 5, -20.0)
     assert strokes_sentence(analyse_timing(scores)) == ""
     rows = tuple(

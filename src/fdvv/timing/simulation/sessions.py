@@ -60,8 +60,8 @@ def simulate_timing(
     they press; orders and codes are drawn as for people. rig : what renders buttons. progress : trials done
     and in all.
 
-    InputError on a study that is not frozen or has people in it. On Ctrl-C who has not
-    finished is withdrawn and deleted. OSError.
+    InputError on a study that is not frozen or has people in it. On Ctrl-C who has not finished is withdrawn
+    and deleted. OSError.
     """
     wanted = study.plan.people if people is None else people
     if wanted < 1:
