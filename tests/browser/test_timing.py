@@ -197,7 +197,12 @@ def test_taps_are_kept_second_by_second(study: TimingStudy, timer: Timer) -> Non
     assert len(rounds) == 3 * CONDITIONS
     assert all(len(one["activations_s"]) >= 2 for one in rounds)
     rates = [one["scores"]["rate_Hz"]["value"] for one in recorded(study, "scored")]
-    assert all(2.0 < rate < 8.0 for rate in rates)
+    assert all(2.0 < rate < 8.5 for rate in rates)
+    # the twin's finger loses no tap: in the first seconds as many keys as taps, but for one at the end
+    for trial, downs_ms in timer.wire.downs_ms().items():
+        taps = sum(at_ms < downs_ms[0] + 3000.0 for at_ms in downs_ms)
+        keys = sum(len(one["activations_s"]) for one in rounds if one["number"] == trial)
+        assert taps - 1 <= keys <= taps
 
 
 def test_no_message_names_what_a_code_hides(study: TimingStudy, timer: Timer) -> None:

@@ -152,6 +152,16 @@ class TimingWire:
                 found.append((trial, body["number"]))
         return found
 
+    def downs_ms(self) -> dict[int, list[float]]:
+        """Return by trial when the page said that the hand pressed."""
+        found, trial = dict[int, list[float]](), -1
+        for body in self.said:
+            if body.get("type") == "begin":
+                trial = body["number"]
+            elif body.get("type") == "down":
+                found.setdefault(trial, []).append(body["at_ms"])
+        return found
+
 
 STEP = ".timed, .study-sheet[data-key]"
 """A trial, or what must lie under the finger for the next one."""
@@ -226,9 +236,9 @@ class Timer:
         self.begin()
 
     def tap(self, time_s: float) -> None:
-        """Tap four times a second."""
-        for _ in range(round(4 * time_s)):
+        """Tap eight times a second, or as often as this machine does, and hold each for 40 ms."""
+        for _ in range(round(8 * time_s)):
             self.page.evaluate("kind => window.fdvvHit(kind)", "keydown")
-            self.page.wait_for_timeout(100)
+            self.page.wait_for_timeout(40)
             self.page.evaluate("kind => window.fdvvHit(kind)", "keyup")
-            self.page.wait_for_timeout(150)
+            self.page.wait_for_timeout(85)
