@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,6 +21,7 @@ from fdvv.task.rounds import ClockSource, TaskRound, TaskRounds
 from fdvv.task.score import Score
 from tests.browser.accessibility import audit
 from tests.studio.running import RunningStudio
+from tests.studio.test_optimize_group import scored_run
 from tests.support.grids import grid
 from tests.support.pressed_rig import KeyedRig
 
@@ -416,6 +418,24 @@ def test_a_line_is_felt_and_answered_by_keys_until_the_budget_is_spent(
     with ended(page, studio) as session:
         assert [one.best for one in session.lines] == [5, 8]
         assert [one.answer for one in session.retest_comparisons] == [Answer.FIRST]
+
+
+def test_runs_of_two_people_give_one_button_for_both_to_save(page: Page, studio: RunningStudio) -> None:
+    for number, (name, low_mm) in enumerate({"Anna": 1.0, "Ben": 5.0}.items(), start=1):
+        scored_run(studio.project / "optimize" / str(number), name, low_mm)
+    page.goto(f"{page.url.partition('#')[0]}#/optimize")
+    panel = page.get_by_role("region", name="One button for several people")
+    find = panel.get_by_role("button", name="Find the button for all")
+    panel.get_by_label("Anna, easy").check()
+    expect(find).to_be_disabled()
+    panel.get_by_label("Ben, easy").check()
+    find.click()
+    expect(panel.get_by_role("status")).to_contain_text("Personalise: ", timeout=LONG_ms)
+    expect(panel.locator("tbody tr")).to_have_count(2)
+    assert audit(page) == []
+    panel.get_by_role("button", name="Save the group's button").click()
+    panel.get_by_role("link", name="Press it").click()
+    expect(page).to_have_url(re.compile(r"#/press/own"))
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,8 @@ from fdvv.studio.contract import Call, ChannelKind
 PARTS = (
     *("about", "library", "library_buttons", "documents", "files", "editor", "press", "programs"),
     *("jobs", "device"),
-    *("optimize", "optimize_setup", "optimize_trials", "play", "studies", "study_plans", "study", "timing"),
+    *("optimize", "optimize_setup", "optimize_trials", "optimize_group", "play"),
+    *("studies", "study_plans", "study", "timing"),
 )
 """In the order in which a person may want them: the first page is the library's."""
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.optimize.group.group import Group, group_of, read_personal_run, read_personal_runs
+from fdvv.optimize.group.group import Group, group_of, read_personal_runs
 from fdvv.optimize.group.playoff import play_off
 from fdvv.optimize.group.report import gain_sentence, group_html, group_report
 from fdvv.optimize.run.player import about_player, player_of
@@ -68,7 +68,7 @@ def test_runs_that_cannot_be_compared_are_refused_with_what_differs(tmp_path: Pa
     effort = run_of(tmp_path / "objective", 1, 0.5, objectives=(Objective("effort_N_s"),))
     paper = simulated(tmp_path / "space", 1)
     for other in (hard, effort, paper):
-        with pytest.raises(InputError, match=f"{other.name}: differs"):
+        with pytest.raises(InputError, match=f"differs from one in its {other.name}"):
             read_personal_runs([one, other])
     with pytest.raises(InputError, match="comes twice"):
         read_personal_runs([one, tmp_path / "." / "one"])
@@ -80,7 +80,7 @@ def test_a_run_that_is_not_over_is_refused(tmp_path: Path) -> None:
     with Optimization.create(tmp_path / "run", OptimizeSetup(space=OWN, engine="sobol")) as session:
         session.ask()
     with pytest.raises(InputError, match="is not over"):
-        read_personal_run(tmp_path / "run")
+        read_personal_runs([tmp_path / "run", tmp_path / "other"])
 
 
 def simulated(folder: Path, person: int) -> Path:
@@ -115,7 +115,7 @@ def test_simulated_people_press_again_and_the_same_presses_give_the_same_gain(tm
 
 def test_the_same_simulated_person_does_not_count_twice(tmp_path: Path) -> None:
     folders = [simulated(tmp_path / name, 1) for name in ("a", "b")]
-    with pytest.raises(InputError, match="same as that of"):
+    with pytest.raises(InputError, match="same person as a"):
         read_personal_runs(folders)
 
 

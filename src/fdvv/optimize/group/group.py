@@ -68,40 +68,45 @@ class Group:
         return designer_of(self.runs[0].setup.space)(design).renamed(name)
 
 
-def read_personal_run(folder: Path) -> PersonalRun:
-    """Read a run. InputError where it is not over, compares designs or has several objectives."""
-    with Optimization.open(folder) as session:
-        own = session.recommended() if session.searched else None
-        if session.setup.preference or len(session.problem.objectives) > 1:
-            raise InputError(
-                folder, "run", "has no single score", "use runs that are scored in one objective"
-            )
-        if own is None:
-            raise InputError(
-                folder, "run", "is not over", "go on with it: fdvv optimize resume, or the studio"
-            )
-        played = session.setup.presses * (len(session.trials) + len(session.retests))
-        done = tuple(finished(session.problem, session.trials))
-        return PersonalRun(folder.resolve().name, session.setup, session.space, done, own, played)
+def personal_run(session: Optimization, name: str) -> PersonalRun:
+    """Return what a run came to. InputError where it is not over, or has no single score."""
+    if session.setup.preference or len(session.problem.objectives) > 1:
+        raise InputError("run", name, "has no single score", "use runs that are scored in one objective")
+    own = session.recommended() if session.searched else None
+    if own is None:
+        raise InputError("run", name, "is not over", "go on with it: fdvv optimize resume, or the studio")
+    played = session.setup.presses * (len(session.trials) + len(session.retests))
+    done = tuple(finished(session.problem, session.trials))
+    return PersonalRun(name, session.setup, session.space, done, own, played)
 
 
 def read_personal_runs(folders: Sequence[Path]) -> tuple[PersonalRun, ...]:
     """Read the runs of several people, one each. InputError where they cannot be compared."""
-    if len({folder.resolve() for folder in folders}) < max(2, len(folders)):
-        raise InputError(
-            "runs", "people", "are fewer than two, or one comes twice", "name a folder per person"
-        )
-    runs = tuple(read_personal_run(folder) for folder in folders)
-    for folder, run in zip(folders[1:], runs[1:], strict=True):
+    if len({folder.resolve() for folder in folders}) < len(folders):
+        raise InputError("runs", "people", "one comes twice", "name a folder per person")
+    return of_one_kind([_read(folder) for folder in folders])
+
+
+def _read(folder: Path) -> PersonalRun:
+    with Optimization.open(folder) as session:
+        return personal_run(session, folder.resolve().name)
+
+
+def of_one_kind(runs: Sequence[PersonalRun]) -> tuple[PersonalRun, ...]:
+    """Return runs that can be compared. InputError on fewer than two people, and where they differ."""
+    if len(runs) < 2:
+        raise InputError("runs", "people", "are fewer than two", "name a run of each person")
+    for run in runs[1:]:
         if different := _differs(runs[0], run):
             remedy = "use runs of one space, task and objective"
-            raise InputError(folder, different, f"differs from that of {folders[0]}", remedy)
+            reason = f"differs from {runs[0].name} in its {different}"
+            raise InputError("run", run.name, reason, remedy)
     people = [run.setup.about.get("player") for run in runs]
     for number, person in enumerate(people):
         if person is not None and person in people[:number]:
-            other = folders[people.index(person)]
-            raise InputError(folders[number], "person", f"is the same as that of {other}", "leave one out")
-    return runs
+            other = runs[people.index(person)].name
+            raise InputError("run", runs[number].name, f"is of the same person as {other}", "leave one out")
+    return tuple(runs)
 
 
 def _differs(one: PersonalRun, other: PersonalRun) -> str:

@@ -77,7 +77,7 @@ def play_off(
 
 def _person(run: PersonalRun, group: Group, blocks: int) -> PersonalGain:
     if not run.setup.simulated:
-        raise InputError(run.name, "person", "is no simulated one", "have both buttons played in a study")
+        raise InputError("run", run.name, "is of no simulated person", "have both buttons played in a study")
     objective = run.setup.objectives[0]
     same = run.own == group.design
     own = [_score(run, run.own, 2 * block) for block in range(blocks)]
