@@ -23,9 +23,9 @@ def test_two_runs_end_with_a_button_a_page_and_a_sentence(fdvv: Run, tmp_path: P
     folder = tmp_path / "all"
     assert sorted(path.name for path in folder.iterdir()) == ["group.fdvv.json", "group.json", "report.html"]
     assert load_model(folder / "group.fdvv.json").actuation_mm is not None
-    found = fdvv("optimize", "group", "p1", "p2", "--folder", "believed", "--blocks", "0", "--json").json
+    found = fdvv("optimize", "group", "p1", "p2", "--folder", "expected", "--blocks", "0", "--json").json
     assert found["played"] is None
-    assert "believed, not yet played" in found["verdict"]
+    assert "expected from the runs, not yet played" in found["verdict"]
 
 
 def test_wrong_runs_are_refused_in_one_line_and_nothing_is_written(fdvv: Run, tmp_path: Path) -> None:

@@ -34,7 +34,7 @@ def test_two_people_get_one_button_between_theirs_and_a_sentence(people: Studio,
     found = client.post("/api/optimize.group", json={"runs": [1, 2, 1]}).json()
     assert [one["name"] for one in found["people"]] == ["Anna", "Ben"]
     assert found["sentence"].startswith("Personalise: ")
-    assert "believed, not yet played" in found["sentence"]
+    assert "expected from the runs, not yet played" in found["sentence"]
     assert 1.5 < found["design"]["actuation_mm"] < 4.5
     assert all(one["error"] > 0 for one in found["people"])
     made = client.post("/api/optimize.model", json={"run": 1, "design": found["design"], "name": "Group"})

@@ -48,10 +48,10 @@ def test_the_groups_design_lies_between_people_who_differ_and_everybody_gains_wi
     tried = [trial.design for run in found.runs for trial in run.trials]
     assert found.design in tried
     assert found.gain.kind == "better"
-    assert found.believed[0] > 1.0 < found.believed[2]
+    assert found.expected[0] > 1.0 < found.expected[2]
     sentence = gain_sentence(found, None)
     assert sentence.startswith("Personalise: a button of one's own is ")
-    assert "believed, not yet played" in sentence
+    assert "expected from the runs, not yet played" in sentence
 
 
 def test_people_who_are_alike_need_no_button_of_their_own(tmp_path: Path) -> None:
@@ -59,7 +59,7 @@ def test_people_who_are_alike_need_no_button_of_their_own(tmp_path: Path) -> Non
     # all scores together know more of the one best place than each person's do
     assert found.gain.kind in ("same", "worse")
     assert "Personalise" not in gain_sentence(found, None)
-    assert "believed" in group_html(found, None).lower()
+    assert "expected" in group_html(found, None).lower()
 
 
 def test_runs_that_cannot_be_compared_are_refused_with_what_differs(tmp_path: Path) -> None:

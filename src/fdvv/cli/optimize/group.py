@@ -26,7 +26,7 @@ REPORT_FILE, FIGURES_FILE = "report.html", "group.json"
     "--blocks",
     type=click.IntRange(0, 1000),
     default=BLOCKS,
-    help="In each of which simulated people play both buttons again; 0 and 1: only what is believed.",
+    help="In each of which simulated people play both buttons again; 0 and 1: only what the runs let expect.",
 )
 @ui.json_option
 def group(runs: tuple[Path, ...], folder: Path, blocks: int, as_json: bool) -> None:
@@ -67,8 +67,8 @@ def _print(found: Group, playoff: Playoff | None, document: dict[str, Any]) -> N
         ]
         ui.print_table(["person", "own", "the group's", "gain"], rows, left=1)
     else:
-        rows = [[run.name, gain] for run, gain in zip(found.runs, found.believed, strict=True)]
-        ui.print_table(["person", "gain believed"], rows, left=1)
+        rows = [[run.name, gain] for run, gain in zip(found.runs, found.expected, strict=True)]
+        ui.print_table(["person", "gain expected"], rows, left=1)
     click.echo(
         f"the group's button: {', '.join(f'{key} {value:.2f}' for key, value in found.design.items())}"
     )

@@ -47,14 +47,14 @@ class Group:
 
     Attributes
     ----------
-    runs : one per person. design : best for all on average, by what is believed of each of them.
-    believed : (people,) by how much each person's own is expected to be better than it, in the objective's
-        unit. sd : (people,) of these. gain : their mean, see `believed_gain`.
+    runs : one per person. design : best for all on average, by what is expected of each of them.
+    expected : (people,) by how much each person's own is expected to be better than it, in the objective's
+        unit. sd : (people,) of these. gain : their mean, see `expected_gain`.
     """
 
     runs: tuple[PersonalRun, ...]
     design: dict[str, float]
-    believed: tuple[float, ...]
+    expected: tuple[float, ...]
     sd: tuple[float, ...]
     gain: Retest
 
@@ -139,11 +139,11 @@ def _group(runs: tuple[PersonalRun, ...], design: dict[str, float], belief: Grou
     everybody = space.to_unit([design] * len(runs))
     own = space.to_unit([run.own for run in runs])
     drawn = belief.differences(everybody, own)
-    believed, sd = drawn.mean(axis=0), drawn.std(axis=0)
-    return Group(runs, design, tuple(believed.tolist()), tuple(sd.tolist()), believed_gain(drawn))
+    expected, sd = drawn.mean(axis=0), drawn.std(axis=0)
+    return Group(runs, design, tuple(expected.tolist()), tuple(sd.tolist()), expected_gain(drawn))
 
 
-def believed_gain(drawn: FloatArray) -> Retest:
+def expected_gain(drawn: FloatArray) -> Retest:
     """Return the mean gain of people that draws (n, people) of their posterior let expect.
 
     Its interval holds 95 % of the draws; the chance is the share of those above 0.

@@ -15,9 +15,9 @@ from fdvv.report.svg import figure_svg
 
 SIMULATED = "simulated people pressed the twin; no human and no hardware took part"
 PLAYED = "A person's gain is that of the blocks; the mean counts for people like these."
-BELIEVED = (
-    "Believed from the scores of all runs, for just these people. The runs' own noise is in the intervals; "
-    "only presses on both buttons settle it."
+EXPECTED = (
+    "Expected from the scores of all runs, for just these people. It is often too small, because few runs "
+    "tried what their person does not like. Only presses on both buttons settle it."
 )
 
 
@@ -31,7 +31,7 @@ def gain_sentence(group: Group, playoff: Playoff | None) -> str:
     found, phrase = playoff.gain if playoff else group.gain, phrase_of_group(group)
     kind = kind_of(found.low, found.high)
     people = f"{len(group.runs)} people{', simulated' if group.simulated else ''}"
-    how = people if playoff else f"{people}; believed, not yet played"
+    how = people if playoff else f"{people}; expected from the runs, not yet played"
     doubt = phrase.doubt(found.low, found.high, found.chance)
     each = f"; {playoff.gaining} of them gain, each by their own interval" if playoff else ""
     if kind == "same":
@@ -45,7 +45,7 @@ def gain_sentence(group: Group, playoff: Playoff | None) -> str:
 def group_report(group: Group, playoff: Playoff | None) -> dict[str, Any]:
     """Return the figures by name; gains are positive where a person's own button is better.
 
-    believed : from the scores of the runs. played : of presses afterwards; None where nobody pressed.
+    expected : from the scores of the runs. played : of presses afterwards; None where nobody pressed.
     """
     first = group.runs[0].setup
     return {
@@ -55,10 +55,10 @@ def group_report(group: Group, playoff: Playoff | None) -> dict[str, Any]:
         "objective": first.objectives[0].name,
         "design": group.design,
         "people": [
-            {"name": run.name, "own": run.own, "believed_gain": gain, "believed_sd": sd}
-            for run, gain, sd in zip(group.runs, group.believed, group.sd, strict=True)
+            {"name": run.name, "own": run.own, "expected_gain": gain, "expected_sd": sd}
+            for run, gain, sd in zip(group.runs, group.expected, group.sd, strict=True)
         ],
-        "believed": asdict(group.gain),
+        "expected": asdict(group.gain),
         "played": asdict(playoff) if playoff else None,
         "verdict": gain_sentence(group, playoff),
         "simulated": group.simulated,
@@ -69,7 +69,7 @@ def group_html(group: Group, playoff: Playoff | None) -> str:
     """Write the page. Needs matplotlib (BuildError without it)."""
     first = group.runs[0].setup
     title = f"{first.task}, {first.level}" if first.level else first.task
-    text = [gain_sentence(group, playoff), PLAYED if playoff else BELIEVED]
+    text = [gain_sentence(group, playoff), PLAYED if playoff else EXPECTED]
     sections = [
         Section("Verdict", tuple(text), (), (_people(group, playoff),)),
         Section("Designs", (), (_designs(group),) if first.space.kind != "own" else (), (_values(group),)),
@@ -87,7 +87,7 @@ def _people(group: Group, playoff: Playoff | None) -> Table:
     if playoff is None:
         rows = [
             (run.name, phrase.number(gain), f"± {phrase.number(1.96 * sd)}")
-            for run, gain, sd in zip(group.runs, group.believed, group.sd, strict=True)
+            for run, gain, sd in zip(group.runs, group.expected, group.sd, strict=True)
         ]
         return Table(("person", f"gain of their own{unit}", "95 %"), tuple(rows))
     label = score_label(group.runs[0].setup.objectives[0].name)

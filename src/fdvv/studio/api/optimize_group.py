@@ -22,7 +22,7 @@ class OptimizeGroupAsk(Message):
 class OptimizePerson(Message):
     """A person of a group.
 
-    gain : by how much a button of their own is believed to be better than the group's, in the objective's
+    gain : by how much a button of their own is expected to be better than the group's, in the objective's
     unit. error : its standard deviation.
     """
 
@@ -48,7 +48,7 @@ def group(optimizations: Optimizations, ask: OptimizeGroupAsk) -> OptimizeGroup:
     found = group_of(of_one_kind([_read(optimizations, run) for run in numbers]))
     people = [
         OptimizePerson(run, one.name, gain, sd)
-        for run, one, gain, sd in zip(numbers, found.runs, found.believed, found.sd, strict=True)
+        for run, one, gain, sd in zip(numbers, found.runs, found.expected, found.sd, strict=True)
     ]
     return OptimizeGroup(
         gain_sentence(found, None),
