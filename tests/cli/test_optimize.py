@@ -75,6 +75,19 @@ def test_the_same_options_give_the_same_trials(fdvv: Run) -> None:
     assert run_optimize(fdvv, "c", "--json", "--seed", "5").json["trials"] != first["trials"]
 
 
+def test_several_wishes_end_with_a_front_a_compromise_and_a_sentence(fdvv: Run) -> None:
+    wishes = ("--also", "liking", "--also", "lost_ratio", "--switch", "none")
+    ran = run_optimize(fdvv, "run", *wishes)
+    assert ran.status == 0, ran.err
+    assert "\ntrial  compromise " in ran.out
+    assert ran.out.count("recommended") == 2
+    found = fdvv("optimize", "resume", "run", "--json").json
+    assert found["objectives"] == ["asynchrony_ms", "liking", "lost_ratio"]
+    assert [row["parameters"] for row in found["front"] if row["recommended"]] == [found["best"]]
+    weighted = run_optimize(fdvv, "fast", *wishes, "--weight", "asynchrony_ms=1", "--json").json
+    assert weighted["best"] == weighted["front"][0]["parameters"]
+
+
 @pytest.mark.parametrize("task", ["tapping", "accuracy"])
 def test_other_tasks_are_played_too(fdvv: Run, task: str) -> None:
     ran = run_optimize(fdvv, "run", "--task", task, "--json")
@@ -202,6 +215,10 @@ def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(
         (("--strip", "foo"), "names no LED strip"),
         (("--strip", "host", "--task", "tapping"), "on a strip one plays temporal-pointing, not tapping"),
         (("--task", "tapping", "--presses", "2"), "rapid tapping needs three taps"),
+        (("--task", "tapping", "--also", "effort_N_s"), "is not scored in tapping"),
+        (("--strip", "host", "--also", "liking"), "on a strip liking is not measured"),
+        (("--also", "liking", "--weight", "colour=1"), "is none of this run; use asynchrony_ms, liking"),
+        (("--also", "liking", "--weight", "liking"), "write an objective and a number, as liking=2"),
     ],
 )
 def test_bad_options_get_one_line_and_leave_no_folder(

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fdvv.errors import InputError
-from fdvv.optimize.engines.multi_objective import pareto_front
+from fdvv.errors import InputError, ModelError
+from fdvv.optimize.engines.multi_objective import ParetoFront, believed_front, pareto_front
 from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.problem import Problem, Trial, TrialState
+from fdvv.optimize.space import DesignSpace, Parameter
 from fdvv.task.score import Objective, Score
 from fdvv_botorch.models import torch_there
 from tests.optimize.problems import BOWL
@@ -58,6 +59,51 @@ def test_what_cannot_be_chosen_is_said() -> None:
 def test_trials_without_every_score_are_no_part_of_a_front() -> None:
     half = Trial(9, DESIGN, TrialState.DONE, {"hits": Score(99.0)})
     assert pareto_front(TWO, [half, Trial(1, DESIGN)]).trials == ()
+
+
+def test_what_lies_within_the_doubt_is_no_reason_to_give_anything_up() -> None:
+    """The same values: hits that are known to within 1 are worth 20 ms, hits that may be 8 off are not."""
+
+    def front(hits_error: float) -> ParetoFront:
+        rows = [(60.0, 10.0), (80.0, 14.0), (90.0, 15.0)]
+        return pareto_front(
+            TWO,
+            [
+                Trial(
+                    i,
+                    DESIGN,
+                    TrialState.DONE,
+                    {"asynchrony_ms": Score(a, 1.0), "hits": Score(b, hits_error)},
+                )
+                for i, (a, b) in enumerate(rows)
+            ],
+        )
+
+    assert front(0.1).knee().number == 1
+    assert front(8.0).knee().number == 0
+
+
+def test_a_front_of_nothing_recommends_nothing() -> None:
+    with pytest.raises(ModelError, match="no trial is done"):
+        believed_front(TWO, []).knee()
+
+
+def test_a_lucky_score_is_on_the_front_as_measured_and_not_as_believed() -> None:
+    """A line of designs, better and better in both; one in the middle was lucky in both."""
+    space = DesignSpace("line", (Parameter("x_mm", 0.0, 1.0),))
+    two = Problem(space, TWO.objectives)
+    trials = []
+    for i, x in enumerate(np.linspace(0.0, 1.0, 15).tolist()):
+        lucky = i == 4
+        scores = {
+            "asynchrony_ms": Score(90.0 - 40.0 * x - 35.0 * lucky, 15.0),
+            "hits": Score(20.0 * x + 18.0 * lucky, 8.0),
+        }
+        trials.append(Trial(i, {"x_mm": x}, TrialState.DONE, scores))
+    assert 4 in [one.number for one in pareto_front(two, trials).trials]
+    believed = believed_front(two, trials)
+    assert 4 not in [one.number for one in believed.trials]
+    assert believed.knee().number >= 12
 
 
 def front_of(name: str, count: int) -> tuple[int, float]:

@@ -134,4 +134,4 @@ def _task(session: Optimization, rounds: int) -> TemporalPointing:
     if setup.task != POINTING or setup.level is None:
         reason = f"{setup.task}, level {setup.level} is not for a strip"
         raise InputError(session.folder, "task", reason, f"begin one of {POINTING} with a level")
-    return TemporalPointing(setup.level, rounds, quantised=False)
+    return TemporalPointing(setup.level, rounds, quantised=False, also=setup.task_also)

@@ -9,17 +9,21 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.optimize.options import (
+    ON_STRIP,
     Play,
+    also_option,
     engine_option,
     group_option,
     level_option,
     on_strip,
     rig_option,
     strip_options,
+    weight_option,
 )
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.begin import RunRequest, begin_run
 from fdvv.optimize.run.ending import beaten_by
+from fdvv.optimize.run.front import front_mark, score_digits
 from fdvv.optimize.run.player import POINTING, played_min, player_of
 from fdvv.optimize.run.report import optimize_html, optimize_report
 from fdvv.optimize.run.session import Optimization, replay_differences
@@ -79,6 +83,8 @@ def optimize() -> None:
     "--prior", type=ui.FOLDER, help="Begin from what others did: a finished fdvv optimize population --grid."
 )
 @ui.option("--task", default="temporal-pointing", help="What is played.")
+@also_option
+@weight_option
 @level_option
 @engine_option
 @ui.option("--trials", type=click.IntRange(1, 100_000), default=30, help="How many designs are tried.")
@@ -157,6 +163,9 @@ def _request(
 ) -> Any:
     if strip and arguments["task"] != POINTING:
         raise click.UsageError(f"on a strip one plays {POINTING}, not {arguments['task']}")
+    if strip and (gone := [name for name in arguments["also"] if name not in ON_STRIP]):
+        raise click.UsageError(f"on a strip {gone[0]} is not measured; play it in the studio")
+    arguments["weights"] = dict(arguments.pop("weights"))
     name, options = engine
     simulated = person if strip in (None, "host") else None
     switches = arguments.pop("switches") or None
@@ -209,9 +218,12 @@ def _print(session: Optimization, document: dict[str, Any]) -> None:
         f"{about}{ui.simulated(document['simulated'])}, engine {document['engine']}, "
         f"{ui.counted(len(trials), 'trial')}"
     )
-    rows = [[t[key] for key in ("number", "state", "score", "error")] for t in trials[-LAST:]]
-    name = session.problem.objectives[0].name
-    ui.print_table(["trial", "state", name, "error"], rows, left=2, digits={name: 1, "error": 1})
+    if session.setup.several:
+        _print_front(document)
+    else:
+        rows = [[t[key] for key in ("number", "state", "score", "error")] for t in trials[-LAST:]]
+        name = document["objective"]
+        ui.print_table(["trial", "state", name, "error"], rows, left=2, digits={name: 1, "error": 1})
     if document["best"]:
         at = {name: f" (the {which} allowed)" for name, which in document["at_bound"].items()}
         values = (f"{key} {value:.2f}{at.get(key, '')}" for key, value in document["best"].items())
@@ -223,10 +235,25 @@ def _print(session: Optimization, document: dict[str, Any]) -> None:
         ui.print_wrapped(f"next: {_next_step(session)}")
 
 
+def _print_front(document: dict[str, Any]) -> None:
+    """Print the compromises, each value as it is believed, with its standard deviation."""
+    names = document["objectives"]
+    rows = [
+        [
+            row["number"],
+            front_mark(row) or "–",
+            *((row["believed"][name], row["error"][name]) for name in names),
+        ]
+        for row in document["front"]
+    ]
+    digits = {name: score_digits(name) for name in names}
+    ui.print_table(["trial", "compromise", *names], rows, left=2, digits=digits)
+
+
 def _next_step(session: Optimization) -> str:
     if beaten := beaten_by(session):
         return f"take {beaten}; fdvv optimize report {session.folder} draws the designs"
-    if verdict_kind(session) == "better":
+    if verdict_kind(session) in ("better", "mixed"):
         return f"fdvv optimize report {session.folder} draws both designs"
     again = f"--trials {2 * session.setup.budget}"
     return f"keep {session.setup.start_name}, or search longer in a new folder with {again}"

@@ -13,6 +13,7 @@ from fdvv import extras
 from fdvv.cli import ui
 from fdvv.cli.options import remote
 from fdvv.optimize.people.groups import GROUPS
+from fdvv.optimize.run.setup import WISHES
 
 if TYPE_CHECKING:
     from fdvv.optimize.problem import Trial
@@ -80,6 +81,42 @@ level_option = ui.choice_option("--level", ("easy", "hard"), help="Of the task."
 
 group_option = ui.choice_option(
     "--group", tuple(GROUPS), help="Of simulated people: as in the paper, or with best buttons that differ."
+)
+
+ON_STRIP = ("lost_ratio",)
+"""Of WISHES what a strip can score: it measures no force and asks nothing."""
+
+also_option = ui.option(
+    "--also",
+    multiple=True,
+    type=click.Choice(WISHES),
+    help="Another wish beside the task's own; repeatable. The run ends with a front of compromises.",
+)
+
+
+class WeightType(click.ParamType[tuple[str, float]]):
+    """An objective and how much it counts, as liking=2."""
+
+    name = "objective=weight"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, float]:
+        if isinstance(value, tuple):
+            return value
+        name, _, text = str(value).partition("=")
+        try:
+            return name, float(text)
+        except ValueError:
+            self.fail(f"{value}: write an objective and a number, as liking=2", param, ctx)
+
+
+weight_option = ui.option(
+    "--weight",
+    "weights",
+    multiple=True,
+    type=WeightType(),
+    help="How much a wish counts for the recommended compromise, as liking=2; repeatable. None: the knee.",
 )
 
 rig_option = ui.option(

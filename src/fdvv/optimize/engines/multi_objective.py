@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fdvv.errors import InputError
-from fdvv.optimize.engines.gp_model import finished, score_table
+from fdvv.errors import InputError, ModelError
+from fdvv.optimize.engines.gp_model import believe, finished, observed, score_table
 from fdvv.optimize.engines.search import generator
 from fdvv.optimize.problem import Problem, Trial
 from fdvv.task.score import Objective, Score
@@ -19,6 +19,8 @@ from fdvv.units import FloatArray
 
 AUGMENTED = 0.05
 SCALAR = Objective("scalar")
+DOUBT = 4.0
+"""A range over the front counts as so many standard errors at least, the width of a 95 % interval."""
 
 
 def scalar_problem(problem: Problem, trials: Sequence[Trial]) -> tuple[Problem, list[Trial]]:
@@ -65,24 +67,22 @@ class ParetoFront:
 
     def values(self) -> FloatArray:
         """Return the scores, (n, m), in the order of the problem's objectives."""
-        return self._turned() * [one.sign for one in self.problem.objectives]
+        return self._turned()[0] * [one.sign for one in self.problem.objectives]
 
     def knee(self) -> Trial:
         """Choose where giving up a little of one objective gains least of the others.
 
-        The trial nearest to the best of every objective at once, each in parts of its range over the front.
+        The trial nearest to the best of every objective at once, each in parts of its range over the front;
+        a range within DOUBT standard errors counts as that wide. ModelError on an empty front.
         """
         return self.trials[int(np.argmin(np.linalg.norm(self._normal(), axis=1)))]
 
     def weighted(self, weights: Mapping[str, float]) -> Trial:
         """Choose by weights, at least 0, of objectives in parts of their ranges; 0 for one not named.
 
-        InputError on an alien objective or weights that are none.
+        InputError on an alien objective or weights that are none, ModelError on an empty front.
         """
-        row = np.array([weights.get(one.name, 0.0) for one in self.problem.objectives])
-        self._known(weights)
-        if not (np.all(np.isfinite(row)) and np.all(row >= 0) and row.sum() > 0):
-            raise InputError("weights", "all", f"are {dict(weights)}", "give some above 0 and none below")
+        row = check_weights(self.problem.objectives, weights)
         return self.trials[int(np.argmin(self._normal() @ row))]
 
     def within(self, limits: Mapping[str, float]) -> Trial:
@@ -90,8 +90,8 @@ class ParetoFront:
 
         limits : the worst value allowed of an objective. InputError if no trial of the front is within.
         """
-        self._known(limits)
-        objectives, values = self.problem.objectives, self._turned()
+        _known(self.problem.objectives, limits)
+        objectives, values = self.problem.objectives, self._turned()[0]
         bounds = [limits[one.name] * one.sign if one.name in limits else np.inf for one in objectives]
         inside = np.all(values <= bounds, axis=1)
         if not inside.any():
@@ -99,20 +99,33 @@ class ParetoFront:
         free = next((i for i, one in enumerate(objectives) if one.name not in limits), 0)
         return self.trials[int(np.argmin(np.where(inside, values[:, free], np.inf)))]
 
-    def _known(self, named: Mapping[str, float]) -> None:
-        names = [one.name for one in self.problem.objectives]
-        for name in named:
-            if name not in names:
-                raise InputError("objective", name, "is none of this run", f"use {', '.join(names)}")
-
-    def _turned(self) -> FloatArray:
-        return score_table(self.problem.objectives, self.trials)[0]
+    def _turned(self) -> tuple[FloatArray, FloatArray]:
+        return score_table(self.problem.objectives, self.trials)
 
     def _normal(self) -> FloatArray:
-        """Return scores from 0, best of the front, to 1, worst of it."""
-        values = self._turned()
-        span = np.ptp(values, axis=0)
+        """Return scores from 0, best of the front, to at most 1, worst of it."""
+        if not self.trials:
+            raise ModelError("no trial is done yet, so there is no front to choose from")
+        values, errors = self._turned()
+        doubt = DOUBT * np.median(np.where(np.isfinite(errors), errors, 0.0), axis=0)
+        span = np.maximum(np.ptp(values, axis=0), doubt)
         return np.asarray((values - values.min(axis=0)) / np.where(span > 0, span, 1.0))
+
+
+def check_weights(objectives: Sequence[Objective], weights: Mapping[str, float]) -> FloatArray:
+    """Return weights in the order of objectives, (m,). InputError on alien ones, and if none is above 0."""
+    _known(objectives, weights)
+    row = np.array([weights.get(one.name, 0.0) for one in objectives])
+    if not (np.all(np.isfinite(row)) and np.all(row >= 0) and row.sum() > 0):
+        raise InputError("weights", "all", f"are {dict(weights)}", "give some above 0 and none below")
+    return row
+
+
+def _known(objectives: Sequence[Objective], named: Mapping[str, float]) -> None:
+    names = [one.name for one in objectives]
+    for name in named:
+        if name not in names:
+            raise InputError("objective", name, "is none of this run", f"use {', '.join(names)}")
 
 
 def pareto_front(problem: Problem, trials: Sequence[Trial]) -> ParetoFront:
@@ -126,3 +139,24 @@ def pareto_front(problem: Problem, trials: Sequence[Trial]) -> ParetoFront:
     rows = zip(values.tolist(), done, beaten, strict=True)
     kept = sorted(((row, t.number, t) for row, t, out in rows if not out), key=lambda one: one[:2])
     return ParetoFront(problem, tuple(trial for *_, trial in kept))
+
+
+def believed_front(problem: Problem, trials: Sequence[Trial]) -> ParetoFront:
+    """Find the front among finished trials by what a Gaussian process believes of each objective.
+
+    Its trials have posterior means and their standard deviations as scores. So one lucky trial is no front,
+    as it is by the scores as measured. BuildError without scikit-learn.
+    """
+    done = finished(problem, trials)
+    if not done:
+        return ParetoFront(problem, ())
+    columns = {one.name: _believed(problem, one, done) for one in problem.objectives}
+    rows = [{name: column[i] for name, column in columns.items()} for i in range(len(done))]
+    return pareto_front(problem, [replace(one, scores=row) for one, row in zip(done, rows, strict=True)])
+
+
+def _believed(problem: Problem, objective: Objective, done: Sequence[Trial]) -> list[Score]:
+    scores = observed(problem.space, objective, done)
+    means, deviations = believe(scores).predict(scores.places)
+    pairs = zip((objective.sign * means).tolist(), deviations.tolist(), strict=True)
+    return [Score(mean, deviation) for mean, deviation in pairs]

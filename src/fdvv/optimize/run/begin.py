@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import Any
 
 from fdvv.button.open import open_button
 from fdvv.errors import InputError
+from fdvv.optimize.engines.multi_objective import check_weights
 from fdvv.optimize.experiment.setup import LEVELS
 from fdvv.optimize.model_space import model_space, neutral_design
 from fdvv.optimize.paper_space import paper_space
@@ -27,8 +28,10 @@ from fdvv.optimize.run.player import (
 )
 from fdvv.optimize.run.rivals import NONE, PEOPLE, SWITCHES, Rival, fixed_rivals, switch_rivals
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup
+from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup, wished
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS, SUFFIX
+from fdvv.task.questionnaire import LIKING
+from fdvv.task.score import Objective
 from fdvv.twin.files import current_rig_name
 
 OPTION = "--prior"
@@ -108,6 +111,8 @@ class RunRequest:
         none, since each takes a real person minutes.
     task, level, presses : what is played. engine, options, budget, seed : of the run.
     person, group, rig : the simulated one, of which group, and what is pressed; person None: a human plays.
+    also : objectives beside the task's first, of WISHES. weights : of objectives, by which a compromise of
+        several is recommended; empty: the knee of the front.
     """
 
     space: str | None = None
@@ -128,6 +133,8 @@ class RunRequest:
     person: int | None = 0
     group: str = PAPER_GROUP
     rig: str = "ideal"
+    also: Sequence[str] = ()
+    weights: Mapping[str, float] = field(default_factory=dict)
 
 
 def begin_run(folder: Path, request: RunRequest) -> Optimization:
@@ -135,7 +142,7 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
     request = replace(request, space=request.space or (PAPER if request.prior else BUTTON))
     with _shelf_of(request.within) as (project, rig_id):
         space, start = _space(request, rig_id)
-        task = task_named(request.task, request.level, request.presses)
+        objectives = _objectives(request)
         rivals = _rivals(request, space, start)
         setup = OptimizeSetup(
             space=space,
@@ -143,7 +150,7 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
             options=request.options,
             task=request.task,
             level=request.level if request.task == POINTING else None,
-            objectives=task.objectives[:1],
+            objectives=objectives,
             seed=request.seed,
             budget=request.budget,
             start=start,
@@ -153,6 +160,17 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
             about=_about(request, SIMULATED_BLOCKS if rivals else SIMULATED_PAIRS),
         )
         return Optimization.create(folder, setup, project)
+
+
+def _objectives(request: RunRequest) -> tuple[Objective, ...]:
+    """Return what a run is about, the task's own foremost. Raises InputError."""
+    wishes = wished(request.also)
+    also = tuple(one.name for one in wishes if one != LIKING)
+    task = task_named(request.task, request.level, request.presses, also)
+    objectives = (task.objectives[0], *wishes)
+    if request.weights:
+        check_weights(objectives, request.weights)
+    return objectives
 
 
 def _space(request: RunRequest, rig_id: str | None) -> tuple[SpaceSetup, dict[str, float] | None]:
@@ -178,7 +196,9 @@ def _rivals(request: RunRequest, space: SpaceSetup, start: dict[str, float] | No
 
 
 def _about(request: RunRequest, blocks: int) -> dict[str, Any]:
-    retest = {OptimizeSetup.RETEST: blocks if request.retest is None else request.retest}
+    retest: dict[str, Any] = {OptimizeSetup.RETEST: blocks if request.retest is None else request.retest}
+    if request.weights:
+        retest[OptimizeSetup.WEIGHTS] = dict(request.weights)
     if request.person is None:
         return {OptimizeSetup.PRESSES: request.presses, **retest}
     return {**about_player(request.person, request.rig, request.presses, request.group), **retest}
@@ -188,6 +208,9 @@ def _prior(request: RunRequest) -> tuple[Trial, ...]:
     if request.prior is None:
         return ()
     found = read_grid(request.prior)
+    if request.also:
+        reason = "others scored asynchrony alone"
+        raise InputError("--prior", str(request.prior), reason, "leave it out, or --also")
     if request.space != PAPER or request.task != POINTING:
         reason = f"others played {POINTING} with designs of the space {PAPER}"
         raise InputError("--prior", str(request.prior), reason, "leave it out, or play the same")

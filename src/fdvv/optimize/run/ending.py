@@ -11,8 +11,9 @@ from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.blocks import Block
 from fdvv.optimize.run.rivals import FIXED
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.verdict import Kind, Retest, gains, kind_of, paired, phrase_of, scored
+from fdvv.optimize.run.verdict import Kind, Phrase, Retest, gains, kind_of, paired, phrase_of, scored
 from fdvv.stats.best_of import against_best
+from fdvv.task.score import Objective
 
 
 @dataclass(frozen=True)
@@ -42,16 +43,23 @@ class AgainstSwitches:
 
 @dataclass(frozen=True)
 class FinalMean:
-    """What was played at the end, by name, and its mean score; None where no trial of it was scored."""
+    """What was played at the end, by name, and its mean score; None where no trial of it was scored.
+
+    means : by objective, the first one's is mean.
+    """
 
     name: str
     trials: int
     mean: float | None
+    means: dict[str, float | None]
 
 
-def against_switches(session: Optimization) -> AgainstSwitches | None:
-    """Return what the end of a run says of the best switch; None without two whole blocks with one."""
-    blocks, objective = session.blocks, session.problem.objectives[0]
+def against_switches(session: Optimization, objective: Objective | None = None) -> AgainstSwitches | None:
+    """Return what the end of a run says of the best switch; None without two whole blocks with one.
+
+    objective : in which; None: the first. The best switch of another may be another one.
+    """
+    blocks, objective = session.blocks, objective or session.problem.objectives[0]
     columns = {name: [_switch(session, block, name) for block in blocks] for name in _switches(session)}
     played = [name for name, trials in columns.items() if any(map(scored, trials))]
     rows = list(zip([block.found for block in blocks], *(columns[name] for name in played), strict=True))
@@ -86,11 +94,11 @@ def _switch(session: Optimization, block: Block, name: str) -> Trial:
     return block.rivals.get(name, block.start)
 
 
-def against_fixed(session: Optimization) -> Retest | None:
+def against_fixed(session: Optimization, objective: Objective | None = None) -> Retest | None:
     """Return how much better the result is than the best fixed design; None without two pairs of them."""
     name = next((one.name for one in session.setup.rivals if one.kind == "fixed"), "")
     pairs = [(block.found, block.rivals[name]) for block in session.blocks if name in block.rivals]
-    return paired(gains(session, pairs))
+    return paired(gains(session, pairs, objective))
 
 
 def final_means(session: Optimization) -> tuple[FinalMean, ...]:
@@ -108,50 +116,65 @@ def final_means(session: Optimization) -> tuple[FinalMean, ...]:
 
 
 def _mean(session: Optimization, name: str, trials: Sequence[Trial]) -> FinalMean:
-    objective = session.problem.objectives[0].name
-    values = [trial.scores[objective].value for trial in trials if scored(trial)]
-    return FinalMean(name, len(values), float(np.mean(values)) if values else None)
+    objectives = [one.name for one in session.problem.objectives]
+    done = [trial.scores for trial in trials if scored(trial)]
+    means = {
+        objective: float(np.mean([scores[objective].value for scores in done])) if done else None
+        for objective in objectives
+    }
+    return FinalMean(name, len(done), means[objectives[0]], means)
 
 
 def ending_sentences(session: Optimization) -> tuple[str, ...]:
-    """Return what a finished run says beside its verdict: of the best switch, then of the fixed design."""
-    return _sentences(session, against_switches(session), against_fixed(session)) if session.finished else ()
+    """Return what a finished run says beside its verdict: of the best switch, then of the fixed design.
+
+    Of several objectives every one is said by itself, and what to take is left to the reader.
+    """
+    if not session.finished:
+        return ()
+    return tuple(said for one in session.problem.objectives for said in _sentences(session, one))
 
 
-def _sentences(
-    session: Optimization, switches: AgainstSwitches | None, fixed: Retest | None
-) -> tuple[str, ...]:
-    said = (switches and _of_switches(session, switches), fixed and _of_fixed(session, fixed))
-    return tuple(sentence for sentence in said if sentence)
+def _sentences(session: Optimization, objective: Objective) -> Iterator[str]:
+    phrase, several = phrase_of(session, objective), session.setup.several
+    before = f"{phrase.what.capitalize()}: " if several else ""
+    if switches := against_switches(session, objective):
+        yield before + _of_switches(switches, phrase, _played(session), advise=not several)
+    if fixed := against_fixed(session, objective):
+        yield before + _of_fixed(fixed, phrase, _played(session), advise=not several)
 
 
 def beaten_by(session: Optimization) -> str | None:
-    """Return the switch that is better than the result, else the fixed design if that is; None of neither."""
+    """Return the switch that is better than the result, else the fixed design if that is; None of neither.
+
+    None where there are several objectives: what is better in one may be worse in another.
+    """
+    if session.setup.several:
+        return None
     switches, fixed = against_switches(session), against_fixed(session)
     if switches and switches.kind == "worse":
         return switches.best
     return FIXED if fixed and fixed.kind == "worse" else None
 
 
-def _of_switches(session: Optimization, found: AgainstSwitches) -> str:
-    phrase, played = phrase_of(session), _played(session)
+def _of_switches(found: AgainstSwitches, phrase: Phrase, played: str, advise: bool) -> str:
     doubt = phrase.doubt(found.low, found.high, found.chance)
     count = len(found.switches)
     which = f"the best of {count} switches, {found.best}" if count > 1 else f"the switch {found.best}"
     gone = f" Never scored: {', '.join(found.left_out)}." if found.left_out else ""
     by = "no difference found" if found.kind == "same" else phrase.difference(found.difference)
-    end = f"; take {found.best}" if found.kind == "worse" else ""
+    end = f"; take {found.best}" if found.kind == "worse" and advise else ""
     return f"Against {which}: {by} {doubt}{played}{end}.{gone}"
 
 
-def _of_fixed(session: Optimization, found: Retest) -> str:
-    phrase, played = phrase_of(session), _played(session)
+def _of_fixed(found: Retest, phrase: Phrase, played: str, advise: bool) -> str:
     doubt, by = phrase.doubt(found.low, found.high, found.chance), phrase.difference(found.difference)
     if found.kind == "better":
         return f"The fixed design would not have done: this one is {by} {doubt}{played}."
     if found.kind == "same":
         return f"The fixed design would have done: no difference found {doubt}{played}."
-    return f"The fixed design would have done: this one is {by} {doubt}{played}; take the fixed one."
+    end = "; take the fixed one" if advise else ""
+    return f"The fixed design would have done: this one is {by} {doubt}{played}{end}."
 
 
 def _played(session: Optimization) -> str:
@@ -165,5 +188,5 @@ def final_report(session: Optimization) -> Mapping[str, object]:
         "against_switches": asdict(switches) if switches else None,
         "against_fixed": asdict(fixed) if fixed else None,
         "final_means": [asdict(one) for one in final_means(session)],
-        "ending": list(_sentences(session, switches, fixed)) if session.finished else [],
+        "ending": list(ending_sentences(session)),
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,12 +12,14 @@ from fdvv.errors import InputError, ModelError
 from fdvv.optimize.people.groups import PAPER_GROUP, group_named
 from fdvv.optimize.people.press_simulator import TASK_RIGS, refusal_of
 from fdvv.optimize.people.simulate import score_design
+from fdvv.optimize.people.taste import Taste, draw_taste, rate
 from fdvv.optimize.people.user import SimulatedUser, draw_user
 from fdvv.optimize.problem import Trial, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.task.accuracy import Accuracy
 from fdvv.task.pointing import LEVELS_px_s, TemporalPointing
+from fdvv.task.questionnaire import LIKING, liking_score
 from fdvv.task.tapping import RapidTapping
 from fdvv.task.task import Task
 
@@ -35,6 +37,7 @@ class SimulatedPlayer:
     ----------
     user : the person. task : what is played. rig : what renders the designs.
     seed : of the presses; those of a trial depend on it and on the trial's number alone.
+    taste : what the person likes, for runs that ask.
     presses_before : made before the first trial, for users who learn or tire.
     """
 
@@ -43,6 +46,7 @@ class SimulatedPlayer:
     rig: str = "ideal"
     seed: int = 0
     presses_before: int = 0
+    taste: Taste = field(default_factory=Taste)
 
     def try_next(self, session: Optimization) -> Trial | None:
         """Try the next trial of a run, then of its retest; None when both are over.
@@ -60,6 +64,8 @@ class SimulatedPlayer:
         seed = play_seed(self.seed, shown.number)
         before = self.presses_before + shown.number * self.task.rounds
         scores = score_design(self.task, model, self.user, seed, rig=self.rig, presses_before=before)
+        if session.setup.asks_liking:
+            scores[LIKING.name] = liking_score(rate(model, self.taste, seed))
         return session.done(shown.number, scores)
 
     def play(self, session: Optimization, report: TrialDone = lambda _trial: None) -> None:
@@ -73,19 +79,26 @@ def play_seed(*path: int) -> int:
     return int(np.random.SeedSequence(path).generate_state(1, np.uint64)[0] >> 1)
 
 
-def task_named(name: str, level: str | None, presses: int = 20) -> Task:
+def task_named(name: str, level: str | None, presses: int = 20, also: tuple[str, ...] = ()) -> Task:
     """Return a task by its name; level only where the task has levels, presses: of a trial.
 
-    InputError on one that no simulated person plays, an unknown level, and presses too few for the task.
+    also : further objectives, of temporal pointing alone.
+
+    InputError on one that no simulated person plays, an unknown level, presses too few for the task, and on
+    objectives that it does not score.
     """
     if name not in SIMULATED_TASKS:
         known = ", ".join(SIMULATED_TASKS)
         raise InputError("task", name, "no simulated person plays it", f"use one of {known}")
     if name == POINTING and level not in LEVELS_px_s:
         raise InputError("level", str(level), "is unknown", f"use one of {', '.join(LEVELS_px_s)}")
+    if also and name != POINTING:
+        raise InputError(
+            "objectives", also[0], f"is not scored in {name}", f"leave it out, or play {POINTING}"
+        )
     try:
         if name == POINTING:
-            return TemporalPointing(str(level), presses)
+            return TemporalPointing(str(level), presses, also=also)
         return RapidTapping(presses) if name == TAPPING else Accuracy(presses)
     except ModelError as error:
         raise InputError("presses", str(presses), str(error), "give more") from error
@@ -119,5 +132,6 @@ def player_of(setup: OptimizeSetup) -> SimulatedPlayer:
     presses, rig = int(player.get("presses", 20)), str(player.get("rig", "ideal"))
     # runs of an earlier fdvv name no group
     people = group_named(str(player.get("group", PAPER_GROUP)))
-    user, task = draw_user(0, player["person"], people), task_named(setup.task, setup.level, presses)
-    return SimulatedPlayer(user, task, rig, setup.seed)
+    user = draw_user(0, player["person"], people)
+    task = task_named(setup.task, setup.level, presses, setup.task_also)
+    return SimulatedPlayer(user, task, rig, setup.seed, taste=draw_taste(0, player["person"]))

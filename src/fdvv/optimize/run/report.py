@@ -14,8 +14,9 @@ from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.problem import Trial, TrialState
 from fdvv.optimize.run.ending import final_report
+from fdvv.optimize.run.front import front_report, front_section, score_label, score_text
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.verdict import at_bound, retest_of, verdict_sentence
+from fdvv.optimize.run.verdict import at_bound, retest_of, retests_of, verdict_sentence
 from fdvv.report import style
 from fdvv.report.report import Section, Table, render_html
 from fdvv.report.score_figures import TrainingScores, plot_training
@@ -101,11 +102,12 @@ SIMULATED = "a simulated person pressed the twin; no human and no hardware took 
 def optimize_report(session: Optimization) -> dict[str, Any]:
     """Return trials, the recommended design and how the run was made; units are in the names.
 
+    front : of several objectives, see `front_report`. retests : see `Retest`, by objective.
     at_bound : its values that are the least or the most allowed. retest, against_fixed : see `Retest`;
     against_switches : see `AgainstSwitches`; None of none. final_means : of all that was played at the end.
     verdict, ending : in sentences.
     """
-    setup, best, retest = session.setup, best_of(session), retest_of(session)
+    setup, best, retest = session.setup, session.recommended(), retest_of(session)
     return {
         "space": session.space.name,
         "engine": setup.engine,
@@ -113,12 +115,15 @@ def optimize_report(session: Optimization) -> dict[str, Any]:
         "level": setup.level,
         "seed": setup.seed,
         "objective": session.problem.objectives[0].name,
+        "objectives": [one.name for one in session.problem.objectives],
         "budget": setup.budget,
         "finished": session.finished,
         "trials": [trial_report(trial) for trial in session.trials],
         "best": best,
         "at_bound": at_bound(session.space, best, session.start) if best else {},
+        "front": front_report(session),
         "retest": asdict(retest) if retest else None,
+        "retests": {name: asdict(one) for name, one in retests_of(session).items()},
         "verdict": verdict_sentence(session),
         **final_report(session),
         "simulated": setup.simulated,
@@ -141,18 +146,19 @@ def trial_report(trial: Trial) -> dict[str, Any]:
     }
 
 
-def best_of(session: Optimization) -> dict[str, float] | None:
-    """Return the recommended design; None as long as nothing is done, or with several objectives."""
-    return None if len(session.problem.objectives) > 1 else session.recommended()
-
-
 def optimize_html(session: Optimization) -> str:
     """Write the page of a run. Needs matplotlib (BuildError without it)."""
     report, setup = optimize_report(session), session.setup
     done = [t for t in session.trials if t.state is TrialState.DONE]
     counts = f"{len(session.trials)} of {setup.budget} trials, {len(done)} of them scored"
     title = f"{setup.task}, {setup.level}" if setup.level else setup.task
-    sections = [_verdict(report), _found(session, report), _scores(session), _trials(session)]
+    sections = [
+        _verdict(report),
+        front_section(session),
+        _found(session, report),
+        _scores(session),
+        _trials(session),
+    ]
     footer = f"fdvv {__version__}; engine {setup.engine}, seed {setup.seed}, begun {setup.created}"
     shown = [section for section in sections if section is not None]
     summary = f"Space {session.space.name}, engine {setup.engine}: {counts}."
@@ -177,24 +183,25 @@ def _verdict(report: dict[str, Any]) -> Section | None:
         return Section("Verdict", tuple(text))
     most = max(one["trials"] for one in means)
     text.append(f"All were played again, blind, in {most} blocks of drawn order; each block has each once.")
-    label = score_label(report["objective"])
-    rows = (
-        (one["name"], str(one["trials"]), "–" if one["mean"] is None else f"{one['mean']:.1f}")
+    names = report["objectives"]
+    rows = tuple(
+        (one["name"], str(one["trials"]), *(score_text(one["means"][name], name) for name in names))
         for one in means
     )
-    return Section("Verdict", tuple(text), (), (Table(("played", "trials", f"mean {label}"), tuple(rows)),))
+    columns = ("played", "trials", *(f"mean {score_label(name)}" for name in names))
+    return Section("Verdict", tuple(text), (), (Table(columns, rows),))
 
 
 def _found(session: Optimization, report: dict[str, Any]) -> Section:
     """Show the recommended design beside the one that was begun from."""
     best, start = report["best"], session.start
     if best is None or start is None:
-        return Section("Design found", ("Nothing is scored yet, or there are several objectives.",))
+        return Section("Design found", ("Nothing is scored yet.",))
     # another program's own numbers are no buttons to draw
     figures = () if session.setup.space.kind == "own" else (_designs_svg(session, start, best),)
     limits = {one.name: (f"{one.low:.2f}", f"{one.high:.2f}") for one in session.space.parameters}
     rows = tuple((name, f"{start[name]:.2f}", f"{best[name]:.2f}", *limits[name]) for name in limits)
-    text = ["The recommendation is by what the engine believes of all trials, not by the luckiest score."]
+    text = ["The recommendation is by what is believed of all trials, not by the luckiest score."]
     for name, which in report["at_bound"].items():
         text.append(f"{name} is the {which} allowed: a better design may lie beyond.")
     columns = ("parameter", "start", "recommended", "least", "most")
@@ -221,21 +228,25 @@ def _scores(session: Optimization) -> Section | None:
     return Section("Scores", (), (figure_svg(axes, "Score of every trial"),))
 
 
-def score_label(name: str) -> str:
-    """Write an objective's name for an axis: asynchrony_ms is asynchrony (ms)."""
-    words, _, unit = name.rpartition("_")
-    return f"{words.replace('_', ' ')} ({unit})" if words else name
-
-
 def _trials(session: Optimization) -> Section:
-    columns = ("trial", "state", "score", "error", *(score_label(name) for name in session.space.names))
+    objectives = [one.name for one in session.problem.objectives]
+    more = tuple(score_label(name) for name in objectives[1:])
+    columns = (
+        "trial",
+        "state",
+        "score",
+        "error",
+        *more,
+        *(score_label(name) for name in session.space.names),
+    )
     rows = []
     for trial in session.trials:
         report = trial_report(trial)
         digits = {name: 0 if name.endswith("_cN") else 2 for name in session.space.names}
         values = (f"{trial.design[name]:.{places}f}" for name, places in digits.items())
         scored = ("–" if report[key] is None else f"{report[key]:.1f}" for key in ("score", "error"))
-        rows.append((str(trial.number), report["state"], *scored, *values))
+        others = (score_text(report["scores"].get(name), name) for name in objectives[1:])
+        rows.append((str(trial.number), report["state"], *scored, *others, *values))
     failed = tuple(
         f"Trial {t.number} failed: {t.reason}." for t in session.trials if t.state is TrialState.FAILED
     )

@@ -9,10 +9,11 @@ from fdvv.errors import InputError, ModelError
 from fdvv.io.files import require_new_folder, write_atomic
 from fdvv.model.file import model_from_json
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.engines.multi_objective import ParetoFront, pareto_front
+from fdvv.optimize.engines.multi_objective import ParetoFront, believed_front
 from fdvv.optimize.engines.registry import LINE_ENGINES, engine_of, line_engine_of, pair_engine_of
 from fdvv.optimize.problem import OPEN, Answer, Comparison, Engine, Line, Trial, TrialState
 from fdvv.optimize.run.blocks import Block, Played, blocks_of, in_drawn_order, played_in_block
+from fdvv.optimize.run.compromise import keep_choice, recommended_of
 from fdvv.optimize.run.ledger import Ledger, Step, Suggested, steps_before
 from fdvv.optimize.run.rivals import named_rivals
 from fdvv.optimize.run.setup import (
@@ -60,6 +61,7 @@ class Optimization:
         self._given: set[int] = set()
         self._rivals = named_rivals(setup.rivals)
         self._found: tuple[int, dict[str, float] | None] = (-1, None)
+        self._front: tuple[int, ParetoFront] = (-1, ParetoFront(self.problem, ()))
 
     @classmethod
     def create(cls, folder: Path, setup: OptimizeSetup, project: Path | None = None) -> Optimization:
@@ -206,7 +208,7 @@ class Optimization:
         return self.trials[0].design if self.trials else None
 
     def recommended(self) -> dict[str, float] | None:
-        """Return `best`, or the knee of the front; None while nothing is done. What is retested stays."""
+        """Return `best`, or a compromise; None while nothing is done. What is retested stays."""
         retested = [one.design for one in self.retests if not one.rival]
         retested += [design for one in self.retest_comparisons for design in (one.first, one.second)]
         if fixed := next((design for design in retested if design != self.start), None):
@@ -218,8 +220,9 @@ class Optimization:
 
     def _recommended(self) -> dict[str, float] | None:
         try:
-            several = len(self.problem.objectives) > 1 and not self.setup.preference
-            return self.front().knee().design if several else self.best()
+            if self.setup.several:
+                return recommended_of(self.front(), self.setup, self.folder).design
+            return self.best()
         except ModelError:
             return None
 
@@ -281,8 +284,22 @@ class Optimization:
         return self._scored().best(self.problem, self.trials)
 
     def front(self) -> ParetoFront:
-        """Return the compromises that no other trial beats, where there are several objectives."""
-        return pareto_front(self.problem, self.trials)
+        """Return the compromises that no other trial beats by what is believed, see `believed_front`."""
+        known = sum(trial.state is TrialState.DONE for trial in self.trials)
+        if self._front[0] != known:
+            self._front = known, believed_front(self.problem, self.trials)
+        return self._front[1]
+
+    def take(self, number: int) -> Trial:
+        """Recommend another trial of the front, on the disk when this returns.
+
+        InputError before the search is over, once its retest has begun, and on what is not on the front.
+        """
+        if not self.setup.several or not self.searched or self.retests:
+            reason = "a compromise is chosen between the search and its retest"
+            raise InputError("run", "compromise", reason, "choose it then, in a run of several objectives")
+        self._found = -1, None
+        return keep_choice(self.front(), number, self.folder)
 
     def compare(self) -> Comparison | None:
         """Return the next two designs to be compared: the unanswered first; None once all is answered.

@@ -27,7 +27,8 @@ from fdvv.optimize.space import Constraint, Design, DesignSpace, Parameter
 from fdvv.rendering.feasibility import CurveFeasibility, feasibility
 from fdvv.rendering.rig_catalog import AvailableRig, RigCatalog
 from fdvv.rendering.session import now, versions
-from fdvv.task.pointing import ASYNCHRONY, TemporalPointing
+from fdvv.task.pointing import ASYNCHRONY, MORE, TemporalPointing
+from fdvv.task.questionnaire import LIKING
 from fdvv.task.score import Objective
 
 MISSED_RATIO = 0.25
@@ -113,6 +114,18 @@ class SpaceSetup(Struct, frozen=True, forbid_unknown_fields=True):
     buttons: bool = False
 
 
+WISHES = (*MORE, LIKING.name)
+"""What temporal pointing may be optimised for beside its asynchrony."""
+
+
+def wished(names: Sequence[str]) -> tuple[Objective, ...]:
+    """Return the objectives of WISHES, each once. InputError on an unknown one."""
+    for name in names:
+        if name not in WISHES:
+            raise InputError("objectives", name, "is not known", f"use {', '.join(WISHES)}")
+    return tuple(LIKING if name == LIKING.name else Objective(name) for name in dict.fromkeys(names))
+
+
 class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """An optimisation.
 
@@ -124,12 +137,14 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     start : a person's own design, tried first. prior : finished trials of others to begin from.
     rivals : what is played beside start and result at the end, their names differ.
     about : whatever else belongs to a run: who presses, on what, how many PRESSES make a score, how many
-        blocks of trials RETEST the result, and the NAME of the button it starts from.
+        blocks of trials RETEST the result, the NAME of the button it starts from, and by which WEIGHTS of
+        several objectives a compromise is recommended.
     """
 
     PRESSES: ClassVar[str] = "presses"
     RETEST: ClassVar[str] = "retest"
     NAME: ClassVar[str] = "start_name"
+    WEIGHTS: ClassVar[str] = "weights"
 
     format: Literal["fdvv-optimize"] = "fdvv-optimize"
     version: Literal[1] = 1
@@ -159,6 +174,26 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
         """How many presses of a person make a score; by default as in the paper."""
         presses = self.about.get(self.PRESSES)
         return presses if isinstance(presses, int) else TemporalPointing.rounds
+
+    @property
+    def several(self) -> bool:
+        """Whether there is a front of compromises, not one best design."""
+        return len(self.objectives) > 1 and not self.preference
+
+    @property
+    def asks_liking(self) -> bool:
+        """Whether a person answers the questionnaire after every trial."""
+        return LIKING in self.objectives
+
+    @property
+    def task_also(self) -> tuple[str, ...]:
+        """What the task scores beside its first objective."""
+        return tuple(one.name for one in self.objectives[1:] if one != LIKING)
+
+    @property
+    def weights(self) -> dict[str, float]:
+        """By which a compromise is recommended, by objective; empty: the knee of the front."""
+        return dict(self.about.get(self.WEIGHTS) or {})
 
     @property
     def retest_pairs(self) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -11,13 +11,16 @@ import numpy as np
 from fdvv.optimize.problem import Answer, Trial, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.space import Design, DesignSpace
+from fdvv.task.questionnaire import HIGHEST, LIKING
+from fdvv.task.score import Objective
 
 BOUND_RATIO = 0.01
 """A value that is this near to a bound, in proportion to the range, is at it."""
 LEVEL = 0.95
 PARTS = {"bump_cN": ("bump_mm", "snap_mm"), "vibration_gain_ratio": ("vibration_Hz", "vibration_mm")}
 """What is without effect where the first is as good as 0."""
-Kind = Literal["better", "same", "worse"]
+Kind = Literal["better", "same", "worse", "mixed"]
+"""What was found; mixed : better in one objective, worse in another."""
 
 
 def kind_of(low: float, high: float) -> Kind:
@@ -53,13 +56,29 @@ def retest_of(session: Optimization) -> Retest | None:
 
 
 def _of_scores(session: Optimization) -> Retest | None:
+    return retests_of(session).get(session.problem.objectives[0].name)
+
+
+def retests_of(session: Optimization) -> dict[str, Retest]:
+    """Return what the retest found by objective, of those that were scored; empty of comparisons.
+
+    Several intervals hold together with LEVEL: each has the level of Bonferroni.
+    """
     pairs = [(block.found, block.start) for block in session.blocks if block.found is not block.start]
-    return paired(gains(session, pairs))
+    objectives = session.problem.objectives
+    level = 1 - (1 - LEVEL) / len(objectives)
+    found = {one.name: paired(gains(session, pairs, one), level) for one in objectives}
+    return {name: one for name, one in found.items() if one is not None}
 
 
-def gains(session: Optimization, pairs: Sequence[tuple[Trial, Trial]]) -> list[float]:
-    """Return by how much the first of two trials is better, of those where both are scored."""
-    objective = session.problem.objectives[0]
+def gains(
+    session: Optimization, pairs: Sequence[tuple[Trial, Trial]], objective: Objective | None = None
+) -> list[float]:
+    """Return by how much the first of two trials is better, of those where both are scored.
+
+    objective : in which; None: the first.
+    """
+    objective = objective or session.problem.objectives[0]
     both = ([one.scores[objective.name].value for one in pair] for pair in pairs if scored(*pair))
     return [objective.sign * (other - mine) for mine, other in both]
 
@@ -68,8 +87,8 @@ def scored(*trials: Trial) -> bool:
     return all(trial.state is TrialState.DONE for trial in trials)
 
 
-def paired(better: Sequence[float]) -> Retest | None:
-    """Return mean, interval and chance of differences; None of fewer than two."""
+def paired(better: Sequence[float], level: float = LEVEL) -> Retest | None:
+    """Return mean, interval of a level and chance of differences; None of fewer than two."""
     from scipy.stats import t as student
 
     n = len(better)
@@ -78,7 +97,7 @@ def paired(better: Sequence[float]) -> Retest | None:
     mean, error = float(np.mean(better)), float(np.std(better, ddof=1) / np.sqrt(n))
     if error == 0:
         return Retest(n, mean, mean, mean, float(np.heaviside(mean, 0.5)))
-    half = float(student.ppf(0.5 + LEVEL / 2, n - 1)) * error
+    half = float(student.ppf(0.5 + level / 2, n - 1)) * error
     return Retest(n, mean, mean - half, mean + half, float(student.cdf(mean / error, n - 1)))
 
 
@@ -104,6 +123,7 @@ class Phrase:
     Attributes
     ----------
     better, worse : in words. unit : shown. scale : by which a value is multiplied for it. digits : shown.
+    what : the objective in words, for a sentence that finds no difference in it.
     """
 
     better: str
@@ -111,6 +131,7 @@ class Phrase:
     unit: str
     scale: float = 1.0
     digits: int = 0
+    what: str = "the score"
 
     def number(self, value: float) -> str:
         """Write a value without its unit."""
@@ -120,6 +141,16 @@ class Phrase:
     def difference(self, value: float) -> str:
         """Write how much better one of two is, or how much worse below 0."""
         return f"{self.number(abs(value))} {self.unit} {self.better if value > 0 else self.worse}"
+
+    def among_others(self, found: Retest) -> str:
+        """Write what a retest found, as a part of a sentence on several objectives."""
+        if found.low == found.high == 0:
+            return f"no difference in {self.what}"
+        if found.kind == "same":
+            interval = f"({self.number(found.low)} to {self.number(found.high)} {self.unit})"
+            return f"no difference found in {self.what} {interval}"
+        low, high = sorted((abs(found.low), abs(found.high)))
+        return f"{self.difference(found.difference)} ({self.number(low)} to {self.number(high)})"
 
     def doubt(self, low: float, high: float, chance: float) -> str:
         """Write an interval and the chance of being better, in brackets."""
@@ -135,15 +166,19 @@ def chance_text(chance: float) -> str:
 
 
 PHRASES = {
-    "asynchrony_ms": Phrase("closer to the bullet", "farther from the bullet", "ms"),
+    "asynchrony_ms": Phrase("closer to the bullet", "farther from the bullet", "ms", what="timing"),
+    "lost_ratio": Phrase("fewer lost rounds", "more lost rounds", "%", 100.0, 1, "lost rounds"),
+    "effort_N_s": Phrase("less effort", "more effort", "N s", digits=2, what="effort"),
+    LIKING.name: Phrase("better liked", "worse liked", f"of {HIGHEST} points", digits=1, what="liking"),
     "rate_Hz": Phrase("faster", "slower", "taps per second", digits=2),
     "errors_ratio": Phrase("fewer errors", "more errors", "%", 100.0, 1),
 }
 
 
-def phrase_of(session: Optimization) -> Phrase:
-    """Return how differences in a run's first objective are written."""
-    return PHRASES.get(session.problem.objectives[0].name, Phrase("better", "worse", "", digits=2))
+def phrase_of(session: Optimization, objective: Objective | None = None) -> Phrase:
+    """Return how differences in an objective of a run are written; None: in its first."""
+    name = (objective or session.problem.objectives[0]).name
+    return PHRASES.get(name, Phrase("better", "worse", "", digits=2, what=name))
 
 
 def verdict_kind(session: Optimization) -> Kind | None:
@@ -152,8 +187,17 @@ def verdict_kind(session: Optimization) -> Kind | None:
         return None
     if session.recommended() == session.start:
         return "same"
+    if session.setup.several:
+        return _joined([one.kind for one in retests_of(session).values()])
     found = retest_of(session)
     return found.kind if found else None
+
+
+def _joined(kinds: Sequence[Kind]) -> Kind | None:
+    """Return what the kinds of several objectives come to; None of none."""
+    if "better" in kinds:
+        return "mixed" if "worse" in kinds else "better"
+    return next((kind for kind in ("worse", "same") if kind in kinds), None)
 
 
 def verdict_sentence(session: Optimization) -> str | None:
@@ -165,6 +209,8 @@ def verdict_sentence(session: Optimization) -> str | None:
     found = retest_of(session)
     if found is None:
         return f"No better design found{played}; keep {name}."
+    if session.setup.several:
+        return _of_several(session, kind)
     if session.setup.preference:
         count = round((found.difference + 0.5) * found.pairs)
         share = f"95 %: {100 * (found.low + 0.5):.0f} to {100 * (found.high + 0.5):.0f} %"
@@ -178,6 +224,26 @@ def verdict_sentence(session: Optimization) -> str | None:
         return f"{by} than {name} {doubt}{played}."
     doubt = phrase.doubt(-found.high, -found.low, found.chance)
     return f"{by} than {name} {doubt}{played}; keep {name}."
+
+
+ENDS: Mapping[Kind, str] = {
+    "better": "",
+    "mixed": "; a gain for a loss: decide what counts more",
+    "same": "; keep {name}",
+    "worse": "; keep {name}",
+}
+
+
+def _of_several(session: Optimization, kind: Kind) -> str:
+    name, found = session.setup.start_name, retests_of(session)
+    said = [
+        phrase_of(session, one).among_others(found[one.name])
+        for one in session.problem.objectives
+        if one.name in found
+    ]
+    played = ", simulated" if session.setup.simulated else ""
+    end = ENDS[kind].format(name=name)
+    return f"Against {name}: {', '.join(said)}; the intervals hold together at 95 %{played}{end}."
 
 
 def at_bound(
