@@ -19,6 +19,7 @@ from fdvv.optimize.run.begin import read_grid
 from fdvv.optimize.run.session import Optimization
 from fdvv.studio import play_trials
 from fdvv.studio.optimizations import Optimizations
+from fdvv.studio.rated_trial import rate_trial, waiting_trial
 from fdvv.studio.studio import Studio
 from fdvv.task.pointing import TemporalPointing
 from fdvv.task.rounds import ClockSource, TaskRounds
@@ -547,3 +548,101 @@ def test_several_objectives_make_a_front_to_pick_from(ask: Callable[..., Any], o
     found = ask("detail", run=run)
     assert [one["front"] for one in found["trials"]] == [True, True, False]
     assert ask("best", run=run)["design"] in [one["design"] for one in found["trials"][:2]]
+
+
+WISHES = {
+    **CREATE,
+    "engine": "sobol",
+    "also": ["liking"],
+    "retest": 2,
+    "budget": 2,
+    "start": "builtin:mx-brown",
+}
+
+
+def pressed_to_the_end(client: TestClient, run: int, trial: int) -> dict[str, Any]:
+    """Play both rounds of a trial without a press; return what is said of the last."""
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        player.say("open", run=run, trial=trial)
+        player.hear("ready")
+        player.round(1, press=False)
+        return player.round(2, press=False)
+
+
+def test_a_trial_counts_once_its_questions_are_answered_and_they_are_on_the_disk(
+    ask: Callable[..., Any], client: TestClient, own_studio: Studio
+) -> None:
+    run = ask("create", **WISHES)["run"]
+    ask("next", run=run)
+    asked = ask("detail", run=run)["questions"]
+    assert (asked["trial"], asked["least"], asked["most"], len(asked["items"])) == (None, 1, 7, 4)
+    assert "waits for no answers" in refusal(client, "rate", run=run, trial=0, answers=[4, 4, 4, 4])
+    assert pressed_to_the_end(client, run, 0)["finished"]
+    found = ask("detail", run=run)
+    assert (found["trials"][0]["state"], found["questions"]["trial"]) == ("shown", 0)
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        player.say("open", run=run, trial=0)
+        assert "waits for answers" in player.hear("ready")["error"]
+    assert "from 1 to 7" in refusal(client, "rate", run=run, trial=0, answers=[4, 4, 4, 8])
+    ask("rate", run=run, trial=0, answers=[4, 5, 6, 7])
+    found = ask("detail", run=run)
+    assert found["questions"]["trial"] is None
+    assert found["trials"][0]["scores"]["liking"]["value"] == 5.5
+    text = (own_studio.project / "optimize" / str(run) / "rounds.jsonl").read_text()
+    assert '"answers": [4, 5, 6, 7]' in text or '"answers":[4,5,6,7]' in text
+
+
+def test_a_studio_that_was_killed_before_the_answers_asks_again_and_loses_no_press(
+    ask: Callable[..., Any], client: TestClient, own_studio: Studio
+) -> None:
+    """What a killed studio leaves: presses on the disk, and a trial that was shown and never scored."""
+    run = ask("create", **WISHES)["run"]
+    ask("next", run=run)
+    pressed_to_the_end(client, run, 0)
+    before = (own_studio.project / "optimize" / str(run) / "rounds.jsonl").read_bytes()
+    other = Optimizations(own_studio)
+    with other.session(run) as session:
+        waiting = waiting_trial(session, other.folder(run))
+    assert waiting is not None
+    rate_trial(other, run, waiting.number, [6, 6, 6, 6])
+    after = (own_studio.project / "optimize" / str(run) / "rounds.jsonl").read_bytes()
+    assert after.startswith(before)
+    (trial,) = ask("detail", run=run)["trials"]
+    assert trial["state"] == "done"
+    assert trial["scores"]["asynchrony_ms"]["value"] == 400.0
+
+
+def test_a_compromise_is_taken_from_the_front_and_played_again_with_its_questions(
+    ask: Callable[..., Any], client: TestClient
+) -> None:
+    run = ask("create", **{**WISHES, "simulated": True, "budget": 6, "retest": 2})["run"]
+    assert ask("detail", run=run)["compromise"] is None
+    ask("simulate", run=run, person=3, trials=6)
+    while ask("detail", run=run)["simulated"]["running"]:
+        time.sleep(0.05)
+    found = ask("detail", run=run)
+    front = [one for one in found["trials"] if one["front"]]
+    assert found["compromise"] in [one["number"] for one in front]
+    assert all(set(one["believed"]) == {"asynchrony_ms", "liking"} for one in front)
+    other = front[-1]["number"]
+    ask("take", run=run, trial=other)
+    found = ask("detail", run=run)
+    assert found["compromise"] == other
+    assert ask("best", run=run)["design"] == found["trials"][other]["design"]
+    ask("simulate", run=run, person=3, trials=4)
+    while ask("detail", run=run)["simulated"]["running"]:
+        time.sleep(0.05)
+    retest = ask("detail", run=run)["retest"]
+    assert (retest["done"], retest["total"]) == (4, 4)
+    assert "liking" in retest["sentence"] or "liked" in retest["sentence"]
+    assert "between the search and its retest" in refusal(client, "take", run=run, trial=other)
+
+
+def test_others_who_were_asked_nothing_are_no_beginning_for_several_wishes(
+    ask: Callable[..., Any], client: TestClient, own_studio: Studio
+) -> None:
+    grid(own_studio.project / "others" / "easy", "easy")
+    asked = {**WISHES, "others": "easy"}
+    assert "others scored asynchrony alone" in refusal(client, "create", **asked)

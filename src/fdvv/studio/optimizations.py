@@ -13,6 +13,7 @@ from msgspec import Struct
 
 from fdvv.errors import FdvvError, InputError
 from fdvv.optimize.people.simulate import score_design
+from fdvv.optimize.people.taste import Taste, draw_taste, rate
 from fdvv.optimize.people.user import SimulatedUser, draw_users
 from fdvv.optimize.problem import TrialState
 from fdvv.optimize.run.session import Optimization
@@ -20,6 +21,7 @@ from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.studio.contract import Message, Watchers, error_line
 from fdvv.studio.played_trial import PlayedTrial, pointing_of, require_player
 from fdvv.studio.studio import Studio
+from fdvv.task.questionnaire import LIKING, liking_score
 
 log = logging.getLogger("fdvv.studio")
 
@@ -53,8 +55,8 @@ class SimulatedPlay:
 
     def _play(self) -> None:
         try:
-            (user,) = draw_users(1, self.person)
-            while not self._stop.is_set() and self.done < self.total and self._one(user):
+            (user,), taste = draw_users(1, self.person), draw_taste(0, self.person)
+            while not self._stop.is_set() and self.done < self.total and self._one(user, taste):
                 self.done += 1
                 self._runs.announce(self._run)
         except FdvvError as error:
@@ -68,7 +70,7 @@ class SimulatedPlay:
             self.running = False
             self._runs.announce(self._run)
 
-    def _one(self, user: SimulatedUser) -> bool:
+    def _one(self, user: SimulatedUser, taste: Taste) -> bool:
         """Play the next trial; False if there is none."""
         with self._runs.session(self._run) as session:
             task, seed = pointing_of(session.setup), session.setup.seed
@@ -84,6 +86,8 @@ class SimulatedPlay:
         before = task.rounds * trial.number
         scores = score_design(task, model, user, seed + trial.number, presses_before=before)
         with self._runs.session(self._run) as session:
+            if session.setup.asks_liking:
+                scores[LIKING.name] = liking_score(rate(model, taste, seed + trial.number))
             session.done(trial.number, scores)
         return True
 
@@ -198,6 +202,13 @@ class Optimizations:
         if self._found.get(run, (0, {}))[0] != done:
             self._found[run] = (done, session.recommended() or {})
         return self._found[run][1] or None
+
+    def take(self, run: int, trial: int) -> None:
+        """Recommend another compromise of a run's front. InputError, see `Optimization.take`."""
+        with self.session(run) as session:
+            session.take(trial)
+            self._found.pop(run, None)
+        self.announce(run)
 
     def announce(self, run: int) -> None:
         self.watchers.tell(OptimizeChanged(run))

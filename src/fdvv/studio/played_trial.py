@@ -12,7 +12,7 @@ from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.studio.contract import Message
 from fdvv.task.pointing import TemporalPointing
-from fdvv.task.rounds import ClockSource, RoundTiming, TaskRounds
+from fdvv.task.rounds import ClockSource, RoundTiming, TaskRounds, read_counting
 from fdvv.task.task import TaskPress
 
 if TYPE_CHECKING:
@@ -123,8 +123,7 @@ def pointing_of(setup: OptimizeSetup) -> TemporalPointing:
     """
     if not playable(setup):
         raise InputError("optimise", setup.task, "is not played on the page", "use fdvv optimize")
-    also = tuple(one.name for one in setup.objectives[1:])
-    return TemporalPointing(setup.level or "easy", setup.presses, quantised=False, also=also)
+    return TemporalPointing(setup.level or "easy", setup.presses, quantised=False, also=setup.task_also)
 
 
 class PlayedTrial:
@@ -133,7 +132,8 @@ class PlayedTrial:
     model : the button under test. seed : of everything random in its simulation.
     task : what is played. attempt : how often the trial was begun.
 
-    Raises InputError if the trial has come to its end, or the run's task is not played here.
+    Raises InputError if the trial has come to its end or waits for answers, or the run's task is not played
+    here.
     """
 
     def __init__(self, runs: Optimizations, run: int, number: int) -> None:
@@ -145,6 +145,9 @@ class PlayedTrial:
                 require_player(session.setup, simulated=False)
                 self.task, self.seed = pointing_of(session.setup), session.setup.seed
                 trial = _open_trial(session, number)
+                self._asks = session.setup.asks_liking
+                if self._asks and len(read_counting(runs.folder(run), number)) >= self.task.rounds:
+                    raise InputError("optimise", f"trial {number + 1}", "waits for answers", "rate it first")
                 self.model = session.button(trial, f"trial {number + 1}")
                 self._rounds = TaskRounds(runs.folder(run))
                 if trial.state is TrialState.SUGGESTED:
@@ -155,14 +158,17 @@ class PlayedTrial:
             raise
 
     def keep(self, ask: PlayRound, activations_s: tuple[float, ...], timing: RoundTiming) -> PlayKept:
-        """Keep a round with what was pressed in it; score the trial after the last. InputError."""
+        """Keep a round with what was pressed in it; score the trial after the last. InputError.
+
+        A trial with a questionnaire is not scored before it is answered.
+        """
         if self._over:
             raise InputError("optimise", f"trial {self._number + 1}", "is played elsewhere", "begin it again")
         target_s = (ask.target_ms + ask.display.ms) / 1e3
         self._rounds.add(self._number, target_s, activations_s, timing)
         counting = self._rounds.counting(self._number)
         finished = len(counting) >= self.task.rounds
-        if finished:
+        if finished and not self._asks:
             self._score([one.press for one in counting])
         late_ms = 1e3 * (activations_s[0] - target_s) if activations_s else None
         return PlayKept(ask.number, late_ms, timing.transport_ms, finished)

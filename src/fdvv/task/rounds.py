@@ -1,12 +1,14 @@
 """The presses of a person in a task, each on the disk before the next: people cannot repeat them.
 
 ``rounds.jsonl`` in an optimisation's folder is a journal (see `fdvv.eventlog`) with the records
-``{"begun": {…}}`` each time a trial is begun and ``{"round": {…}}`` for every round. A trial that was broken
-off and begun again keeps its rounds, but only those of its last beginning count.
+``{"begun": {…}}`` each time a trial is begun, ``{"round": {…}}`` for every round and ``{"rated": {…}}`` for
+the answers to a questionnaire. A trial that was broken off and begun again keeps its rounds, but only those
+of its last beginning count.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
@@ -15,7 +17,7 @@ import msgspec
 from msgspec import Struct
 
 from fdvv.errors import InputError
-from fdvv.eventlog import Journal, JournalKind
+from fdvv.eventlog import Journal, JournalKind, read_bodies
 from fdvv.task.task import TaskPress
 
 ROUNDS = "rounds.jsonl"
@@ -93,8 +95,21 @@ class TrialBegun(Struct, frozen=True):
     made: str = ""
 
 
+class TrialRated(Struct, frozen=True, forbid_unknown_fields=True):
+    """The answers to the questionnaire after a trial that was begun for the given time, at a time (UTC).
+
+    answers : to the items of `fdvv.task.questionnaire`, in their order, from 1 to 7.
+    """
+
+    trial: int
+    attempt: int
+    answers: tuple[int, ...]
+    made: str
+
+
 KIND = JournalKind(
-    {"begun": TrialBegun, "round": TaskRound}, "move the file away; finished trials are in the ledger"
+    {"begun": TrialBegun, "round": TaskRound, "rated": TrialRated},
+    "move the file away; finished trials are in the ledger",
 )
 
 
@@ -148,11 +163,28 @@ class TaskRounds:
     def close(self) -> None:
         self._journal.close()
 
-    def _replay(self, _key: str, body: TrialBegun | TaskRound) -> None:
+    def rate(self, trial: int, answers: Sequence[int]) -> None:
+        """Write the answers to a trial's questionnaire to the disk."""
+        rated = TrialRated(trial, self._attempts[trial], tuple(answers), _now())
+        self._journal.write({"rated": msgspec.to_builtins(rated)})
+
+    def _replay(self, _key: str, body: TrialBegun | TaskRound | TrialRated) -> None:
         if isinstance(body, TrialBegun):
             self._attempts[body.trial] = body.attempt
-        else:
+        elif isinstance(body, TaskRound):
             self._rounds.append(body)
+
+
+def read_counting(folder: Path, trial: int) -> tuple[TaskRound, ...]:
+    """Read the rounds of a trial since it was begun last, without a lock. Raises InputError, OSError."""
+    attempt, rounds = 0, list[TaskRound]()
+    path = folder / ROUNDS
+    for _, body, _ in read_bodies(path, KIND) if path.exists() else ():
+        if isinstance(body, TrialBegun) and body.trial == trial:
+            attempt = body.attempt
+        elif isinstance(body, TaskRound) and body.trial == trial:
+            rounds.append(body)
+    return tuple(one for one in rounds if one.attempt == attempt)
 
 
 def _now() -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
@@ -25,7 +26,9 @@ from fdvv.optimize.space import Parameter
 from fdvv.studio.contract import Empty, Message, call, error_line, message_of, watch_channel
 from fdvv.studio.optimizations import Optimizations, OptimizeChanged
 from fdvv.studio.played_trial import PlayStrip, playable, pointing_of, strip_of
+from fdvv.studio.rated_trial import waiting_trial
 from fdvv.task.pointing import TemporalPointing
+from fdvv.task.questionnaire import HIGHEST, ITEMS, LOWEST
 from fdvv.task.score import Objective, Score
 
 Number = Annotated[int, Meta(ge=0, le=2**31)]
@@ -74,7 +77,11 @@ class OptimizeCurve(Message):
 
 
 class OptimizeTrial(Message):
-    """A trial. front : no other one is better in every objective; False where there is one objective."""
+    """A trial.
+
+    front : no other one is better in every objective, by what is believed; False where there is one
+    objective. believed : what is believed of its objectives; empty unless it is on the front.
+    """
 
     number: int
     design: dict[str, float]
@@ -85,6 +92,7 @@ class OptimizeTrial(Message):
     origin: str
     curve: OptimizeCurve
     front: bool
+    believed: dict[str, Score]
 
 
 class OptimizePair(Message):
@@ -137,6 +145,23 @@ class OptimizeRetest(Message):
     means: list[FinalMean]
 
 
+class OptimizeItem(Message):
+    """A question of the questionnaire, and what its lowest and highest answers mean."""
+
+    question: str
+    lowest: str
+    highest: str
+
+
+class OptimizeQuestions(Message):
+    """The questionnaire after a trial. trial : that waits for answers; None while none does."""
+
+    items: list[OptimizeItem]
+    least: int
+    most: int
+    trial: int | None
+
+
 class OptimizeDetail(Message):
     """A run and all of its trials.
 
@@ -145,6 +170,8 @@ class OptimizeDetail(Message):
     on_lines : designs are compared along lines, not in pairs.
     searched : the budget is spent; what is left is the retest.
     others : what it began from; empty if from nothing. playable : a person can play its task here.
+    questions : asked after every trial; None where nothing is asked. compromise : number of the trial whose
+    design is recommended, of several objectives once the search is over; else None.
     """
 
     row: OptimizeRow
@@ -166,6 +193,8 @@ class OptimizeDetail(Message):
     others: str
     simulated: OptimizeSimulated | None
     playable: bool
+    questions: OptimizeQuestions | None
+    compromise: int | None
 
 
 class OptimizeSimulate(OptimizeAsk):
@@ -198,8 +227,7 @@ def run_row(run: int, session: Optimization) -> OptimizeRow:
 
 
 def trial_list(session: Optimization) -> list[OptimizeTrial]:
-    several = len(session.problem.objectives) > 1
-    front = {one.number for one in session.front().trials} if several else set()
+    front = {one.number: one for one in session.front().trials} if session.setup.several else {}
     return [
         message_of(
             OptimizeTrial,
@@ -207,6 +235,7 @@ def trial_list(session: Optimization) -> list[OptimizeTrial]:
             edited=one.suggested is not None,
             curve=press_picture(session.model(one.design)),
             front=one.number in front,
+            believed=front[one.number].scores if one.number in front else {},
         )
         for one in session.trials
     ]
@@ -267,7 +296,25 @@ def detail(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeDetail:
             str(setup.about.get(OTHERS) or ""),
             message_of(OptimizeSimulated, play, about=f"simulated person {play.person}") if play else None,
             playable(setup),
+            questions(session, optimizations.folder(ask.run)),
+            compromise(session),
         )
+
+
+def questions(session: Optimization, folder: Path) -> OptimizeQuestions | None:
+    if not session.setup.asks_liking:
+        return None
+    waiting = waiting_trial(session, folder)
+    items = [message_of(OptimizeItem, item) for item in ITEMS]
+    return OptimizeQuestions(items, LOWEST, HIGHEST, waiting.number if waiting else None)
+
+
+def compromise(session: Optimization) -> int | None:
+    """Return the number of the recommended trial of the front."""
+    if not session.setup.several or not session.searched:
+        return None
+    found = session.recommended()
+    return next((one.number for one in session.front().trials if one.design == found), None)
 
 
 def retest_state(session: Optimization) -> OptimizeRetest:

@@ -15,7 +15,7 @@ from fdvv.optimize.people.groups import PAPER_GROUP
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.begin import offered_grid, offered_grids
 from fdvv.optimize.run.rivals import PEOPLE, SWITCHES, Rival, fixed_rivals, switch_rivals
-from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup
+from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup, wished
 from fdvv.optimize.space import Design
 from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.optimize import OTHERS, START, TITLE, Level, Name, Number, OptimizeAsk
@@ -24,8 +24,8 @@ from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.play_trials import pressed_devices
 from fdvv.studio.played_trial import TASK, playable, pointing_of
 from fdvv.studio.studio import Studio
-from fdvv.task.pointing import LEVELS_px_s, TemporalPointing
-from fdvv.task.score import Objective
+from fdvv.task.pointing import ASYNCHRONY, LEVELS_px_s, TemporalPointing
+from fdvv.task.questionnaire import ITEMS, LIKING
 
 
 class OptimizeOffers(Message):
@@ -107,7 +107,10 @@ PAIR_ENGINE_DESCRIPTIONS = {
     "preference-botorch": "the same, stronger; needs the extra fdvv[botorch]",
 }
 LINE_ENGINE_DESCRIPTIONS = {"preference-line": "learns from where on a line you like it best"}
-OBJECTIVE_DESCRIPTIONS = {"lost_ratio": "share of rounds lost"}
+OBJECTIVE_DESCRIPTIONS = {
+    "lost_ratio": "share of rounds lost",
+    LIKING.name: f"how much you like it, {len(ITEMS)} questions after every trial",
+}
 
 
 @call("optimize.offers")
@@ -143,7 +146,7 @@ def create(studio: Studio, ask: OptimizeCreate) -> OptimizeAsk:
         task="preference" if ask.preference else TASK,
         level=ask.level,
         simulated=ask.simulated,
-        objectives=tuple(Objective(name) for name in ("asynchrony_ms", *also)),
+        objectives=(ASYNCHRONY, *wished(also)),
         seed=ask.seed,
         budget=ask.budget,
         start=start,
@@ -205,6 +208,9 @@ def _others(studio: Studio, ask: OptimizeCreate) -> tuple[str, tuple[Trial, ...]
     """Return the prior data of a run, in words and as trials. InputError."""
     if ask.others is None:
         return "", ()
+    if ask.also:
+        reason = "others scored asynchrony alone"
+        raise InputError("optimise", ask.others, reason, "begin from nothing, or leave out other wishes")
     if ask.preference or ask.space != PAPER:
         reason = f"others scored designs of the space {PAPER}"
         raise InputError("optimise", ask.others, reason, "begin from nothing, or choose that space")

@@ -17,6 +17,7 @@ from fdvv.studio.api.optimize import Name, Number, OptimizeAsk
 from fdvv.studio.contract import Message, call
 from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.played_trial import open_trials
+from fdvv.studio.rated_trial import rate_trial
 
 
 class OptimizeBest(Message):
@@ -35,6 +36,12 @@ class OptimizeEdit(OptimizeTrialAsk):
     """Put a person's own design in the place of a suggestion that was not shown yet."""
 
     design: Annotated[dict[str, float], Meta(max_length=100)]
+
+
+class OptimizeRate(OptimizeTrialAsk):
+    """Answer the questionnaire after a trial. answers : to its questions, in their order, from 1 to 7."""
+
+    answers: Annotated[list[int], Meta(max_length=20)]
 
 
 class OptimizeAnswer(OptimizeAsk):
@@ -118,6 +125,20 @@ def abandon(optimizations: Optimizations, ask: OptimizeTrialAsk) -> OptimizeTria
     """Stop a trial; it teaches nothing and does not count."""
     with _changed(optimizations, ask.run) as session:
         session.abandon(ask.trial, "stopped on the page")
+    return ask
+
+
+@call("optimize.rate")
+def rate(optimizations: Optimizations, ask: OptimizeRate) -> OptimizeTrialAsk:
+    rate_trial(optimizations, ask.run, ask.trial, ask.answers)
+    optimizations.announce(ask.run)
+    return OptimizeTrialAsk(ask.run, ask.trial)
+
+
+@call("optimize.take")
+def take(optimizations: Optimizations, ask: OptimizeTrialAsk) -> OptimizeTrialAsk:
+    """Recommend another compromise of the front, before its retest."""
+    optimizations.take(ask.run, ask.trial)
     return ask
 
 

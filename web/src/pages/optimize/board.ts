@@ -84,6 +84,7 @@ export class Board {
         ? `Paused after ${game.kept} of ${game.rounds} presses`
         : `Press ${Math.min(game.kept + 1, game.rounds)} of ${game.rounds}`;
     if (this.play.reason()) return this.play.reason();
+    if (this.store.waiting() !== null) return "How was this button? The trial counts once you have answered.";
     const [last, spent] = [this.last(), this.spent()];
     if (last !== null)
       return `${this.scored(last)} ${spent ? "The run is over: see the result." : "Play the next one when you are ready."}`;

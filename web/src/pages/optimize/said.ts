@@ -38,7 +38,8 @@ export function said(store: RunStore, detail: OptimizeDetail, pace: Pace): Verdi
 }
 
 function found(store: RunStore, detail: OptimizeDetail, sentence: string): Verdict {
-  if (detail.retest.kind !== "better") {
+  const { kind } = detail.retest;
+  if (kind !== "better" && kind !== "mixed") {
     const to = address("edit", detail.start_button);
     return {
       sentence,
@@ -47,9 +48,10 @@ function found(store: RunStore, detail: OptimizeDetail, sentence: string): Verdi
     };
   }
   const saved = store.saved();
-  if (saved) return { sentence, kind: "good", next: { label: "Edit it", to: address("edit", saved) } };
+  const tone = kind === "better" ? "good" : "warning";
+  if (saved) return { sentence, kind: tone, next: { label: "Edit it", to: address("edit", saved) } };
   const act = () => void store.save(null, foundName(detail));
-  return { sentence, kind: "good", next: { label: "Save as my button", act } };
+  return { sentence, kind: tone, next: { label: "Save as my button", act } };
 }
 
 /** Write a time for people. */

@@ -47,6 +47,11 @@ export class RunStore extends Followed<OptimizeDetail> {
     return this.open()?.number ?? this.detail()?.retest.open ?? null;
   }
 
+  /** Number of the trial whose presses are all kept and whose questions are not answered. */
+  waiting(): number | null {
+    return this.detail()?.questions?.trial ?? null;
+  }
+
   /** Whether the best design and the start are played again now, blind. */
   retesting(): boolean {
     const detail = this.detail();

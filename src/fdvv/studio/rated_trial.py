@@ -1,0 +1,50 @@
+"""A played trial that waits for the answers to its questionnaire: asked again until they are on the disk."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fdvv.errors import InputError, ModelError
+from fdvv.optimize.problem import Trial, TrialState
+from fdvv.optimize.run.session import Optimization
+from fdvv.studio.played_trial import pointing_of
+from fdvv.task.questionnaire import LIKING, check_answers, liking_score
+from fdvv.task.rounds import TaskRounds, read_counting
+
+if TYPE_CHECKING:
+    from fdvv.studio.optimizations import Optimizations
+
+
+def waiting_trial(session: Optimization, folder: Path) -> Trial | None:
+    """Return the trial of a run whose presses are all on the disk and that nobody has rated yet."""
+    setup = session.setup
+    if not setup.asks_liking or setup.simulated:
+        return None
+    shown = [one for one in (*session.trials, *session.retests) if one.state is TrialState.SHOWN]
+    return next((one for one in shown if len(read_counting(folder, one.number)) >= setup.presses), None)
+
+
+def rate_trial(runs: Optimizations, run: int, number: int, answers: Sequence[int]) -> None:
+    """Keep the answers to a waiting trial's questionnaire, on the disk before the trial is scored.
+
+    InputError where no such trial waits, or on answers beyond the questionnaire.
+    """
+    with runs.session(run) as session:
+        waiting = waiting_trial(session, runs.folder(run))
+        if waiting is None or waiting.number != number:
+            raise InputError("optimise", f"trial {number + 1}", "waits for no answers", "play it first")
+        answers = check_answers(answers)
+        rounds = TaskRounds(runs.folder(run))
+        try:
+            rounds.rate(number, answers)
+            presses = [one.press for one in rounds.counting(number)]
+        finally:
+            rounds.close()
+        try:
+            scores = pointing_of(session.setup).scores(presses)
+        except ModelError as error:
+            session.fail(number, str(error))
+            return
+        session.done(number, {**scores, LIKING.name: liking_score(answers)})
