@@ -14,6 +14,7 @@ from fdvv.optimize.experiment.setup import ExperimentSetup
 from fdvv.optimize.population.plan import PopulationPlan
 from fdvv.optimize.population.population import ChunkRecord
 from fdvv.optimize.problem import Comparison, Trial
+from fdvv.optimize.run.compromise import Chosen
 from fdvv.optimize.run.ledger import Answered, Edited, TrialOutcome
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.program.file import ProgramRecord
@@ -36,7 +37,7 @@ from fdvv.study.files.seal import KeyHolderFile
 from fdvv.study.plan.events import Event
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.sweep.plan import SweepPlan
-from fdvv.task.rounds import TaskRound
+from fdvv.task.rounds import TaskRound, TrialRated
 from fdvv.thresholds.file import JndRecord, MeasuredJnd
 from fdvv.timing.plan.events import TimingEvent
 from fdvv.timing.plan.plan import TimingPlan
@@ -127,17 +128,20 @@ FILES = (
     ),
     FileKind(
         "Optimisation",
-        "`optimize.json`, `trials.jsonl`, `rounds.jsonl`",
+        "`optimize.json`, `trials.jsonl`, `rounds.jsonl`, `compromise.json`",
         "The folder of a run. `trials.jsonl` is an event log of trials, edits, outcomes, comparisons and "
-        "answers; `rounds.jsonl` is an event log of the rounds that a person played.",
+        "answers; `rounds.jsonl` is an event log of the rounds that a person played and of how they rated; "
+        "`compromise.json` is there once a person took another design of the front.",
         {
             "optimize.json": OptimizeSetup,
+            "compromise.json": Chosen,
             "trial": Trial,
             "edit": Edited,
             "state": TrialOutcome,
             "pair": Comparison,
             "answer": Answered,
             "rounds.jsonl": TaskRound,
+            "rated": TrialRated,
         },
     ),
     FileKind(

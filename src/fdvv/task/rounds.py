@@ -96,8 +96,11 @@ class TrialBegun(Struct, frozen=True):
 
 
 class TrialRated(Struct, frozen=True, forbid_unknown_fields=True):
-    """The answers to the questionnaire after a trial that was begun for the given time, at a time (UTC).
+    """The answers to the questionnaire after a trial.
 
+    Attributes
+    ----------
+    trial, attempt : which trial, and how often it had been begun. made : when (UTC).
     answers : to the items of `fdvv.task.questionnaire`, in their order, from 1 to 7.
     """
 

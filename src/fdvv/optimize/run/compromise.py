@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 
@@ -19,10 +20,10 @@ LARGEST_bytes = 10_000
 
 
 class Chosen(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """The trial whose design a person took from the front."""
+    """The trial whose design a person took from the front. trial : its number."""
 
-    format: str = "fdvv-compromise"
-    version: int = 1
+    format: Literal["fdvv-compromise"] = "fdvv-compromise"
+    version: Literal[1] = 1
     trial: int
 
 

@@ -154,7 +154,11 @@ class OptimizeItem(Message):
 
 
 class OptimizeQuestions(Message):
-    """The questionnaire after a trial. trial : that waits for answers; None while none does."""
+    """The questionnaire after a trial.
+
+    items : its questions. least, most : ends of their scale. trial : that waits for answers; None while none
+    does.
+    """
 
     items: list[OptimizeItem]
     least: int
