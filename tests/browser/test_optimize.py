@@ -17,6 +17,8 @@ from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.problem import Answer, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
+from fdvv.task.pointing import ASYNCHRONY
+from fdvv.task.questionnaire import LIKING, liking_score
 from fdvv.task.rounds import ClockSource, TaskRound, TaskRounds
 from fdvv.task.score import Score
 from tests.browser.accessibility import audit
@@ -339,6 +341,42 @@ def test_the_best_design_is_played_again_against_the_start_and_nobody_knows_whic
     expect(page.get_by_role("region", name="Verdict")).to_contain_text("mx-clear")
     page.get_by_role("tab", name="Play").click()
     expect(page.locator("[aria-label=Progress] tbody tr")).to_have_count(2)
+
+
+def test_a_person_rates_a_button_after_a_reload_too_and_takes_another_compromise(
+    page: Page, studio: RunningStudio
+) -> None:
+    about = {OptimizeSetup.PRESSES: ROUNDS, OptimizeSetup.RETEST: 2}
+    objectives = (ASYNCHRONY, LIKING)
+    setup = OptimizeSetup(engine="sobol", level="easy", budget=5, objectives=objectives, about=about)
+    with Optimization.create(studio.project / "optimize" / "1", setup) as session:
+        for score_ms, liked in ((90.0, 2.0), (60.0, 3.0), (65.0, 5.0), (70.0, 6.0)):
+            (trial,) = session.ask()
+            session.show(trial.number)
+            session.done(
+                trial.number, {ASYNCHRONY.name: Score(score_ms, 1.0), LIKING.name: Score(liked, 0.1)}
+            )
+    page.goto(f"{page.url.partition('#')[0]}#/optimize/1")
+    page.get_by_role("button", name="Play trial 5").click()
+    questions = page.get_by_role("form", name="Questions about this button")
+    expect(questions).to_be_visible(timeout=LONG_ms)
+    page.reload()
+    save = questions.get_by_role("button", name="Save answers")
+    for group in questions.get_by_role("group").all():
+        expect(save).to_be_disabled()
+        group.get_by_role("radio", name="5", exact=True).check()
+    save.click()
+    expect(page.get_by_role("button", name="Play again, blind: 1 of 4")).to_be_visible(timeout=LONG_ms)
+    page.get_by_role("tab", name="Result").click()
+    take = page.get_by_role("button", name="Take it")
+    expect(take.first).to_be_visible(timeout=LONG_ms)
+    assert audit(page) == []
+    number = int(str(take.first.get_attribute("aria-label")).rpartition(" ")[2]) - 1
+    take.first.click()
+    expect(page.get_by_role("button", name=f"Take it: trial {number + 1}")).to_have_count(0)
+    with ended(page, studio) as session:
+        assert session.trials[4].scores[LIKING.name] == liking_score((5, 5, 5, 5))
+        assert session.recommended() == session.trials[number].design
 
 
 def test_a_run_begins_from_what_others_did_if_there_is_any(page: Page, studio: RunningStudio) -> None:
