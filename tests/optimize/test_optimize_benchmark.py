@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks import optimize_wishes
 from benchmarks.optimize_engines import Runner, Variant, compare, runs_of
 from benchmarks.optimize_people import Person, expected_ms
 from benchmarks.optimize_tables import BASELINE, LOOKS, PEOPLE, SEEDS, SMOOTHED, Run, needed
@@ -55,3 +56,15 @@ def test_the_baseline_answers_in_two_ways_from_the_same_trials(tmp_path: Path) -
     assert found.keys() == {BASELINE, SMOOTHED}
     assert [len(values) for values in found.values()] == [3, 3]
     assert found[BASELINE][0] == found[SMOOTHED][0]
+
+
+def test_a_table_of_wishes_counts_from_time_alone_and_from_the_start() -> None:
+    """Every person alike, so that medians are the values themselves."""
+    one = [[50.0, 5.0], [40.0, 2.0], [41.0, 2.5], [44.0, 4.0], [43.0, 4.1], [47.0, 4.6]]
+    found = np.array([one] * 3)
+    lines = optimize_wishes.table(found).splitlines()
+    assert len(lines) == 2 + len(optimize_wishes.ROWS)
+    compromise = next(line for line in lines if line.startswith(f"| {optimize_wishes.KNEE} |"))
+    for cell in ("44.0 (", "+4.0 (", "−6.0 (", "4.00 (", "+2.00 (", "−1.00 ("):
+        assert cell in compromise
+    assert "faster than mx-clear for 100 %, better liked for 0 %" in optimize_wishes.shares(found)

@@ -101,9 +101,9 @@ def test_a_lucky_score_is_on_the_front_as_measured_and_not_as_believed() -> None
         }
         trials.append(Trial(i, {"x_mm": x}, TrialState.DONE, scores))
     assert 4 in [one.number for one in pareto_front(two, trials).trials]
-    believed = believed_front(two, trials)
-    assert 4 not in [one.number for one in believed.trials]
-    assert believed.knee().number >= 12
+    expected = believed_front(two, trials)
+    assert 4 not in [one.number for one in expected.trials]
+    assert expected.knee().number >= 12
 
 
 def front_of(name: str, count: int) -> tuple[int, float]:

@@ -625,7 +625,7 @@ def test_a_compromise_is_taken_from_the_front_and_played_again_with_its_question
     found = ask("detail", run=run)
     front = [one for one in found["trials"] if one["front"]]
     assert found["compromise"] in [one["number"] for one in front]
-    assert all(set(one["believed"]) == {"asynchrony_ms", "liking"} for one in front)
+    assert all(set(one["expected"]) == {"asynchrony_ms", "liking"} for one in front)
     other = front[-1]["number"]
     ask("take", run=run, trial=other)
     found = ask("detail", run=run)

@@ -236,13 +236,13 @@ def _print(session: Optimization, document: dict[str, Any]) -> None:
 
 
 def _print_front(document: dict[str, Any]) -> None:
-    """Print the compromises, each value as it is believed, with its standard deviation."""
+    """Print the compromises, each value a posterior mean with its standard deviation."""
     names = document["objectives"]
     rows = [
         [
             row["number"],
             front_mark(row) or "–",
-            *((row["believed"][name], row["error"][name]) for name in names),
+            *((row["expected"][name], row["error"][name]) for name in names),
         ]
         for row in document["front"]
     ]

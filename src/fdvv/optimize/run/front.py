@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def front_report(session: Optimization) -> list[dict[str, Any]]:
     """Return the compromises of a run, best in the first objective first; empty where there is one objective.
 
-    believed, error : by objective, the posterior mean and its SD. recommended : the one that is retested.
+    expected, error : by objective, the posterior mean and its SD. recommended : the one that is retested.
     start : it is the design that the run began with.
     """
     if not session.setup.several:
@@ -27,7 +27,7 @@ def front_report(session: Optimization) -> list[dict[str, Any]]:
         {
             "number": trial.number,
             "parameters": trial.design,
-            "believed": {name: score.value for name, score in trial.scores.items()},
+            "expected": {name: score.value for name, score in trial.scores.items()},
             "error": {name: score.error for name, score in trial.scores.items()},
             "recommended": trial.design == found,
             "start": trial.design == start,
@@ -43,8 +43,8 @@ def front_section(session: Optimization) -> Section | None:
         return None
     names = [one.name for one in session.problem.objectives]
     text = (
-        "No tried design is better than one of these in every wish. Values are what is believed of all "
-        "trials, with their standard deviation: as measured, a noisy front looks better than it is.",
+        "No tried design is better than one of these in every wish. Values are expected, by all trials, "
+        "with one standard deviation: as measured, a noisy front looks better than it is.",
         _said(session),
     )
     table = Table(
@@ -70,7 +70,7 @@ def front_mark(row: dict[str, Any]) -> str:
 
 
 def _cell(row: dict[str, Any], name: str) -> str:
-    return f"{score_text(row['believed'][name], name)} ± {score_text(row['error'][name], name)}"
+    return f"{score_text(row['expected'][name], name)} ± {score_text(row['error'][name], name)}"
 
 
 def score_label(name: str) -> str:
@@ -91,7 +91,7 @@ def score_text(value: float | None, name: str) -> str:
 
 @style.in_house_style
 def plot_front(session: Optimization) -> Any:
-    """Draw every further objective over the first: trials as measured, and what is believed of the front.
+    """Draw every further objective over the first: trials as measured, and the front's expected values.
 
     Returns the (panels,) array of axes.
     """
@@ -113,10 +113,15 @@ def _draw(ax: Axes, session: Optimization, first: str, other: str) -> None:
     done = [trial for trial in session.trials if trial.state is TrialState.DONE]
     ax.plot(*zip(*map(at, done), strict=True), "o", color=style.QUIET, markersize=4, label="as measured")
     front, found = session.front().trials, session.recommended()
-    believed: Any = {"fmt": "o", "color": style.PALETTE[0], "markersize": 5.5, "label": "front, believed"}
+    expected: Any = {
+        "fmt": "o",
+        "color": style.PALETTE[0],
+        "markersize": 5.5,
+        "label": "front, expected values",
+    }
     errors: Any = [[trial.scores[name].error for trial in front] for name in (first, other)]
     x, y = zip(*map(at, front), strict=True)
-    ax.errorbar(x, y, xerr=errors[0], yerr=errors[1], elinewidth=1.0, **believed)
+    ax.errorbar(x, y, xerr=errors[0], yerr=errors[1], elinewidth=1.0, **expected)
     if taken := [at(trial) for trial in front if trial.design == found]:
         ring: Any = {"color": style.PALETTE[1], "fillstyle": "none", "markersize": 12, "markeredgewidth": 2}
         ax.plot(*taken[0], "o", label="recommended", **ring)

@@ -201,7 +201,7 @@ def _found(session: Optimization, report: dict[str, Any]) -> Section:
     figures = () if session.setup.space.kind == "own" else (_designs_svg(session, start, best),)
     limits = {one.name: (f"{one.low:.2f}", f"{one.high:.2f}") for one in session.space.parameters}
     rows = tuple((name, f"{start[name]:.2f}", f"{best[name]:.2f}", *limits[name]) for name in limits)
-    text = ["The recommendation is by what is believed of all trials, not by the luckiest score."]
+    text = ["The recommendation is by expected scores, given all trials, not by the luckiest score."]
     for name, which in report["at_bound"].items():
         text.append(f"{name} is the {which} allowed: a better design may lie beyond.")
     columns = ("parameter", "start", "recommended", "least", "most")

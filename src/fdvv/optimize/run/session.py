@@ -284,7 +284,7 @@ class Optimization:
         return self._scored().best(self.problem, self.trials)
 
     def front(self) -> ParetoFront:
-        """Return the compromises that no other trial beats by what is believed, see `believed_front`."""
+        """Return the compromises that no other trial beats in expected scores, see `believed_front`."""
         known = sum(trial.state is TrialState.DONE for trial in self.trials)
         if self._front[0] != known:
             self._front = known, believed_front(self.problem, self.trials)

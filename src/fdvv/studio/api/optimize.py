@@ -79,8 +79,8 @@ class OptimizeCurve(Message):
 class OptimizeTrial(Message):
     """A trial.
 
-    front : no other one is better in every objective, by what is believed; False where there is one
-    objective. believed : what is believed of its objectives; empty unless it is on the front.
+    front : no other one is better in every objective, by expected scores; False where there is one
+    objective. expected : its posterior means with their deviations; empty unless it is on the front.
     """
 
     number: int
@@ -92,7 +92,7 @@ class OptimizeTrial(Message):
     origin: str
     curve: OptimizeCurve
     front: bool
-    believed: dict[str, Score]
+    expected: dict[str, Score]
 
 
 class OptimizePair(Message):
@@ -239,7 +239,7 @@ def trial_list(session: Optimization) -> list[OptimizeTrial]:
             edited=one.suggested is not None,
             curve=press_picture(session.model(one.design)),
             front=one.number in front,
-            believed=front[one.number].scores if one.number in front else {},
+            expected=front[one.number].scores if one.number in front else {},
         )
         for one in session.trials
     ]

@@ -1,4 +1,4 @@
-/** The front of a run of several objectives: one more wish over the first, as measured and as believed. */
+/** The front of a run of several objectives: one more wish over the first, as measured, and expected values. */
 
 import { type Brush, Plot, palette, rangeOf, series, type View } from "../../draw";
 import type { OptimizeScore, OptimizeTrial } from "../../net/messages";
@@ -6,12 +6,12 @@ import { named, type RunStore } from "./store";
 
 type At = readonly [x: OptimizeScore, y: OptimizeScore];
 
-/** Trials as measured, and around the front what is believed with its standard error. */
+/** Trials as measured, and the front's expected values with their standard errors. */
 export function frontChart(store: RunStore, other: string): Plot {
   const first = store.objective();
   const { label } = named(other);
   return new Plot({
-    label: `${label} over ${named(first).label}: trials as measured, and the front as believed`,
+    label: `${label} over ${named(first).label}: trials as measured, and the front's expected values`,
     x: named(first),
     y: named(other),
     whole: () => {
@@ -44,7 +44,7 @@ function front(
 ): { readonly number: number; readonly at: At }[] {
   return store
     .done()
-    .flatMap(({ number, believed }) => pair(believed, first, other).map((at) => ({ number, at })));
+    .flatMap(({ number, expected }) => pair(expected, first, other).map((at) => ({ number, at })));
 }
 
 function draw(brush: Brush, view: View, store: RunStore, first: string, other: string): void {
