@@ -32,6 +32,11 @@ export function said(store: RunStore, detail: OptimizeDetail, pace: Pace): Verdi
   }
   if (simulated?.fault)
     return { sentence: `The simulated person stopped: ${simulated.fault}.`, kind: "warning" };
+  if (store.choosing() && store.retesting())
+    return {
+      sentence:
+        "The search is over. Take a compromise under Result, or play the recommended one again, blind.",
+    };
   if (!detail.searched || store.retesting()) return { sentence: `${now[0]?.toUpperCase()}${now.slice(1)}.` };
   const few = retest.done ? "one pair is too few for an interval" : "nothing was played again";
   return { sentence: `The budget is used up; ${few}, so how good the best is stays open.` };

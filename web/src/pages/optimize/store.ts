@@ -52,6 +52,12 @@ export class RunStore extends Followed<OptimizeDetail> {
     return this.detail()?.questions?.trial ?? null;
   }
 
+  /** Whether another compromise may be taken: between the search and its retest. */
+  choosing(): boolean {
+    const detail = this.detail();
+    return !!detail && detail.compromise !== null && detail.retest.done === 0 && detail.retest.open === null;
+  }
+
   /** Whether the best design and the start are played again now, blind. */
   retesting(): boolean {
     const detail = this.detail();
