@@ -157,6 +157,6 @@ def believed_front(problem: Problem, trials: Sequence[Trial]) -> ParetoFront:
 
 def _believed(problem: Problem, objective: Objective, done: Sequence[Trial]) -> list[Score]:
     scores = observed(problem.space, objective, done)
-    means, deviations = believe(scores).predict(scores.places)
+    means, deviations = believe(scores, length=problem.space.length).predict(scores.places)
     pairs = zip((objective.sign * means).tolist(), deviations.tolist(), strict=True)
     return [Score(mean, deviation) for mean, deviation in pairs]
