@@ -8,7 +8,8 @@ from typing import Any
 from fdvv import __version__
 from fdvv.optimize.group.group import Group
 from fdvv.optimize.group.playoff import Playoff
-from fdvv.optimize.run.report import DesignPanel, control_points, plot_designs, score_label
+from fdvv.optimize.run.front import score_label
+from fdvv.optimize.run.report import DesignPanel, control_points, plot_designs
 from fdvv.optimize.run.verdict import PHRASES, Phrase, kind_of
 from fdvv.report.report import Section, Table, render_html
 from fdvv.report.svg import figure_svg
