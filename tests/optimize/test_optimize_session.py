@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 
 from fdvv.errors import InputError, ModelError
+from fdvv.optimize.engines.gp import GPEngine
 from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.problem import TrialState
 from fdvv.optimize.run.session import Optimization, replay_differences
@@ -152,6 +154,20 @@ def test_a_setup_is_read_back_as_it_was(tmp_path: Path) -> None:
     with Optimization.create(tmp_path / "b", setup) as session:
         assert session.setup == setup
         assert session.problem.prior == trials
+
+
+def test_a_run_states_the_options_whose_defaults_may_change_and_one_that_does_not_has_the_earlier_ones(
+    tmp_path: Path,
+) -> None:
+    with Optimization.create(tmp_path / "new", OptimizeSetup(options={"startup": 2})) as session:
+        assert session.setup.options == {"startup": 2, "length": session.space.length}
+    with Optimization.create(tmp_path / "other", OptimizeSetup(engine="tpe")) as session:
+        assert session.setup.options == {}
+    path = tmp_path / "new" / "optimize.json"
+    record = json.loads(path.read_text())
+    path.write_text(json.dumps({**record, "options": {}}))
+    with Optimization.open(tmp_path / "new") as session:
+        assert session.engine == GPEngine(startup=5, length=0.2)
 
 
 def test_comparisons_are_kept_resumed_and_replayed(tmp_path: Path) -> None:

@@ -97,11 +97,13 @@ def test_a_key_of_a_keyboard_presses_the_button_to_where_it_is(start: Callable[.
             page.say("follow", displacement_mm=number / 25, velocity_mm_s=10.0, sequence=number)
             time.sleep(0.004)
         page.say("follow", displacement_mm=3.0, velocity_mm_s=0.0, sequence=76)
-        held = page.until(
-            lambda body: body.get("sequence") == 76 and np.ptp(body["displacement_mm"] or [0, 9]) < 0.02
-        )
-        assert held["key"] == 1
-        assert held["displacement_mm"][-1] == pytest.approx(3.0, abs=0.2)
+
+        def held(body: dict[str, Any]) -> bool:
+            # on a busy machine the moves come in leaps, and the finger swings past for a moment
+            seen_mm = body.get("displacement_mm") or [0.0, 9.0]
+            return body.get("sequence") == 76 and np.ptp(seen_mm) < 0.02 and abs(seen_mm[-1] - 3.0) < 0.2
+
+        assert page.until(held)["key"] == 1
         page.say("follow", displacement_mm=0.0, velocity_mm_s=0.0, sequence=77)
         page.until(event("pressed"))
 

@@ -20,10 +20,12 @@ from fdvv.optimize.run.setup import (
     SETUP_FILE,
     OptimizeSetup,
     designer_of,
+    options_of,
     problem_of,
     read_setup,
     setup_text,
     space_of,
+    stated,
 )
 from fdvv.optimize.space import Design
 from fdvv.rendering.rig_catalog import RigCatalog
@@ -51,7 +53,7 @@ class Optimization:
         self.space = space_of(setup.space, RigCatalog(folder))
         self._designer = designer_of(setup.space)
         self.problem = problem_of(setup, self.space)
-        self.engine = None if setup.preference else engine_of(setup.engine, setup.options)
+        self.engine = None if setup.preference else engine_of(setup.engine, options_of(setup))
         on_lines = setup.preference and setup.engine in LINE_ENGINES
         self.line_engine = line_engine_of(setup.engine, setup.options) if on_lines else None
         pairs = setup.preference and not on_lines
@@ -74,7 +76,7 @@ class Optimization:
         checked = cls(project or folder, setup, Ledger())
         if setup.space.rig and project:
             RigCatalog(project).lend(setup.space.rig, folder)
-        write_atomic(folder / SETUP_FILE, setup_text(checked.setup))
+        write_atomic(folder / SETUP_FILE, setup_text(stated(setup, checked.space)))
         return cls.open(folder)
 
     @classmethod

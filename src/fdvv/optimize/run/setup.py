@@ -18,12 +18,13 @@ from fdvv.io.documents import Kind, pretty, read_record
 from fdvv.model.file import model_from_json, model_to_json
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.button_constraints import button_constraints
+from fdvv.optimize.engines.gp import GPEngine
 from fdvv.optimize.model_space import model_of, model_space
 from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.problem import Problem, Trial
 from fdvv.optimize.realistic import realistic_bounds, realistic_cN
 from fdvv.optimize.run.rivals import Rival
-from fdvv.optimize.space import Constraint, Design, DesignSpace, Parameter
+from fdvv.optimize.space import LENGTH, Constraint, Design, DesignSpace, Parameter
 from fdvv.rendering.feasibility import CurveFeasibility, feasibility
 from fdvv.rendering.rig_catalog import AvailableRig, RigCatalog
 from fdvv.rendering.session import now, versions
@@ -283,3 +284,20 @@ def problem_of(setup: OptimizeSetup, space: DesignSpace) -> Problem:
     if setup.start is not None:
         space.checked(setup.start, "start")
     return Problem(space, setup.objectives, setup.seed, setup.prior)
+
+
+EARLIER: Mapping[str, Mapping[str, Any]] = {"gp": {"startup": 5, "length": LENGTH}}
+"""Options, by engine, of runs that state none: an earlier fdvv began these, with these numbers."""
+
+
+def stated(setup: OptimizeSetup, space: DesignSpace) -> OptimizeSetup:
+    """Return the setup of a new run with all options whose defaults may change: it will be replayed."""
+    if setup.engine not in EARLIER:
+        return setup
+    now = {"startup": GPEngine.startup, "length": space.length}
+    return msgspec.structs.replace(setup, options={**now, **setup.options})
+
+
+def options_of(setup: OptimizeSetup) -> dict[str, Any]:
+    """Return the options of a run's engine, those of EARLIER where it states none."""
+    return {**EARLIER.get(setup.engine, {}), **setup.options}
