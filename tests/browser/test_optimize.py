@@ -361,6 +361,7 @@ def test_a_person_rates_a_button_after_a_reload_too_and_takes_another_compromise
     questions = page.get_by_role("form", name="Questions about this button")
     expect(questions).to_be_visible(timeout=LONG_ms)
     page.reload()
+    expect(questions).to_be_visible(timeout=LONG_ms)
     save = questions.get_by_role("button", name="Save answers")
     for group in questions.get_by_role("group").all():
         expect(save).to_be_disabled()
