@@ -38,9 +38,9 @@ def test_the_posterior_is_that_of_one_gaussian_over_scores_and_new_places() -> N
     for person in range(PEOPLE):
         people = np.append(belief.scores.people, [person] * 5)
         same = people[:, None] == people[None]
-        f = belief.kernel(places) * (belief.shared + belief.own * same)
+        f = belief.kernel(places) * (belief.shared + belief.own * same) + belief.level * same
         n = belief.scores.people.size
-        K = f[:n, :n] + belief.level * same[:n, :n] + np.diag(belief.noise)
+        K = f[:n, :n] + np.diag(belief.noise)
         y = (np.log(belief.scores.values) - belief.centre) / belief.scale
         wanted = np.exp(belief.centre + belief.scale * f[n:, :n] @ np.linalg.solve(K, y))
         np.testing.assert_allclose(found[person], wanted, rtol=1e-7)
@@ -77,11 +77,15 @@ def test_people_who_differ_have_a_lowest_place_each_and_those_who_are_alike_one(
     assert alike.own < 0.1 * alike.shared < apart.own
 
 
-def test_how_well_somebody_does_altogether_changes_nothing_of_which_design_is_better() -> None:
-    plain = scores(0.6)
-    times = np.array([1.0, 2.0, 0.5, 1.3])[plain.people]
-    moved = replace(plain, values=times * plain.values, errors=times * plain.errors)
-    np.testing.assert_allclose(lowest(believe_group(moved)), lowest(believe_group(plain)), atol=0.05)
+def test_whoever_scores_twice_as_much_has_the_same_best_design_and_gains_twice_as_much_with_it() -> None:
+    plain, times = scores(0.6), np.array([1.0, 2.0, 0.5, 1.3])
+    each = times[plain.people]
+    moved = believe_group(replace(plain, values=each * plain.values, errors=each * plain.errors))
+    belief = believe_group(plain)
+    np.testing.assert_allclose(lowest(moved), lowest(belief), atol=0.05)
+    middle, own = np.full((PEOPLE, 2), 0.5), np.column_stack([lowest(belief), np.full(PEOPLE, 0.5)])
+    gains, wanted = (np.median(one.differences(middle, own), axis=0) for one in (moved, belief))
+    np.testing.assert_allclose(gains[[0, 3]], (times * wanted)[[0, 3]], rtol=0.2)
 
 
 def test_differences_lie_within_their_intervals_as_often_as_stated() -> None:

@@ -56,7 +56,7 @@ class GroupScores:
 
 @dataclass(frozen=True, eq=False)
 class GroupBelief:
-    """The posterior of f + g_p; what a person does altogether is not in it.
+    """The posterior of f + g_p + b_p.
 
     Attributes
     ----------
@@ -79,9 +79,8 @@ class GroupBelief:
     def _factor(self) -> tuple[FloatArray, bool]:
         from scipy.linalg import cho_factor
 
-        same = _same(self.scores.people, self.scores.people)
-        parts = self._between(self.scores.places, self.scores.people) + self.level * same
-        lower: tuple[FloatArray, bool] = cho_factor(parts + np.diag(self.noise), lower=True)
+        among = self._between(self.scores.places, self.scores.people)
+        lower: tuple[FloatArray, bool] = cho_factor(among + np.diag(self.noise), lower=True)
         return lower
 
     @cached_property
@@ -92,9 +91,11 @@ class GroupBelief:
         return np.asarray(cho_solve(self._factor, (values - self.centre) / self.scale))
 
     def _between(self, places: FloatArray, people: npt.NDArray[np.int64]) -> FloatArray:
-        """Return the covariance of f + g_p, (n, m), between the scores and m places of people."""
-        cross = self.kernel(self.scores.places, places)
-        return np.asarray(cross * (self.shared + self.own * _same(self.scores.people, people)))
+        """Return the covariance, (n, m), between the scores and m places of people."""
+        return self._covariance(self.kernel(self.scores.places, places), _same(self.scores.people, people))
+
+    def _covariance(self, kernel: FloatArray, same: npt.NDArray[np.bool_]) -> FloatArray:
+        return np.asarray(kernel * (self.shared + self.own * same) + self.level * same)
 
     def _score(self, standardised: FloatArray) -> FloatArray:
         values = self.centre + self.scale * standardised
@@ -118,7 +119,7 @@ class GroupBelief:
         people = np.tile(np.arange(self.scores.count), 2)
         places = np.vstack([first, second])
         cross = self._between(places, people)
-        prior = self.kernel(places) * (self.shared + self.own * _same(people, people))
+        prior = self._covariance(self.kernel(places), _same(people, people))
         covariance = prior - cross.T @ cho_solve(self._factor, cross)
         drawn = np.random.default_rng(0).multivariate_normal(
             cross.T @ self._solved, covariance, DRAWS, method="eigh"
