@@ -59,8 +59,9 @@ def _play(found: Group, blocks: int) -> Playoff:
 
 
 def _print(found: Group, playoff: Playoff | None, document: dict[str, Any]) -> None:
-    about = f"{document['task']}, {document['level']}" if document["level"] else document["task"]
-    click.echo(f"{about}{ui.simulated(found.simulated)}, {ui.counted(len(found.runs), 'run')}")
+    click.echo(
+        f"{found.runs[0].setup.title}{ui.simulated(found.simulated)}, {ui.counted(len(found.runs), 'run')}"
+    )
     if playoff:
         rows = [
             [one.name, one.own, one.group, one.gain.difference if one.gain else 0.0] for one in playoff.people

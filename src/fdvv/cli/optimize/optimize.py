@@ -213,9 +213,8 @@ def _on_trial(trial: Trial, budget: int, move: Any, verbose: bool) -> None:
 
 def _print(session: Optimization, document: dict[str, Any]) -> None:
     trials = document["trials"]
-    about = f"{document['task']}, {document['level']}" if document["level"] else document["task"]
     click.echo(
-        f"{about}{ui.simulated(document['simulated'])}, engine {document['engine']}, "
+        f"{session.setup.title}{ui.simulated(document['simulated'])}, engine {document['engine']}, "
         f"{ui.counted(len(trials), 'trial')}"
     )
     if session.setup.several:

@@ -299,11 +299,15 @@ def observed(space: DesignSpace, objective: Objective, done: Sequence[Trial]) ->
     return Observed(space.to_unit([trial.design for trial in done]), values[:, 0], errors[:, 0].copy())
 
 
+def belief_of(space: DesignSpace, objective: Objective, done: Sequence[Trial]) -> Belief:
+    """Learn what a space's designs score in an objective from finished trials, at least one."""
+    return believe(observed(space, objective, done), length=space.length)
+
+
 def believed_best(problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
     """Recommend the tried design whose posterior mean is best. Raises ModelError."""
     done = best_of(problem, trials)
-    scores = observed(problem.space, problem.objectives[0], done)
-    return believe(scores, length=problem.space.length).best_of(done)
+    return belief_of(problem.space, problem.objectives[0], done).best_of(done)
 
 
 class RecommendsBelievedBest:

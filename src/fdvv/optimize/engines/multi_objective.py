@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize.engines.gp_model import believe, finished, observed, score_table
+from fdvv.optimize.engines.gp_model import belief_of, finished, score_table
 from fdvv.optimize.engines.search import generator
 from fdvv.optimize.problem import Problem, Trial
 from fdvv.task.score import Objective, Score
@@ -156,7 +156,7 @@ def believed_front(problem: Problem, trials: Sequence[Trial]) -> ParetoFront:
 
 
 def _believed(problem: Problem, objective: Objective, done: Sequence[Trial]) -> list[Score]:
-    scores = observed(problem.space, objective, done)
-    means, deviations = believe(scores, length=problem.space.length).predict(scores.places)
+    belief = belief_of(problem.space, objective, done)
+    means, deviations = belief.predict(belief.observed.places)
     pairs = zip((objective.sign * means).tolist(), deviations.tolist(), strict=True)
     return [Score(mean, deviation) for mean, deviation in pairs]

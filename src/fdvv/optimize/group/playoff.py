@@ -12,7 +12,7 @@ from fdvv.optimize.group.group import Group, PersonalRun
 from fdvv.optimize.people.simulate import score_design
 from fdvv.optimize.run.player import play_seed, player_of
 from fdvv.optimize.run.setup import designer_of
-from fdvv.optimize.run.verdict import Retest, kind_of, paired
+from fdvv.optimize.run.verdict import Retest, paired
 
 BLOCKS = 16
 """In each of which a person plays both buttons once; a trial of 20 presses takes 25 ms."""
@@ -53,9 +53,7 @@ class Playoff:
     @property
     def gaining(self) -> int:
         """How many people are better off with their own, each by their own interval."""
-        return sum(
-            one.gain is not None and kind_of(one.gain.low, one.gain.high) == "better" for one in self.people
-        )
+        return sum(one.gain is not None and one.gain.kind == "better" for one in self.people)
 
 
 def play_off(

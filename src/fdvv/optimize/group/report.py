@@ -10,7 +10,7 @@ from fdvv.optimize.group.group import Group
 from fdvv.optimize.group.playoff import Playoff
 from fdvv.optimize.run.front import score_label
 from fdvv.optimize.run.report import DesignPanel, control_points, plot_designs
-from fdvv.optimize.run.verdict import PHRASES, Phrase, kind_of
+from fdvv.optimize.run.verdict import phrase_for
 from fdvv.report.report import Section, Table, render_html
 from fdvv.report.svg import figure_svg
 
@@ -22,23 +22,17 @@ EXPECTED = (
 )
 
 
-def phrase_of_group(group: Group) -> Phrase:
-    """Return how differences in the objective are written."""
-    return PHRASES.get(group.runs[0].setup.objectives[0].name, Phrase("better", "worse", "", digits=2))
-
-
 def gain_sentence(group: Group, playoff: Playoff | None) -> str:
     """Return what personalising gains, in one sentence, and what to do."""
-    found, phrase = playoff.gain if playoff else group.gain, phrase_of_group(group)
-    kind = kind_of(found.low, found.high)
+    found, phrase = playoff.gain if playoff else group.gain, phrase_for(group.runs[0].setup.objectives[0])
     people = f"{len(group.runs)} people{', simulated' if group.simulated else ''}"
     how = people if playoff else f"{people}; expected from the runs, not yet played"
     doubt = phrase.doubt(found.low, found.high, found.chance)
     each = f"; {playoff.gaining} of them gain, each by their own interval" if playoff else ""
-    if kind == "same":
+    if found.kind == "same":
         return f"No gain found of a button of one's own {doubt}, {how}{each}."
     by = phrase.difference(found.difference)
-    if kind == "worse":
+    if found.kind == "worse":
         return f"Take the group's button: one's own is {by} {doubt}, {how}{each}."
     return f"Personalise: a button of one's own is {by} {doubt}, {how}{each}."
 
@@ -69,7 +63,6 @@ def group_report(group: Group, playoff: Playoff | None) -> dict[str, Any]:
 def group_html(group: Group, playoff: Playoff | None) -> str:
     """Write the page. Needs matplotlib (BuildError without it)."""
     first = group.runs[0].setup
-    title = f"{first.task}, {first.level}" if first.level else first.task
     text = [gain_sentence(group, playoff), PLAYED if playoff else EXPECTED]
     sections = [
         Section("Verdict", tuple(text), (), (_people(group, playoff),)),
@@ -78,12 +71,12 @@ def group_html(group: Group, playoff: Playoff | None) -> str:
     summary = f"{len(group.runs)} people, one run each, in the space {group.runs[0].space.name}."
     footer = f"fdvv {__version__}"
     return render_html(
-        f"A group's button: {title}", summary, sections, footer, SIMULATED if group.simulated else None
+        f"A group's button: {first.title}", summary, sections, footer, SIMULATED if group.simulated else None
     )
 
 
 def _people(group: Group, playoff: Playoff | None) -> Table:
-    phrase = phrase_of_group(group)
+    phrase = phrase_for(group.runs[0].setup.objectives[0])
     unit = f", {phrase.unit}" if phrase.unit else ""
     if playoff is None:
         rows = [

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.optimize.engines.gp_model import believe, finished, observed
+from fdvv.optimize.engines.gp_model import belief_of, finished
 from fdvv.optimize.engines.preference import believe_answers
 from fdvv.optimize.engines.preference_line import believe_lines
 from fdvv.optimize.run.session import Optimization
@@ -46,7 +46,7 @@ def best_design(run: Optimization) -> BestDesign:
 def _scored(run: Optimization) -> BestDesign:
     design, done = run.best(), finished(run.problem, run.trials)
     objective = run.problem.objectives[0]
-    belief = believe(observed(run.space, objective, done), length=run.space.length)
+    belief = belief_of(run.space, objective, done)
     mean, deviation = (float(column[0]) for column in belief.predict(run.space.to_unit([design])))
     mean *= objective.sign
     return BestDesign(design, mean, *_interval(mean, deviation), None, len(done))

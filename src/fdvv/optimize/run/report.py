@@ -151,7 +151,6 @@ def optimize_html(session: Optimization) -> str:
     report, setup = optimize_report(session), session.setup
     done = [t for t in session.trials if t.state is TrialState.DONE]
     counts = f"{len(session.trials)} of {setup.budget} trials, {len(done)} of them scored"
-    title = f"{setup.task}, {setup.level}" if setup.level else setup.task
     sections = [
         _verdict(report),
         front_section(session),
@@ -163,7 +162,7 @@ def optimize_html(session: Optimization) -> str:
     shown = [section for section in sections if section is not None]
     summary = f"Space {session.space.name}, engine {setup.engine}: {counts}."
     return render_html(
-        f"Optimisation: {title}", summary, shown, footer, SIMULATED if setup.simulated else None
+        f"Optimisation: {setup.title}", summary, shown, footer, SIMULATED if setup.simulated else None
     )
 
 

@@ -166,6 +166,11 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     created: str = msgspec.field(default_factory=now)
 
     @property
+    def title(self) -> str:
+        """What is played, for people: the task, and its level where it has one."""
+        return f"{self.task}, {self.level}" if self.level else self.task
+
+    @property
     def preference(self) -> bool:
         """Whether designs are compared, not scored."""
         return self.task == "preference"

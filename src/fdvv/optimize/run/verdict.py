@@ -175,10 +175,15 @@ PHRASES = {
 }
 
 
+def phrase_for(objective: Objective) -> Phrase:
+    """Return how differences in an objective are written."""
+    name = objective.name
+    return PHRASES.get(name, Phrase("better", "worse", "", digits=2, what=name))
+
+
 def phrase_of(session: Optimization, objective: Objective | None = None) -> Phrase:
     """Return how differences in an objective of a run are written; None: in its first."""
-    name = (objective or session.problem.objectives[0]).name
-    return PHRASES.get(name, Phrase("better", "worse", "", digits=2, what=name))
+    return phrase_for(objective or session.problem.objectives[0])
 
 
 def verdict_kind(session: Optimization) -> Kind | None:

@@ -74,11 +74,9 @@ export class RunStore extends Followed<OptimizeDetail> {
   async save(chosen: Design | null, name: string): Promise<void> {
     try {
       const design = chosen ?? (await call("optimize.best", { run: this.run })).design ?? {};
-      const { model } = await call("optimize.model", { run: this.run, design, name });
-      const made = await call("document.create", { name: name || null, template: null, model });
-      this.saved.set(made.button);
-      workOn(made.button);
-      toast(`Saved as ${made.button.replace(/^own:/, "")}.`, "done");
+      const button = await saveDesign(this.run, design, name);
+      this.saved.set(button);
+      toast(`Saved as ${button.replace(/^own:/, "")}.`, "done");
     } catch (error) {
       tell(error);
     }
@@ -99,6 +97,14 @@ export class RunStore extends Followed<OptimizeDetail> {
   done(): readonly OptimizeTrial[] {
     return (this.detail()?.trials ?? []).filter((trial) => trial.state === "done");
   }
+}
+
+/** Save a design of a run's space as a button, which is worked on from then on; return its id. */
+export async function saveDesign(run: number, design: Design, name: string): Promise<string> {
+  const { model } = await call("optimize.model", { run, design, name });
+  const { button } = await call("document.create", { name: name || null, template: null, model });
+  workOn(button);
+  return button;
 }
 
 /** Propose a name for the best design of a run. */
