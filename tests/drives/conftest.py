@@ -19,7 +19,7 @@ OPEN: dict[str, Callable[[str], DriveDevice]] = {
     "odrive": open_odrive,
     "simplefoc": open_simplefoc,
 }
-GENEROUS = ("--answer-ms", "200", "--late-ms", "900", "--watchdog-ms", "300")
+GENEROUS = ("--answer-ms", "200", "--late-ms", "900", "--watchdog-ms", "600")
 """For what a test does not look at: machines that test are busy."""
 
 

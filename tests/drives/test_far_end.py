@@ -21,12 +21,18 @@ from fdvv.testing.conformance import plain_surface
 from fdvv_drives.device import DriveDevice
 from fdvv_drives.testing.far_end import FaultKind
 from fdvv_drives.testing.process import FarProcess
+from fdvv_drives.testing.serve import make
 from tests.drives.conftest import GENEROUS, OPEN, opened
 
 Start = Callable[..., FarProcess]
 DRIVES = ("moteus", "odrive", "simplefoc")
-WATCHDOG_s = 0.3
+WATCHDOG_s = 0.6
 """Of the far ends here (conftest.GENEROUS)."""
+COMMANDS = {  # torque mode and a torque, then the torque again, as a host sends them
+    "moteus": ("", "can send 0001 01000a022300000d22cdcccc3d0d27cdcc4c3d5050505050 BF\n"),  # watchdog: 0.05 s
+    "odrive": ("O\rt06B80100000001000000\rt067408000000\r", "t06E4CDCCCC3D\r"),
+    "simplefoc": ("MC0\nME1\n", "M0.1\n"),
+}
 IN_PRESS = """
 import sys
 from fdvv.device.open import open_device
@@ -68,6 +74,28 @@ def is_zero_soon(far: FarProcess, within_s: float = 2 * WATCHDOG_s) -> bool:
             return True
         time.sleep(0.02)
     return False
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="far ends need pseudo-terminals")
+@pytest.mark.parametrize("kind", DRIVES)
+def test_a_far_end_held_up_does_not_take_the_host_for_silent(kind: str) -> None:
+    end = make(kind, 0.05)
+    line = os.open(end.port, os.O_RDWR | os.O_NOCTTY)
+
+    def held_up_then(command: str) -> float:
+        time.sleep(0.1)
+        os.write(line, command.encode())
+        end.step([])
+        return end.drive.torque
+
+    try:
+        begin, command = COMMANDS[kind]
+        assert held_up_then(begin + command) == pytest.approx(0.1, rel=1e-3)
+        assert held_up_then(command) == pytest.approx(0.1, rel=1e-3)
+        assert held_up_then("") == 0.0
+    finally:
+        os.close(line)
+        end.fault("unplug")
 
 
 @pytest.mark.parametrize("kind", DRIVES)
@@ -170,7 +198,7 @@ def test_answers_that_come_late_once_do_not_make_the_loop_lag(start: Start, kind
 def test_a_drive_whose_watchdog_is_off_is_refused(start: Start, kind: str) -> None:
     far = start(kind)
     far.ask(watchdog=None)
-    with pytest.raises(DeviceError, match="its watchdog does not end the torque after 300 ms"):
+    with pytest.raises(DeviceError, match="its watchdog does not end the torque after 600 ms"):
         OPEN[kind](str(far.stage))
     assert far.force_N() == 0.0
 
@@ -180,7 +208,7 @@ def test_a_board_without_a_watchdog_keeps_its_torque_when_the_line_breaks(start:
     far = start("simplefoc")
     far.ask(watchdog=None)
     text = far.stage.read_text()
-    far.stage.write_text(text.replace("watchdog_ms = 300.0", "watchdog_ms = 0.0"))
+    far.stage.write_text(text.replace("watchdog_ms = 600.0", "watchdog_ms = 0.0"))
     with pressing(far, "simplefoc") as device:
         assert device.info().name.endswith("no watchdog")
         fails_in_press(far, device, "unplug")

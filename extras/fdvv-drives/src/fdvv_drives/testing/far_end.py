@@ -92,17 +92,17 @@ class FarEnd:
         self.plant.advance(now_s, self.force_N)
         self.drive.finger_N = self.plant.finger_N
         if self._master >= 0:
-            self._serve(self._master in ready, now_s)
+            self._serve(now_s)
         else:
             self.drive.look(self.position(), now_s)
         return [file for file in ready if file != self._master]
 
-    def _serve(self, has_bytes: bool, now_s: float) -> None:
-        reply = self.drive.look(self.position(), now_s)
-        if has_bytes:
-            data = os.read(self._master, 4096)
-            if self._fault != "silent":
-                reply += self.drive.answer(data, self.position(), now_s)
+    def _serve(self, now_s: float) -> None:
+        data, reply = self._received(), b""
+        # answered before the watchdog is looked at: if this process was held up, the host was not silent
+        if data and self._fault != "silent":
+            reply = self.drive.answer(data, self.position(), now_s)
+        reply += self.drive.look(self.position(), now_s)
         if reply and self._fault == "garbage":
             reply = GARBAGE
         if self._fault == "delay":
@@ -112,3 +112,8 @@ class FarEnd:
             with suppress(BlockingIOError):  # nobody reads: what finds no room is lost
                 os.write(self._master, self._held + reply)
             self._held = b""
+
+    def _received(self) -> bytes:
+        with suppress(BlockingIOError):
+            return os.read(self._master, 4096)
+        return b""

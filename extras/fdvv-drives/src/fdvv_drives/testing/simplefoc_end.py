@@ -40,7 +40,7 @@ class FarSimpleFOC:
         return b""
 
     def answer(self, data: bytes, position: float, now_s: float) -> bytes:
-        self.look(position, now_s)
+        self._position = position
         *commands, self._waiting = (self._waiting + data).split(b"\n")
         replies = ""
         for command in commands:
