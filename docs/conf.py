@@ -6,7 +6,14 @@ project = "fdvv"
 author = "The fdvv authors"
 copyright = author
 release = version = __version__
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_click", "tools.site_api"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx_click",
+    "tools.site_api",
+    "tools.site_navigation",
+]
 root_doc = "index"
 html_theme = "furo"
 html_title = f"fdvv {version}"
