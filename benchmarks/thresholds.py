@@ -2,9 +2,9 @@
 
 Every observer has a known JND of force, snap and vibration. Three interleaved staircases, one of each, are
 analysed by their turns and by the belief of the other method too: so what choosing brings is parted from what
-analysing brings. Their rules were tuned on the seeds from 700; 600 to 699 judge, which nothing was chosen by.
+analysing brings. Their rules were tuned on the seeds from 700; 1000 to 1299 judge, which nothing was chosen by.
 
-    python -m benchmarks.thresholds [--seeds 600-699] [--kinds proportional,proxy] [--combined]
+    python -m benchmarks.thresholds [--seeds 1000-1299] [--kinds proportional,proxy] [--combined]
 
 --combined: every third trial changes several dimensions at once.
 """
@@ -259,7 +259,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--seeds", default="600-699")
+    parser.add_argument("--seeds", default="1000-1299")
     parser.add_argument("--kinds", default=",".join(KINDS))
     parser.add_argument("--combined", action="store_true")
     options = parser.parse_args()
