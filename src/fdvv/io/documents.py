@@ -117,6 +117,10 @@ def _place(data: bytes, reason: str) -> str:
     return f"line {before.count(NEWLINE) + 1}, column {len(before) - before.rfind(NEWLINE)}"
 
 
+_ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
+"""Made once: json.dumps makes one for every number."""
+
+
 def pretty(value: object, one_line: Collection[str] = (), indent: str = "") -> str:
     """Indent objects and lists of them; keep on one line a list of plain values, and an object of nothing
     but the keys one_line.
@@ -127,7 +131,7 @@ def pretty(value: object, one_line: Collection[str] = (), indent: str = "") -> s
         return "{\n" + ",\n".join(items) + f"\n{indent}}}"
     if isinstance(value, list) and any(isinstance(v, dict | list) for v in value):
         return "[\n" + ",\n".join(deeper + pretty(v, one_line, deeper) for v in value) + f"\n{indent}]"
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    return _ENCODER.encode(value)
 
 
 def finite(value: Any) -> Any:
