@@ -25,9 +25,10 @@ from fdvv.optimize.run.ending import (
     ending_sentences,
     final_means,
 )
+from fdvv.optimize.run.replay import replay_differences
 from fdvv.optimize.run.report import optimize_report
 from fdvv.optimize.run.rivals import FIXED, SWITCHES, Rival, switch_rivals
-from fdvv.optimize.run.session import Optimization, replay_differences
+from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup, model_space_setup
 from fdvv.optimize.run.verdict import retest_of
 from fdvv.task.score import Score

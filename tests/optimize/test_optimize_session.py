@@ -11,7 +11,8 @@ from fdvv.errors import InputError, ModelError
 from fdvv.optimize.engines.gp import GPEngine
 from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.problem import TrialState
-from fdvv.optimize.run.session import Optimization, replay_differences
+from fdvv.optimize.run.replay import replay_differences
+from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.optimize.space import Design
 from fdvv.task.score import Objective, Score
@@ -244,14 +245,6 @@ def test_only_a_run_of_lines_has_lines(tmp_path: Path) -> None:
         pytest.raises(InputError, match="preference has no lines"),
     ):
         session.line()
-
-
-def test_a_run_whose_seed_was_changed_is_seen_by_its_replay(tmp_path: Path) -> None:
-    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol")) as session:
-        go_on(session, 2)
-    path = tmp_path / "run" / "optimize.json"
-    path.write_text(path.read_text().replace('"seed": 0', '"seed": 1'))
-    assert [one.number for one in replay_differences(tmp_path / "run")] == [0, 1]
 
 
 def test_several_objectives_have_a_front_and_no_best(tmp_path: Path) -> None:

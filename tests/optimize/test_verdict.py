@@ -13,7 +13,8 @@ from fdvv.model.file import load_builtin
 from fdvv.optimize.model_space import neutral_design
 from fdvv.optimize.problem import Answer
 from fdvv.optimize.realistic import realistic_space
-from fdvv.optimize.run.session import Optimization, replay_differences
+from fdvv.optimize.run.replay import replay_differences
+from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup, model_space_setup
 from fdvv.optimize.run.verdict import at_bound, paired, retest_of, verdict_sentence
 from fdvv.task.score import Score

@@ -16,8 +16,9 @@ from fdvv.optimize.run.begin import RunRequest, begin_run
 from fdvv.optimize.run.ending import ending_sentences, final_means
 from fdvv.optimize.run.front import front_report
 from fdvv.optimize.run.player import player_of
+from fdvv.optimize.run.replay import replay_differences
 from fdvv.optimize.run.report import optimize_html, optimize_report
-from fdvv.optimize.run.session import Optimization, replay_differences
+from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup, model_space_setup, wished
 from fdvv.optimize.run.verdict import retest_of, retests_of, verdict_kind, verdict_sentence
 from fdvv.task.pointing import ASYNCHRONY

@@ -42,7 +42,7 @@ class Trial:
     number : from 0, in the order of suggestion.
     design : what is tried. suggested : what the engine had suggested, if a person edited it.
     state : how far it is. scores : by objective, when done. reason : of a failure.
-    origin : who suggested it: an engine's name, "start" (the person's own button) or "person".
+    origin : who suggested it: an engine's name, "start" (the person's own button) or "retest".
     components : of a design that several people scored: what a person of one standard deviation along each
         principal component of the people adds to the score; UNSET: nothing is known of how they differ.
     rival : at the end of a run what is played in the place of a design of the run, by its name; else UNSET,

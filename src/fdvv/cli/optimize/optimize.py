@@ -25,8 +25,9 @@ from fdvv.optimize.run.begin import RunRequest, begin_run
 from fdvv.optimize.run.ending import beaten_by
 from fdvv.optimize.run.front import front_mark, score_digits
 from fdvv.optimize.run.player import POINTING, played_min, player_of
+from fdvv.optimize.run.replay import replay_differences
 from fdvv.optimize.run.report import optimize_html, optimize_report
-from fdvv.optimize.run.session import Optimization, replay_differences
+from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.verdict import verdict_kind
 from fdvv.report.report import write_report
 

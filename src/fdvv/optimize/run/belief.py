@@ -10,7 +10,7 @@ from fdvv.errors import ModelError
 from fdvv.optimize.engines.gp_model import belief_of, finished
 from fdvv.optimize.engines.preference import believe_answers
 from fdvv.optimize.engines.preference_line import believe_lines
-from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.state import RunState
 from fdvv.optimize.run.verdict import LEVEL
 
 
@@ -34,7 +34,7 @@ class BestDesign:
     count: int
 
 
-def best_design(run: Optimization) -> BestDesign:
+def best_design(run: RunState) -> BestDesign:
     """Return the recommended design with its interval. ModelError while nothing is done, BuildError.
 
     The interval is that of a Gaussian process over all scores, whichever engine chose the designs: of the
@@ -43,7 +43,7 @@ def best_design(run: Optimization) -> BestDesign:
     return _liked(run) if run.setup.preference else _scored(run)
 
 
-def _scored(run: Optimization) -> BestDesign:
+def _scored(run: RunState) -> BestDesign:
     design, done = run.best(), finished(run.problem, run.trials)
     objective = run.problem.objectives[0]
     belief = belief_of(run.space, objective, done)
@@ -52,7 +52,7 @@ def _scored(run: Optimization) -> BestDesign:
     return BestDesign(design, mean, *_interval(mean, deviation), None, len(done))
 
 
-def _liked(run: Optimization) -> BestDesign:
+def _liked(run: RunState) -> BestDesign:
     from scipy.stats import norm
 
     design = run.best()

@@ -10,7 +10,7 @@ import numpy as np
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.blocks import Block
 from fdvv.optimize.run.rivals import FIXED
-from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.state import RunState
 from fdvv.optimize.run.verdict import Kind, Phrase, Retest, gains, kind_of, paired, phrase_of, scored
 from fdvv.stats.best_of import against_best
 from fdvv.task.score import Objective
@@ -54,7 +54,7 @@ class FinalMean:
     means: dict[str, float | None]
 
 
-def against_switches(session: Optimization, objective: Objective | None = None) -> AgainstSwitches | None:
+def against_switches(session: RunState, objective: Objective | None = None) -> AgainstSwitches | None:
     """Return what the end of a run says of the best switch; None without two whole blocks with one.
 
     objective : in which; None: the first. The best switch of another may be another one.
@@ -80,7 +80,7 @@ def against_switches(session: Optimization, objective: Objective | None = None) 
     )
 
 
-def _switches(session: Optimization) -> Iterator[str]:
+def _switches(session: RunState) -> Iterator[str]:
     """List the switches but one that is itself recommended."""
     for rival in session.setup.rivals:
         if rival.kind == "switch" and not (
@@ -89,19 +89,19 @@ def _switches(session: Optimization) -> Iterator[str]:
             yield rival.name
 
 
-def _switch(session: Optimization, block: Block, name: str) -> Trial:
+def _switch(session: RunState, block: Block, name: str) -> Trial:
     # the one that a run starts from has no trial of its own
     return block.rivals.get(name, block.start)
 
 
-def against_fixed(session: Optimization, objective: Objective | None = None) -> Retest | None:
+def against_fixed(session: RunState, objective: Objective | None = None) -> Retest | None:
     """Return how much better the result is than the best fixed design; None without two pairs of them."""
     name = next((one.name for one in session.setup.rivals if one.kind == "fixed"), "")
     pairs = [(block.found, block.rivals[name]) for block in session.blocks if name in block.rivals]
     return paired(gains(session, pairs, objective))
 
 
-def final_means(session: Optimization) -> tuple[FinalMean, ...]:
+def final_means(session: RunState) -> tuple[FinalMean, ...]:
     """Return the mean of everything that was played at the end, the recommended design first."""
     blocks, name = session.blocks, session.setup.start_name
     if not blocks:
@@ -115,7 +115,7 @@ def final_means(session: Optimization) -> tuple[FinalMean, ...]:
     return tuple(_mean(session, name, trials) for name, trials in columns.items())
 
 
-def _mean(session: Optimization, name: str, trials: Sequence[Trial]) -> FinalMean:
+def _mean(session: RunState, name: str, trials: Sequence[Trial]) -> FinalMean:
     objectives = [one.name for one in session.problem.objectives]
     done = [trial.scores for trial in trials if scored(trial)]
     means = {
@@ -125,7 +125,7 @@ def _mean(session: Optimization, name: str, trials: Sequence[Trial]) -> FinalMea
     return FinalMean(name, len(done), means[objectives[0]], means)
 
 
-def ending_sentences(session: Optimization) -> tuple[str, ...]:
+def ending_sentences(session: RunState) -> tuple[str, ...]:
     """Return what a finished run says beside its verdict: of the best switch, then of the fixed design.
 
     Of several objectives every one is said by itself, and what to take is left to the reader.
@@ -135,7 +135,7 @@ def ending_sentences(session: Optimization) -> tuple[str, ...]:
     return tuple(said for one in session.problem.objectives for said in _sentences(session, one))
 
 
-def _sentences(session: Optimization, objective: Objective) -> Iterator[str]:
+def _sentences(session: RunState, objective: Objective) -> Iterator[str]:
     phrase, several = phrase_of(session, objective), session.setup.several
     before = f"{phrase.what.capitalize()}: " if several else ""
     if switches := against_switches(session, objective):
@@ -144,7 +144,7 @@ def _sentences(session: Optimization, objective: Objective) -> Iterator[str]:
         yield before + _of_fixed(fixed, phrase, _played(session), advise=not several)
 
 
-def beaten_by(session: Optimization) -> str | None:
+def beaten_by(session: RunState) -> str | None:
     """Return the switch that is better than the result, else the fixed design if that is; None of neither.
 
     None where there are several objectives: what is better in one may be worse in another.
@@ -177,11 +177,11 @@ def _of_fixed(found: Retest, phrase: Phrase, played: str, advise: bool) -> str:
     return f"The fixed design would have done: this one is {by} {doubt}{played}{end}."
 
 
-def _played(session: Optimization) -> str:
+def _played(session: RunState) -> str:
     return ", simulated" if session.setup.simulated else ""
 
 
-def final_report(session: Optimization) -> Mapping[str, object]:
+def final_report(session: RunState) -> Mapping[str, object]:
     """Return the end of a run by name, as ``--json`` prints it."""
     switches, fixed = against_switches(session), against_fixed(session)
     return {

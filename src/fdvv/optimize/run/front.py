@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from fdvv.optimize.problem import Trial, TrialState
-from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.state import RunState
 from fdvv.report import style
 from fdvv.report.report import Section, Table
 from fdvv.report.svg import figure_svg
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def front_report(session: Optimization) -> list[dict[str, Any]]:
+def front_report(session: RunState) -> list[dict[str, Any]]:
     """Return the compromises of a run, best in the first objective first; empty where there is one objective.
 
     expected, error : by objective, the posterior mean and its SD. recommended : the one that is retested.
@@ -36,7 +36,7 @@ def front_report(session: Optimization) -> list[dict[str, Any]]:
     ]
 
 
-def front_section(session: Optimization) -> Section | None:
+def front_section(session: RunState) -> Section | None:
     """Write the front as a section of a page; None where there is none."""
     rows = front_report(session)
     if not rows:
@@ -54,7 +54,7 @@ def front_section(session: Optimization) -> Section | None:
     return Section("Compromises", text, (figure_svg(plot_front(session), "Front of compromises"),), (table,))
 
 
-def _said(session: Optimization) -> str:
+def _said(session: RunState) -> str:
     if weights := session.setup.weights:
         by = ", ".join(f"{name} {weight:g}" for name, weight in weights.items())
         return f"Recommended: the best by weights ({by}), unless a person took another."
@@ -90,7 +90,7 @@ def score_text(value: float | None, name: str) -> str:
 
 
 @style.in_house_style
-def plot_front(session: Optimization) -> Any:
+def plot_front(session: RunState) -> Any:
     """Draw every further objective over the first: trials as measured, and the front's expected values.
 
     Returns the (panels,) array of axes.
@@ -106,7 +106,7 @@ def plot_front(session: Optimization) -> Any:
     return axes
 
 
-def _draw(ax: Axes, session: Optimization, first: str, other: str) -> None:
+def _draw(ax: Axes, session: RunState, first: str, other: str) -> None:
     def at(trial: Trial) -> tuple[float, float]:
         return trial.scores[first].value, trial.scores[other].value
 

@@ -21,6 +21,7 @@ from fdvv.optimize.problem import Answer, Comparison, Line, Trial, TrialState
 from fdvv.optimize.space import Design
 from fdvv.task.score import Score
 
+LEDGER_FILE = "trials.jsonl"
 REMEDY = "move the folder away and begin another run"
 NEXT = {
     TrialState.SUGGESTED: frozenset(TrialState) - {TrialState.SUGGESTED},

@@ -15,7 +15,7 @@ from fdvv.model.model import FDVVModel
 from fdvv.optimize.problem import Trial, TrialState
 from fdvv.optimize.run.ending import final_report
 from fdvv.optimize.run.front import front_report, front_section, score_label, score_text
-from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.state import RunState
 from fdvv.optimize.run.verdict import at_bound, retest_of, retests_of, verdict_sentence
 from fdvv.report import style
 from fdvv.report.report import Section, Table, render_html
@@ -99,7 +99,7 @@ def _legend(axes: Any, panels: Sequence[DesignPanel]) -> None:
 SIMULATED = "a simulated person pressed the twin; no human and no hardware took part"
 
 
-def optimize_report(session: Optimization) -> dict[str, Any]:
+def optimize_report(session: RunState) -> dict[str, Any]:
     """Return trials, the recommended design and how the run was made; units are in the names.
 
     front : of several objectives, see `front_report`. retests : see `Retest`, by objective.
@@ -146,7 +146,7 @@ def trial_report(trial: Trial) -> dict[str, Any]:
     }
 
 
-def optimize_html(session: Optimization) -> str:
+def optimize_html(session: RunState) -> str:
     """Write the page of a run. Needs matplotlib (BuildError without it)."""
     report, setup = optimize_report(session), session.setup
     done = [t for t in session.trials if t.state is TrialState.DONE]
@@ -191,7 +191,7 @@ def _verdict(report: dict[str, Any]) -> Section | None:
     return Section("Verdict", tuple(text), (), (Table(columns, rows),))
 
 
-def _found(session: Optimization, report: dict[str, Any]) -> Section:
+def _found(session: RunState, report: dict[str, Any]) -> Section:
     """Show the recommended design beside the one that was begun from."""
     best, start = report["best"], session.start
     if best is None or start is None:
@@ -207,7 +207,7 @@ def _found(session: Optimization, report: dict[str, Any]) -> Section:
     return Section("Design found", tuple(text), figures, (Table(columns, rows),))
 
 
-def _designs_svg(session: Optimization, start: dict[str, float], best: dict[str, float]) -> str:
+def _designs_svg(session: RunState, start: dict[str, float], best: dict[str, float]) -> str:
     panels = [
         DesignPanel(name, session.model(design, name), control_points(design))
         for name, design in ((session.setup.start_name, start), ("recommended", best))
@@ -216,7 +216,7 @@ def _designs_svg(session: Optimization, start: dict[str, float], best: dict[str,
     return figure_svg(axes, "First and recommended design")
 
 
-def _scores(session: Optimization) -> Section | None:
+def _scores(session: RunState) -> Section | None:
     """Draw the first objective over the trials; nothing before the first score."""
     name = session.problem.objectives[0].name
     values = [t.scores[name].value if t.scores else np.nan for t in session.trials]
@@ -227,7 +227,7 @@ def _scores(session: Optimization) -> Section | None:
     return Section("Scores", (), (figure_svg(axes, "Score of every trial"),))
 
 
-def _trials(session: Optimization) -> Section:
+def _trials(session: RunState) -> Section:
     objectives = [one.name for one in session.problem.objectives]
     more = tuple(score_label(name) for name in objectives[1:])
     columns = (

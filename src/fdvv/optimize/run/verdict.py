@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from fdvv.optimize.problem import Answer, Trial, TrialState
-from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.state import RunState
 from fdvv.optimize.space import Design, DesignSpace
 from fdvv.task.questionnaire import HIGHEST, LIKING
 from fdvv.task.score import Objective
@@ -50,16 +50,16 @@ class Retest:
         return kind_of(self.low, self.high)
 
 
-def retest_of(session: Optimization) -> Retest | None:
+def retest_of(session: RunState) -> Retest | None:
     """Return what the retest found; None of fewer than two pairs."""
     return _of_answers(session) if session.setup.preference else _of_scores(session)
 
 
-def _of_scores(session: Optimization) -> Retest | None:
+def _of_scores(session: RunState) -> Retest | None:
     return retests_of(session).get(session.problem.objectives[0].name)
 
 
-def retests_of(session: Optimization) -> dict[str, Retest]:
+def retests_of(session: RunState) -> dict[str, Retest]:
     """Return what the retest found by objective, of those that were scored; empty of comparisons.
 
     Several intervals hold together with LEVEL: each has the level of Bonferroni.
@@ -72,7 +72,7 @@ def retests_of(session: Optimization) -> dict[str, Retest]:
 
 
 def gains(
-    session: Optimization, pairs: Sequence[tuple[Trial, Trial]], objective: Objective | None = None
+    session: RunState, pairs: Sequence[tuple[Trial, Trial]], objective: Objective | None = None
 ) -> list[float]:
     """Return by how much the first of two trials is better, of those where both are scored.
 
@@ -101,7 +101,7 @@ def paired(better: Sequence[float], level: float = LEVEL) -> Retest | None:
     return Retest(n, mean, mean - half, mean + half, float(student.cdf(mean / error, n - 1)))
 
 
-def _of_answers(session: Optimization) -> Retest | None:
+def _of_answers(session: RunState) -> Retest | None:
     """Count answers for the recommended design; equal ones count for neither."""
     from scipy.stats import beta
 
@@ -181,12 +181,12 @@ def phrase_for(objective: Objective) -> Phrase:
     return PHRASES.get(name, Phrase("better", "worse", "", digits=2, what=name))
 
 
-def phrase_of(session: Optimization, objective: Objective | None = None) -> Phrase:
+def phrase_of(session: RunState, objective: Objective | None = None) -> Phrase:
     """Return how differences in an objective of a run are written; None: in its first."""
     return phrase_for(objective or session.problem.objectives[0])
 
 
-def verdict_kind(session: Optimization) -> Kind | None:
+def verdict_kind(session: RunState) -> Kind | None:
     """Return what the retest says of the recommended design; None while it is not over."""
     if not session.finished or not (session.trials or session.comparisons or session.lines):
         return None
@@ -205,7 +205,7 @@ def _joined(kinds: Sequence[Kind]) -> Kind | None:
     return next((kind for kind in ("worse", "same") if kind in kinds), None)
 
 
-def verdict_sentence(session: Optimization) -> str | None:
+def verdict_sentence(session: RunState) -> str | None:
     """Return what a run came to in one sentence; None while it is not over, or where nothing was retested."""
     kind, name = verdict_kind(session), session.setup.start_name
     if kind is None:
@@ -239,7 +239,7 @@ ENDS: Mapping[Kind, str] = {
 }
 
 
-def _of_several(session: Optimization, kind: Kind) -> str:
+def _of_several(session: RunState, kind: Kind) -> str:
     name, found = session.setup.start_name, retests_of(session)
     said = [
         phrase_of(session, one).among_others(found[one.name])
