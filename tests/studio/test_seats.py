@@ -135,9 +135,9 @@ def test_a_card_may_take_a_free_seat_which_is_theirs_then(
     tablet: TestClient, word: str, studies: Studies
 ) -> None:
     person, code = studies.study(NAME).enrol()
-    assert studies.waiting(NAME) == 1
+    assert studies.seats.waiting(NAME) == 1
     assert asked(tablet, word, "resume", study=NAME, person=person, code=code)["person"] == person
-    assert studies.waiting(NAME) == 0
+    assert studies.seats.waiting(NAME) == 0
     question = {"study": NAME, "seat": word, "holder": secrets.token_hex(8)}
     assert not asked(tablet, word, "look", **question)["seat"]
 

@@ -202,10 +202,10 @@ def test_who_comes_back_while_a_lost_page_still_takes_them_up_waits_for_it(
     with client.websocket_connect(LIVE) as socket:
         screen = Screen(socket)
         card = screen.sit(ask("seat")["seat"])
-        with studies.exclusive(NAME, card["person"]):
-            monkeypatch.setattr("fdvv.studio.studies.PATIENCE_s", 0.05)
+        with studies.screens.exclusive(NAME, card["person"]):
+            monkeypatch.setattr("fdvv.studio.screens.PATIENCE_s", 0.05)
             assert "taken up elsewhere" in screen.resume(card)["error"]
-            monkeypatch.setattr("fdvv.studio.studies.PATIENCE_s", 10.0)
+            monkeypatch.setattr("fdvv.studio.screens.PATIENCE_s", 10.0)
             screen.say("resume", study=NAME, person=card["person"], code=card["code"])
             time.sleep(0.05)
         assert screen.hear("step")["task"]["number"] == 0
@@ -220,7 +220,7 @@ def test_what_a_page_sent_before_it_went_away_takes_nobody_up_after_it_has_gone(
     screen.close()
     screen.receive(StudyResume(NAME, person, code))
     assert sent == []
-    assert own_studio.part(Studies).screen(NAME, person) is None
+    assert own_studio.part(Studies).screens.find(NAME, person) is None
 
 
 def test_a_pause_holds_every_answer_back_until_it_is_over(

@@ -275,7 +275,7 @@ def test_a_device_on_the_table_tells_the_presses_itself(
     rig.start()
     device = f"serial:{rig.path}"
     monkeypatch.setattr("fdvv.studio.play_trials.available_devices", lambda: (((device, "a board"),), ()))
-    monkeypatch.setattr("fdvv.studio.api.studies.device_names", lambda: (device,))
+    monkeypatch.setattr("fdvv.studio.api.study_people.device_names", lambda: (device,))
     assert ask("studies.use", device=device)["device"] == device
     ready = screen.begin()
     assert (ready["on"], ready["signals"]) == ("device", [])

@@ -167,7 +167,7 @@ def test_a_finished_session_of_an_earlier_fdvv_that_lacks_answers_is_noticed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its logs have no counts and its record no key: somebody cut answers and what ends them from both."""
-    monkeypatch.setattr("fdvv.study.admin.kept.Frozen", partial(Frozen, version=1))
+    monkeypatch.setattr("fdvv.study.admin.planned.Frozen", partial(Frozen, version=1))
     study = Study.open(frozen_study(tmp_path / "study").folder)
     one, _ = enrolled(study, StillStage())
     do_all(one, 3)

@@ -330,7 +330,7 @@ def test_a_built_in_button_that_another_version_ships_is_noticed(
 def test_a_study_that_was_frozen_before_run_keys_runs_as_before_and_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("fdvv.study.admin.kept.Frozen", partial(Frozen, version=1))
+    monkeypatch.setattr("fdvv.study.admin.planned.Frozen", partial(Frozen, version=1))
     study = Study.open(small_study(tmp_path).folder)
     person, code = study.enrol(cost=CHEAP)
     assert study.schedule(person, code).person == person

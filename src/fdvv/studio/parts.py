@@ -18,7 +18,7 @@ PARTS = (
     *("about", "library", "library_buttons", "documents", "files", "editor", "press", "programs"),
     *("jobs", "device"),
     *("optimize", "optimize_setup", "optimize_trials", "optimize_group", "play"),
-    *("studies", "study_plans", "study", "timing"),
+    *("studies", "study_plans", "study_people", "study_seal", "study", "timing"),
 )
 """In the order in which a person may want them: the first page is the library's."""
 

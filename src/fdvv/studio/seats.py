@@ -8,8 +8,9 @@ from __future__ import annotations
 import hashlib
 import logging
 import secrets
+from dataclasses import dataclass, field
 from pathlib import Path
-from threading import RLock
+from threading import Lock, RLock
 from typing import Literal
 
 import msgspec
@@ -45,6 +46,17 @@ class Seat(Struct, frozen=True, forbid_unknown_fields=True):
         return not (self.holder or self.person)
 
 
+@dataclass(eq=False)
+class Invitation:
+    """A seat that is taken at this moment. person, code : whose it is until their screen knows."""
+
+    study: str
+    word: str
+    person: str = ""
+    code: str = ""
+    lock: Lock = field(default_factory=Lock)
+
+
 class SeatsFile(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Content of the file of a study's seats."""
 
@@ -70,6 +82,7 @@ class Seats:
         self._folder = studio.project / FOLDER
         self._lock = RLock()
         self._seats: dict[str, tuple[str, Seat]] = {}
+        self._invitations: dict[str, Invitation] = {}
         self.unkept: set[str] = set()
         for path in sorted(self._folder.glob(f"*{SUFFIX}")):
             try:
@@ -94,7 +107,29 @@ class Seats:
         with self._lock:
             return [seat for name, seat in self._seats.values() if name == study]
 
-    def change(self, word: str, **changes: str | bool) -> None:
+    def invitation(self, name: str, word: str, holder: str) -> Invitation | None:
+        """Find an invitation that a page may take: a free one, or its own."""
+        study, seat = self.find(word) or ("", None)
+        if seat is None or study != name or seat.settled or seat.holder not in ("", digest_of(holder)):
+            return None
+        with self._lock:
+            return self._invitations.setdefault(word, Invitation(name, word, seat.person))
+
+    def take(self, invitation: Invitation, person: str, code: str, holder: str) -> None:
+        """Note who sits on a seat, and which page took it. OSError."""
+        invitation.person, invitation.code = person, code
+        self._change(invitation.word, person=person, holder=digest_of(holder))
+
+    def settle(self, word: str, person: str) -> None:
+        """Note that nobody else takes a seat, and forget the code: its person's screen knows. OSError."""
+        with self._lock:
+            self._invitations.pop(word, None)
+        self._change(word, person=person, settled=True)
+
+    def waiting(self, name: str) -> int:
+        return sum(seat.free for seat in self.of(name))
+
+    def _change(self, word: str, **changes: str | bool) -> None:
         """Change what is known of a seat; nothing where there is none. OSError."""
         with self._lock:
             found = self.find(word)

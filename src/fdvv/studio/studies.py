@@ -1,16 +1,14 @@
-"""The studies of a project: their folders, open invitations, and the screens in use."""
+"""The studies of a project: their folders, their keys while sessions are open, what renders them."""
 
 from __future__ import annotations
 
 import re
 import secrets
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import Lock, RLock
-from typing import Literal, Protocol
+from threading import RLock
+from typing import Literal
 
 from msgspec import Struct
 
@@ -20,7 +18,8 @@ from fdvv.io.files import write_atomic
 from fdvv.io.memory import hide_memory
 from fdvv.studio.contract import Message, Watchers
 from fdvv.studio.devices import require_listed
-from fdvv.studio.seats import FOLDER, Seat, Seats, digest_of
+from fdvv.studio.screens import Screens
+from fdvv.studio.seats import FOLDER, Seats
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.review import device_problems
 from fdvv.study.admin.study import Study
@@ -32,7 +31,6 @@ from fdvv.timing.files.study import AnyStudy, TimingStudy, open_study
 
 DEVICE_SUFFIX = ".device"
 TWIN = "twin"
-PATIENCE_s = 10.0
 TRIED = "try."
 """Before the name of a study that is tried: no study that is kept can be called so."""
 QUICK = Cost(1, 8192)
@@ -48,37 +46,17 @@ class StudiesChanged(Message, tag="changed"):
     study: str
 
 
-class ParticipantScreen(Protocol):
-    """A participant's screen as the operator has it."""
-
-    def pause(self, on: bool) -> None: ...
-    def leave(self, reason: str) -> None:
-        """End the session at this screen with a reason."""
-
-    def withdraw(self, delete: bool) -> None: ...
-
-
-@dataclass(eq=False)
-class Invitation:
-    """A seat that is taken at this moment. person, code : whose it is until their screen knows."""
-
-    study: str
-    word: str
-    person: str = ""
-    code: str = ""
-    lock: Lock = field(default_factory=Lock)
-
-
 class Studies:
-    """The studies in ``studies/NAME`` of a project."""
+    """The studies in ``studies/NAME`` of a project.
+
+    screens : those that serve their participants. seats : words that open one.
+    """
 
     def __init__(self, studio: Studio) -> None:
         self.folder = studio.project / FOLDER
         self.watchers = Watchers[Struct]()
-        self._seats = studio.part(Seats)
-        self._invitations: dict[str, Invitation] = {}
-        self._screens: dict[tuple[str, str], ParticipantScreen] = {}
-        self._person_locks: dict[tuple[str, str], Lock] = {}
+        self.screens = Screens(self.announce)
+        self.seats = studio.part(Seats)
         self._run_keys: dict[str, RunKey] = {}
         self._tried: dict[str, TemporaryDirectory[str]] = {}
         self._waiting_for_key: dict[str, list[Callable[[], None]]] = {}
@@ -114,16 +92,16 @@ class Studies:
             folder.cleanup()
             raise
         with self._lock:
-            screens = [screen for (of, _), screen in self._screens.items() if of == tried]
+            screens = self.screens.of(tried)
             self._tried[tried], before = folder, self._tried.get(tried)
             self._run_keys.pop(tried, None)
-        for screen in screens:
+        for screen in screens.values():
             screen.leave("it is tried elsewhere")
         if before:
             before.cleanup()
-        self._seats.unkept.add(tried)
+        self.seats.unkept.add(tried)
         self._keep_key(tried, copy)
-        return self._seats.make(tried)
+        return self.seats.make(tried)
 
     def study(self, name: str) -> AnyStudy:
         """Open a study, with its run key while its sessions are open. InputError."""
@@ -209,77 +187,14 @@ class Studies:
             raise InputError("study", name, "was unsealed, nobody can begin it any more", "declare a new one")
         if study.needs_run_key and not study.sessions_open:
             raise InputError("study", "sessions", CLOSED, OPEN_FIRST)
-        word = self._seats.make(name)
+        word = self.seats.make(name)
         self.announce(name)
         return word
-
-    def invitation(self, name: str, word: str, holder: str) -> Invitation | None:
-        """Find an invitation that a page may take: a free one, or its own."""
-        study, seat = self._seats.find(word) or ("", None)
-        if seat is None or study != name or seat.settled or seat.holder not in ("", digest_of(holder)):
-            return None
-        with self._lock:
-            return self._invitations.setdefault(word, Invitation(name, word, seat.person))
-
-    def take(self, invitation: Invitation, person: str, code: str, holder: str) -> None:
-        """Note who sits on a seat, and which page took it. OSError."""
-        invitation.person, invitation.code = person, code
-        self._seats.change(invitation.word, person=person, holder=digest_of(holder))
-
-    def settle(self, word: str, person: str) -> None:
-        """Note that nobody else takes a seat, and forget the code: its person's screen knows. OSError."""
-        with self._lock:
-            self._invitations.pop(word, None)
-        self._seats.change(word, person=person, settled=True)
-
-    def seat(self, word: str) -> tuple[str, Seat] | None:
-        """Return the study and the seat of a word; None of one that opens nothing."""
-        return self._seats.find(word)
-
-    def waiting(self, name: str) -> int:
-        return sum(seat.free for seat in self._seats.of(name))
-
-    def attach(self, name: str, person: str, screen: ParticipantScreen) -> None:
-        """Register a person's screen and end the session at an earlier one."""
-        with self._lock:
-            before = self._screens.pop((name, person), None)
-            self._screens[name, person] = screen
-        if before:
-            before.leave("this study continues at another screen")
-        self.announce(name)
-
-    def detach(self, name: str, person: str, screen: ParticipantScreen) -> None:
-        """Note that a screen serves a person no more."""
-        with self._lock:
-            if self._screens.get((name, person)) is screen:
-                del self._screens[name, person]
-        self.announce(name)
-
-    @contextmanager
-    def exclusive(self, name: str, person: str) -> Iterator[None]:
-        """Take a person up alone: a page that is gone may still be at it when they come back on another.
-
-        InputError where that takes too long.
-        """
-        with self._lock:
-            lock = self._person_locks.setdefault((name, person), Lock())
-        if not lock.acquire(timeout=PATIENCE_s):
-            raise InputError("study", "screen", "is taken up elsewhere at this moment", "try again")
-        try:
-            yield
-        finally:
-            lock.release()
-
-    def screen(self, name: str, person: str) -> ParticipantScreen | None:
-        with self._lock:
-            return self._screens.get((name, person))
 
     def pause(self, name: str, person: str | None, on: bool) -> None:
         """Pause or continue all screens of a study, or one; kept with the study. InputError."""
         self.study(name).pause(person or EVERYBODY, on)
-        with self._lock:
-            screens = [(who, screen) for (of, who), screen in self._screens.items() if of == name]
-        for who, screen in screens:
+        for who, screen in self.screens.of(name).items():
             screen.pause(self.paused(name, who))
         self.announce(name)
 
@@ -289,7 +204,7 @@ class Studies:
 
     def withdraw(self, name: str, person: str, delete: bool) -> None:
         """Take a person out of a study, wherever they are. InputError."""
-        screen = self.screen(name, person)
+        screen = self.screens.find(name, person)
         if screen:
             screen.withdraw(delete)
         else:
@@ -301,10 +216,7 @@ class Studies:
 
     def close(self) -> None:
         """End every session in order."""
-        with self._lock:
-            screens = list(self._screens.values())
-        for screen in screens:
-            screen.leave("the studio was closed")
+        self.screens.end("the studio was closed")
         for folder in self._tried.values():
             folder.cleanup()
 

@@ -5,31 +5,29 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Literal
 
-import numpy as np
 from msgspec import Meta, field
 
 from fdvv.errors import FdvvError
-from fdvv.model.curve import Stroke
-from fdvv.model.model import FDVVModel
-from fdvv.optimize.problem import OPEN, Answer, TrialState
-from fdvv.optimize.run.ending import FinalMean, ending_sentences, final_means
+from fdvv.optimize.problem import TrialState
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.verdict import (
-    Kind,
-    Retest,
-    at_bound,
-    retest_of,
-    verdict_kind,
-    verdict_sentence,
-)
+from fdvv.optimize.run.verdict import verdict_sentence
 from fdvv.optimize.space import Parameter
+from fdvv.studio.api.optimize_ending import OptimizeRetest, compromise, retest_state
+from fdvv.studio.api.optimize_tried import (
+    OptimizeLine,
+    OptimizePair,
+    OptimizeTrial,
+    line_list,
+    pair_list,
+    trial_list,
+)
 from fdvv.studio.contract import Empty, Message, call, error_line, message_of, watch_channel
 from fdvv.studio.optimizations import Optimizations, OptimizeChanged
 from fdvv.studio.played_trial import PlayStrip, playable, pointing_of, strip_of
 from fdvv.studio.rated_trial import waiting_trial
 from fdvv.task.pointing import TemporalPointing
 from fdvv.task.questionnaire import HIGHEST, ITEMS, LOWEST
-from fdvv.task.score import Objective, Score
+from fdvv.task.score import Objective
 
 Number = Annotated[int, Meta(ge=0, le=2**31)]
 Name = Annotated[str, Meta(max_length=100)]
@@ -68,52 +66,6 @@ class OptimizeAsk(Message):
     run: Number
 
 
-class OptimizeCurve(Message):
-    """The press of a design, for a small picture."""
-
-    step_mm: float
-    force_cN: list[float]
-    actuation_mm: float | None
-
-
-class OptimizeTrial(Message):
-    """A trial.
-
-    front : no other one is better in every objective, by expected scores; False where there is one
-    objective. expected : its posterior means with their deviations; empty unless it is on the front.
-    """
-
-    number: int
-    design: dict[str, float]
-    edited: bool
-    state: TrialState
-    scores: dict[str, Score]
-    reason: str
-    origin: str
-    curve: OptimizeCurve
-    front: bool
-    expected: dict[str, Score]
-
-
-class OptimizePair(Message):
-    """Two designs and what was said of them."""
-
-    number: int
-    first: dict[str, float]
-    second: dict[str, float]
-    first_curve: OptimizeCurve
-    second_curve: OptimizeCurve
-    answer: Answer | None
-
-
-class OptimizeLine(Message):
-    """A line. stops : its designs in order. best : which is liked best, from 0; None: not yet answered."""
-
-    number: int
-    stops: list[dict[str, float]]
-    best: int | None
-
-
 class OptimizeSimulated(Message):
     """A simulated person who plays: how far, and whether still at it. about : the person."""
 
@@ -122,27 +74,6 @@ class OptimizeSimulated(Message):
     total: int
     about: str = field(name="told")
     fault: str
-
-
-class OptimizeRetest(Message):
-    """The start and the recommended design, played again blind, beside rivals if there are any.
-
-    done, total : trials, or comparisons. open : number of the trial under way. at_bound : values of the
-    recommended design that are the "least" or the "most" allowed. sentence, kind, found : what was found;
-    None before its end, found also where nothing was to be retested. rivals : names of what is played too.
-    ending : sentences on them. means : of all that was played; empty before the end.
-    """
-
-    done: int
-    total: int
-    open: int | None
-    at_bound: dict[str, Literal["least", "most"]]
-    sentence: str | None
-    kind: Kind | None
-    found: Retest | None
-    rivals: list[str]
-    ending: list[str]
-    means: list[FinalMean]
 
 
 class OptimizeItem(Message):
@@ -208,8 +139,6 @@ class OptimizeSimulate(OptimizeAsk):
     trials: Annotated[int, Meta(ge=1, le=2000)]
 
 
-PICTURE_POINTS = 40
-DIGITS = 3
 TITLE, START, OTHERS = "title", "start", "others"
 """Where a setup keeps what people call a run, the button it starts from, whose scores it begins from."""
 
@@ -228,38 +157,6 @@ def run_row(run: int, session: Optimization) -> OptimizeRow:
         made=setup.created,
         problem="",
     )
-
-
-def trial_list(session: Optimization) -> list[OptimizeTrial]:
-    front = {one.number: one for one in session.front().trials} if session.setup.several else {}
-    return [
-        message_of(
-            OptimizeTrial,
-            one,
-            edited=one.suggested is not None,
-            curve=press_picture(session.model(one.design)),
-            front=one.number in front,
-            expected=front[one.number].scores if one.number in front else {},
-        )
-        for one in session.trials
-    ]
-
-
-def pair_list(session: Optimization) -> list[OptimizePair]:
-    def picture(design: dict[str, float]) -> OptimizeCurve:
-        return press_picture(session.model(design))
-
-    return [
-        message_of(OptimizePair, one, first_curve=picture(one.first), second_curve=picture(one.second))
-        for one in (*session.comparisons, *session.retest_comparisons)
-    ]
-
-
-def press_picture(model: FDVVModel) -> OptimizeCurve:
-    """Sample a button's slow press for a small picture."""
-    x = np.linspace(0.0, model.travel_mm, PICTURE_POINTS)
-    force = model.force_cN(x, 0.0, Stroke.PRESS)
-    return OptimizeCurve(float(x[1]), force.round(DIGITS).tolist(), model.actuation_mm)
 
 
 @call("optimize.list")
@@ -291,7 +188,7 @@ def detail(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeDetail:
             trial_list(session),
             pair_list(session),
             session.line_engine is not None,
-            [message_of(OptimizeLine, one, stops=list(one.stops)) for one in session.lines],
+            line_list(session),
             session.start,
             setup.start_name,
             str(setup.about.get(START) or ""),
@@ -311,33 +208,6 @@ def questions(session: Optimization, folder: Path) -> OptimizeQuestions | None:
     waiting = waiting_trial(session, folder)
     items = [message_of(OptimizeItem, item) for item in ITEMS]
     return OptimizeQuestions(items, LOWEST, HIGHEST, waiting.number if waiting else None)
-
-
-def compromise(session: Optimization) -> int | None:
-    """Return the number of the recommended trial of the front."""
-    if not session.setup.several or not session.searched:
-        return None
-    found = session.recommended()
-    return next((one.number for one in session.front().trials if one.design == found), None)
-
-
-def retest_state(session: Optimization) -> OptimizeRetest:
-    retests, answered = session.retests, [one.answer is not None for one in session.retest_comparisons]
-    played = [one.state not in OPEN for one in retests] or answered
-    open_ = next((one.number for one in retests if one.state in OPEN), None)
-    best = session.recommended() if session.searched else None
-    return OptimizeRetest(
-        sum(played),
-        sum(played) + session.retest_left + len(retests) - sum(played[: len(retests)]),
-        open_,
-        at_bound(session.space, best, session.start) if best else {},
-        verdict_sentence(session),
-        verdict_kind(session),
-        retest_of(session) if session.finished else None,
-        [one.name for one in session.setup.rivals if one.design is None or one.design != session.start],
-        list(ending_sentences(session)),
-        list(final_means(session)) if session.finished else [],
-    )
 
 
 @call("optimize.simulate")

@@ -7,13 +7,16 @@ import re
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
+
+from msgspec import Meta
 
 from fdvv.errors import InputError
 from fdvv.io.files import write_atomic
 from fdvv.model.file import model_to_json
 from fdvv.report.report import Section
 from fdvv.studio.api.documents import ButtonId
-from fdvv.studio.api.studies import TEMPLATE_DESCRIPTIONS, Name, StudiesAsk, Text
+from fdvv.studio.api.studies import Name, StudiesAsk
 from fdvv.studio.contract import Empty, Message, Offer, call, error_line
 from fdvv.studio.studies import Studies
 from fdvv.studio.studio import Studio
@@ -31,6 +34,20 @@ from fdvv.study.plan.plan_file import (
 )
 from fdvv.timing.files.study import AnyStudy, TimingStudy
 from fdvv.timing.plan.plan_file import TEMPLATE_NAMES, timing_template
+
+Text = Annotated[str, Meta(max_length=200_000)]
+TEMPLATE_DESCRIPTIONS = {
+    "realism": "which of two hidden renderings is closer to a named reference; the paper's",
+    "abx": "X is A or B: which?",
+    "2afc": "which of two has more of something",
+    "2ac": "the same, or which has more?",
+    "preference": "which of two is liked better",
+    "mushra": "several are rated beside a reference, itself and anchors hidden among them",
+    "staircase": "how small a difference is just felt",
+    "thresholds": "how small a difference of force, snap and vibration is just felt, in few trials",
+    "timing": "which button times a press best, after a search for one's own; the paper's",
+    "tapping": "how fast one can tap on each",
+}
 
 
 class StudiesOffers(Message):

@@ -23,7 +23,8 @@ from fdvv.studio.participant.messages import (
     StudyStopped,
     StudyWithdraw,
 )
-from fdvv.studio.studies import Invitation, Studies
+from fdvv.studio.seats import Invitation
+from fdvv.studio.studies import Studies
 from fdvv.studio.studio import Studio
 from fdvv.study.plan.session import ENDS
 
@@ -64,6 +65,7 @@ class SeatedScreen(ABC, Generic[P]):
     def __init__(self, studio: Studio, tell: Tell, seat: str = "") -> None:
         self._seat, self._name = seat, ""
         self._studies, self._tell = studio.part(Studies), tell
+        self._seats = self._studies.seats
         self._participant: P | None = None
         self._invitation: Invitation | None = None
         # the operator may use it while the page's own thread does
@@ -117,7 +119,7 @@ class SeatedScreen(ABC, Generic[P]):
             self.put_away()
             if participant:
                 participant.close()
-                self._studies.detach(self._name, participant.person, self)
+                self._studies.screens.detach(self._name, participant.person, self)
 
     def pause(self, on: bool) -> None:
         if on:
@@ -139,7 +141,7 @@ class SeatedScreen(ABC, Generic[P]):
         """Refuse what is not of the page's own seat. InputError."""
         if not self._seat:
             return
-        study, seat = self._studies.seat(self._seat) or ("", None)
+        study, seat = self._seats.find(self._seat) or ("", None)
         other = isinstance(ask, JoinSession | StudyLook) and ask.seat not in ("", self._seat)
         someone = isinstance(ask, StudyResume) and seat is not None and seat.person not in ("", ask.person)
         if seat is None or study != ask.study or other or someone:
@@ -157,7 +159,7 @@ class SeatedScreen(ABC, Generic[P]):
         match ask:
             case StudyLook():
                 plan = self._studies.study(ask.study).plan
-                free = self._studies.invitation(ask.study, ask.seat, ask.holder) is not None
+                free = self._seats.invitation(ask.study, ask.seat, ask.holder) is not None
                 self._tell(StudyAbout(ask.study, plan.kind, plan.title, list(plan.languages), free))
             case JoinSession():
                 self._join(ask)
@@ -169,7 +171,7 @@ class SeatedScreen(ABC, Generic[P]):
                 self._leave_session()
                 self._resume(ask.study, ask.person, ask.code)
                 if self._seat:
-                    self._studies.settle(self._seat, ask.person)
+                    self._seats.settle(self._seat, ask.person)
                 self._begin("")
 
     def _sit(self, ask: Message, participant: P) -> None:
@@ -185,12 +187,12 @@ class SeatedScreen(ABC, Generic[P]):
                 self.go_on(ask, participant)
 
     def _join(self, ask: JoinSession) -> None:
-        invitation = self._studies.invitation(ask.study, ask.seat, ask.holder)
+        invitation = self._seats.invitation(ask.study, ask.seat, ask.holder)
         if invitation is None:
             raise taken_error()
         self._leave_session()
         with invitation.lock:
-            if self._studies.invitation(ask.study, ask.seat, ask.holder) is None:  # two began at once
+            if self._seats.invitation(ask.study, ask.seat, ask.holder) is None:  # two began at once
                 raise taken_error()
             if invitation.person:  # the page went away before it heard the code
                 if not invitation.code:  # and so did the studio
@@ -198,7 +200,7 @@ class SeatedScreen(ABC, Generic[P]):
                 self._resume(ask.study, invitation.person, invitation.code)
             else:
                 participant, code = self.enrolled(ask.study, ask.language)
-                self._studies.take(invitation, participant.person, code, ask.holder)
+                self._seats.take(invitation, participant.person, code, ask.holder)
                 self._take(ask.study, participant)
             self._invitation = invitation
         self._begin(invitation.code)
@@ -211,8 +213,8 @@ class SeatedScreen(ABC, Generic[P]):
 
     def _resume(self, name: str, person: str, code: str) -> None:
         """Resume a person's session; another screen that serves them, or is about to, ends first."""
-        with self._studies.exclusive(name, person):
-            other = self._studies.screen(name, person)
+        with self._studies.screens.exclusive(name, person):
+            other = self._studies.screens.find(name, person)
             if other:
                 # a wrong code must not take anybody's screen away
                 self._studies.study(name).schedule(person, code)
@@ -221,7 +223,7 @@ class SeatedScreen(ABC, Generic[P]):
 
     def _take(self, name: str, participant: P) -> None:
         self._name, self._participant = name, participant
-        self._studies.attach(name, participant.person, self)
+        self._studies.screens.attach(name, participant.person, self)
 
     def _begin(self, code: str) -> None:
         assert self._participant is not None
@@ -232,7 +234,7 @@ class SeatedScreen(ABC, Generic[P]):
     def forget_code(self) -> None:
         """Forget the code: the page has shown it."""
         if self._invitation:
-            self._studies.settle(self._invitation.word, self._invitation.person)
+            self._seats.settle(self._invitation.word, self._invitation.person)
             self._invitation = None
 
     def require_running(self, participant: P) -> None:

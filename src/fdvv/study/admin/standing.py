@@ -19,7 +19,6 @@ SHARE = 0.7
 """Of answers for the claim, in truth: what a study is sized for."""
 ALIKE = 0.1
 """How alike the answers of one person are (intraclass correlation, assumed)."""
-ANSWERS = "answers.csv"
 Kind = Literal["", "good", "warning"]
 
 
@@ -69,7 +68,7 @@ def standing(study: Study) -> tuple[str, Kind]:
 
 
 def _found(study: Study) -> tuple[str, Kind]:
-    found = analyse(read_answers(study.folder / UNSEALED / ANSWERS), study.plan)
+    found = analyse(read_answers(study.folder / UNSEALED), study.plan)
     if found.claim is None:
         return "The study is open; it claims nothing, so read its report.", ""
     return claim_sentence(found.claim), "good" if found.claim.supported else "warning"

@@ -1,0 +1,123 @@
+"""The plan of a study in a folder, whatever it declares: put there, changed, frozen."""
+
+from __future__ import annotations
+
+import shutil
+from abc import abstractmethod
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Self
+
+import fdvv
+from fdvv.errors import InputError
+from fdvv.io.files import read_limited, sync_folder, write_atomic
+from fdvv.rendering.session import now
+from fdvv.study.files import layout
+from fdvv.study.files.chained_log import ChainedLog
+from fdvv.study.files.folder import KeptFolder
+from fdvv.study.files.layout import LOG_FILE, PEOPLE, Frozen, digest
+from fdvv.study.files.log_head import head_path
+from fdvv.study.files.seal import Cost, new_key_holder
+from fdvv.study.plan.plan_file import STUDY_FILE
+
+
+class PlannedStudy(KeptFolder):
+    """A study up to its freezing; no file is held open between two calls."""
+
+    @classmethod
+    @abstractmethod
+    def files_named(cls, text: str, source: object) -> Sequence[str]:
+        """Return the files that the text of a plan names, as it names them. InputError."""
+
+    @classmethod
+    def declare(cls, folder: Path, plan_file: Path) -> Self:
+        """Declare a study in a folder that is new or empty: copy its plan and all files that it names.
+
+        InputError on a plan that cannot be read, or that names a file that is not there. OSError.
+        """
+        text = read_limited(plan_file, layout.LARGEST_bytes, layout.SMALLER).decode(errors="replace")
+        return cls.declare_text(folder, text, Path(plan_file).parent, plan_file)
+
+    @classmethod
+    def declare_text(cls, folder: Path, text: str, beside: Path, source: object = STUDY_FILE) -> Self:
+        """Declare a study from the text of its plan, whole or not at all. beside : where its files lie."""
+        make_folder(folder, lambda building: cls._put_plan(building, text, beside, source))
+        return cls(folder)
+
+    @classmethod
+    def open(cls, folder: Path) -> Self:
+        """Open a study. InputError where there is none."""
+        if not (Path(folder) / STUDY_FILE).is_file():
+            raise InputError(folder, "folder", f"holds no study ({STUDY_FILE})", "name the folder of a study")
+        return cls(folder)
+
+    def change_plan(self, text: str, beside: Path | None = None) -> None:
+        """Replace the plan of a study that is not frozen. beside : where files lie that it names."""
+        if self.frozen:
+            raise InputError(self.folder, "study", "is frozen", "declare a new study in another folder")
+        self._put_plan(self.folder, text, beside or self.folder, STUDY_FILE)
+
+    @classmethod
+    def _put_plan(cls, folder: Path, text: str, beside: Path, source: object) -> None:
+        """Write a plan, behind all files that it names. InputError where one is not there, OSError."""
+        layout.copy_files(cls.files_named(text, source), Path(beside), folder)
+        write_atomic(folder / STUDY_FILE, text)
+
+    def freeze_files(self, names: Sequence[str], builtins: Iterable[str], passphrase: str, cost: Cost) -> str:
+        """Freeze a plan that was checked, the files that it names, and built-in buttons by name.
+
+        Files beside the plan are copied into the study first: what is frozen is rendered. Returns the
+        fingerprint. Sessions are open in this object from then on. InputError on a short passphrase.
+        BuildError: no PyNaCl. OSError.
+        """
+        folder = self.folder
+        layout.keep_files(names, folder)
+        paths = [folder / STUDY_FILE, *(layout.kept_path(folder, name) for name in names)]
+        files = {path.relative_to(folder).as_posix(): digest(layout.content(path)) for path in paths}
+        holder, keeper = new_key_holder(passphrase, cost)
+        write_atomic(folder / layout.KEEPER_FILE, keeper, private=True)
+        files[layout.KEEPER_FILE] = digest(keeper)
+        digests = {name: layout.builtin_digest(name) for name in builtins}
+        frozen = Frozen(
+            files=files, builtins=digests, seal=holder.seal.text, fdvv=fdvv.__version__, when=now()
+        )
+        fingerprint, self.run_key = self._begin_log(frozen), holder.run_key
+        return fingerprint
+
+    def require_unfrozen(self) -> None:
+        """Raise InputError if the study was frozen before."""
+        if (self.folder / layout.FROZEN_FILE).exists() or (self.folder / PEOPLE).exists():
+            remedy = "declare a new study in another folder"
+            raise InputError(self.folder, "study", "was frozen before", remedy)
+
+    def _begin_log(self, frozen: Frozen) -> str:
+        log_path, sha256 = self.folder / LOG_FILE, digest(frozen.text)
+        for left in (log_path, head_path(log_path)):
+            left.unlink(missing_ok=True)  # of a freezing that was killed
+        with ChainedLog.create(log_path, {"study": sha256}) as log:
+            log.write({"frozen": {"when": frozen.when, "sha256": sha256, "fdvv": frozen.fdvv}})
+        # last of all: before it is there, nothing is frozen
+        write_atomic(self.folder / layout.FROZEN_FILE, frozen.text)
+        sync_folder(self.folder)
+        return layout.fingerprint_of(sha256)
+
+
+def make_folder(folder: Path, put: Callable[[Path], None]) -> None:
+    """Make the folder of a study, whole or not at all. put : writes its files into a folder that exists not.
+
+    InputError where it is there and not empty, and what put raises. OSError.
+    """
+    folder = Path(folder)
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(folder, "folder", "is not empty", "name a new one, or open the study in it")
+    if folder.exists():  # it may be the working directory of a shell
+        put(folder)
+        return
+    building = folder.with_name(f".{folder.name}.new")
+    shutil.rmtree(building, ignore_errors=True)  # of a process that was killed
+    try:
+        put(building)
+        building.replace(folder)
+    finally:
+        shutil.rmtree(building, ignore_errors=True)
+    sync_folder(folder.parent)
