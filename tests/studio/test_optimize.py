@@ -22,7 +22,7 @@ from fdvv.studio.optimizations import Optimizations
 from fdvv.studio.rated_trial import rate_trial, waiting_trial
 from fdvv.studio.studio import Studio
 from fdvv.task.pointing import TemporalPointing
-from fdvv.task.rounds import ClockSource, TaskRounds
+from fdvv.task.rounds import ClockSource, TaskRounds, read_rounds
 from fdvv.task.score import Objective, Score
 from tests.studio.conftest import LIVE
 from tests.support.grids import grid
@@ -604,7 +604,7 @@ def test_a_studio_that_was_killed_before_the_answers_asks_again_and_loses_no_pre
     before = (own_studio.project / "optimize" / str(run) / "rounds.jsonl").read_bytes()
     other = Optimizations(own_studio)
     with other.session(run) as session:
-        waiting = waiting_trial(session, other.folder(run))
+        waiting = waiting_trial(session, read_rounds(other.folder(run)))
     assert waiting is not None
     rate_trial(other, run, waiting.number, [6, 6, 6, 6])
     after = (own_studio.project / "optimize" / str(run) / "rounds.jsonl").read_bytes()

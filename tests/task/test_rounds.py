@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.task.rounds import ClockSource, RoundTiming, TaskRounds
+from fdvv.task.rounds import ClockSource, RoundTiming, TaskRounds, read_rounds
 
 TIMING = RoundTiming(ClockSource.PAGE, 30.0, 17.0, 10.0, 10.0, 5e6, 0.6, 4.0, 16.7, "key")
 
@@ -40,6 +40,20 @@ def test_a_trial_that_is_begun_again_counts_anew_and_keeps_what_was(tmp_path: Pa
     assert [(one.attempt, one.number, one.target_s) for one in rounds.counting(0)] == [(2, 1, 9.0)]
     assert len(rounds.all) == 4
     rounds.close()
+
+
+def test_a_reader_counts_as_the_writer_does_while_that_is_at_work(tmp_path: Path) -> None:
+    assert read_rounds(tmp_path).all == ()
+    assert list(tmp_path.iterdir()) == []
+    written_rounds(tmp_path, 0, (1.0, 2.0)).close()
+    writer = written_rounds(tmp_path, 1, (3.0,))
+    writer.begin(0)
+    writer.add(0, 4.0, (), TIMING)
+    reader = read_rounds(tmp_path)
+    assert reader.all == writer.all
+    assert [reader.counting(trial) for trial in (0, 1, 2)] == [writer.counting(trial) for trial in (0, 1, 2)]
+    assert [one.target_s for one in reader.counting(0)] == [4.0]
+    writer.close()
 
 
 @pytest.mark.parametrize("lost_bytes", [1, 20, 60])

@@ -12,7 +12,7 @@ from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.studio.contract import Message
 from fdvv.task.pointing import TemporalPointing
-from fdvv.task.rounds import ClockSource, RoundTiming, TaskRounds, read_counting
+from fdvv.task.rounds import ClockSource, RoundTiming, TaskRounds
 from fdvv.task.task import TaskPress
 
 if TYPE_CHECKING:
@@ -146,16 +146,27 @@ class PlayedTrial:
                 self.task, self.seed = pointing_of(session.setup), session.setup.seed
                 trial = _open_trial(session, number)
                 self._asks = session.setup.asks_liking
-                if self._asks and len(read_counting(runs.folder(run), number)) >= self.task.rounds:
-                    raise InputError("optimise", f"trial {number + 1}", "waits for answers", "rate it first")
                 self.model = session.button(trial, f"trial {number + 1}")
                 self._rounds = TaskRounds(runs.folder(run))
-                if trial.state is TrialState.SUGGESTED:
-                    session.show(number)
-            self.attempt = self._rounds.begin(number)
+                try:
+                    self.attempt = self._begin(session, trial)
+                except BaseException:
+                    self._rounds.close()
+                    raise
         except BaseException:
             runs.leave(run)
             raise
+
+    def _begin(self, session: Optimization, trial: Trial) -> int:
+        """Begin the trial, or begin it again; return how often it was. InputError if it waits for answers."""
+        if self._asks and self._all_pressed():
+            raise InputError("optimise", f"trial {trial.number + 1}", "waits for answers", "rate it first")
+        if trial.state is TrialState.SUGGESTED:
+            session.show(trial.number)
+        return self._rounds.begin(trial.number)
+
+    def _all_pressed(self) -> bool:
+        return len(self._rounds.counting(self._number)) >= self.task.rounds
 
     def keep(self, ask: PlayRound, activations_s: tuple[float, ...], timing: RoundTiming) -> PlayKept:
         """Keep a round with what was pressed in it; score the trial after the last. InputError.
@@ -166,10 +177,9 @@ class PlayedTrial:
             raise InputError("optimise", f"trial {self._number + 1}", "is played elsewhere", "begin it again")
         target_s = (ask.target_ms + ask.display.ms) / 1e3
         self._rounds.add(self._number, target_s, activations_s, timing)
-        counting = self._rounds.counting(self._number)
-        finished = len(counting) >= self.task.rounds
+        finished = self._all_pressed()
         if finished and not self._asks:
-            self._score([one.press for one in counting])
+            self._score([one.press for one in self._rounds.counting(self._number)])
         late_ms = 1e3 * (activations_s[0] - target_s) if activations_s else None
         return PlayKept(ask.number, late_ms, timing.transport_ms, finished)
 

@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fdvv.errors import InputError, ModelError
 from fdvv.optimize.problem import Trial, TrialState
 from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.studio.played_trial import pointing_of
 from fdvv.task.questionnaire import LIKING, check_answers, liking_score
-from fdvv.task.rounds import TaskRounds, read_counting
+from fdvv.task.rounds import KeptRounds, TaskRounds
 
 if TYPE_CHECKING:
     from fdvv.studio.optimizations import Optimizations
 
 
-def waiting_trial(session: Optimization, folder: Path) -> Trial | None:
+def waiting_trial(session: Optimization, rounds: KeptRounds) -> Trial | None:
     """Return the trial of a run whose presses are all on the disk and that nobody has rated yet."""
     setup = session.setup
-    if not setup.asks_liking or setup.simulated:
+    if not _asks_people(setup):
         return None
     shown = [one for one in (*session.trials, *session.retests) if one.state is TrialState.SHOWN]
-    return next((one for one in shown if len(read_counting(folder, one.number)) >= setup.presses), None)
+    return next((one for one in shown if len(rounds.counting(one.number)) >= setup.presses), None)
+
+
+def _asks_people(setup: OptimizeSetup) -> bool:
+    return setup.asks_liking and not setup.simulated
 
 
 def rate_trial(runs: Optimizations, run: int, number: int, answers: Sequence[int]) -> None:
@@ -32,19 +36,24 @@ def rate_trial(runs: Optimizations, run: int, number: int, answers: Sequence[int
     InputError where no such trial waits, or on answers beyond the questionnaire.
     """
     with runs.session(run) as session:
-        waiting = waiting_trial(session, runs.folder(run))
-        if waiting is None or waiting.number != number:
-            raise InputError("optimise", f"trial {number + 1}", "waits for no answers", "play it first")
-        answers = check_answers(answers)
+        if not _asks_people(session.setup):
+            raise _waits_for_none(number)
         rounds = TaskRounds(runs.folder(run))
         try:
+            waiting = waiting_trial(session, rounds)
+            if waiting is None or waiting.number != number:
+                raise _waits_for_none(number)
+            answers = check_answers(answers)
             rounds.rate(number, answers)
-            presses = [one.press for one in rounds.counting(number)]
         finally:
             rounds.close()
         try:
-            scores = pointing_of(session.setup).scores(presses)
+            scores = pointing_of(session.setup).scores([one.press for one in rounds.counting(number)])
         except ModelError as error:
             session.fail(number, str(error))
             return
         session.done(number, {**scores, LIKING.name: liking_score(answers)})
+
+
+def _waits_for_none(number: int) -> InputError:
+    return InputError("optimise", f"trial {number + 1}", "waits for no answers", "play it first")

@@ -116,42 +116,12 @@ KIND = JournalKind(
 )
 
 
-class TaskRounds:
-    """The rounds of an optimisation, in memory and on file, for one process at a time.
+class KeptRounds:
+    """The rounds of an optimisation in memory: which there are, and which of them count."""
 
-    Parameters
-    ----------
-    folder : of the optimisation.
-
-    Raises InputError on a journal that is damaged or at work elsewhere, OSError.
-    """
-
-    def __init__(self, folder: Path) -> None:
-        self.path = folder / ROUNDS
-        busy = InputError(
-            self.path.name, "whole file", "another fdvv works on it", "close the other one first"
-        )
+    def __init__(self) -> None:
         self._attempts: dict[int, int] = {}
         self._rounds: list[TaskRound] = []
-        self._journal = Journal.resume(self.path, KIND, busy, self._replay)
-
-    def begin(self, trial: int) -> int:
-        """Begin a trial, or begin it again; give how often it was."""
-        attempt = self._attempts.get(trial, 0) + 1
-        self._journal.write({"begun": {"trial": trial, "attempt": attempt, "made": _now()}})
-        self._attempts[trial] = attempt
-        return attempt
-
-    def add(
-        self, trial: int, target_s: float, activations_s: tuple[float, ...], timing: RoundTiming
-    ) -> TaskRound:
-        """Write the next round of a trial that was begun to the disk."""
-        number = len(self.counting(trial)) + 1
-        attempt = self._attempts[trial]
-        found = TaskRound(trial, attempt, number, target_s, activations_s, timing, _now())
-        self._journal.write({"round": msgspec.to_builtins(found)})
-        self._rounds.append(found)
-        return found
 
     def counting(self, trial: int) -> tuple[TaskRound, ...]:
         """Return the rounds of a trial since it was begun last."""
@@ -163,31 +133,68 @@ class TaskRounds:
         """Return every round there ever was, those that do not count among them."""
         return tuple(self._rounds)
 
-    def close(self) -> None:
-        self._journal.close()
-
-    def rate(self, trial: int, answers: Sequence[int]) -> None:
-        """Write the answers to a trial's questionnaire to the disk."""
-        rated = TrialRated(trial, self._attempts[trial], tuple(answers), _now())
-        self._journal.write({"rated": msgspec.to_builtins(rated)})
-
-    def _replay(self, _key: str, body: TrialBegun | TaskRound | TrialRated) -> None:
+    def _put(self, _key: str, body: TrialBegun | TaskRound | TrialRated) -> None:
         if isinstance(body, TrialBegun):
             self._attempts[body.trial] = body.attempt
         elif isinstance(body, TaskRound):
             self._rounds.append(body)
 
 
-def read_counting(folder: Path, trial: int) -> tuple[TaskRound, ...]:
-    """Read the rounds of a trial since it was begun last, without a lock. Raises InputError, OSError."""
-    attempt, rounds = 0, list[TaskRound]()
-    path = folder / ROUNDS
-    for _, body, _ in read_bodies(path, KIND) if path.exists() else ():
-        if isinstance(body, TrialBegun) and body.trial == trial:
-            attempt = body.attempt
-        elif isinstance(body, TaskRound) and body.trial == trial:
-            rounds.append(body)
-    return tuple(one for one in rounds if one.attempt == attempt)
+def read_rounds(folder: Path) -> KeptRounds:
+    """Read the rounds of an optimisation, none where nobody has played; no lock is taken.
+
+    folder : of the optimisation. Raises InputError on a journal that is damaged, OSError.
+    """
+    found, path = KeptRounds(), folder / ROUNDS
+    for key, body, _ in read_bodies(path, KIND) if path.exists() else ():
+        found._put(key, body)
+    return found
+
+
+class TaskRounds(KeptRounds):
+    """The rounds of an optimisation, in memory and on file, for one process at a time.
+
+    Parameters
+    ----------
+    folder : of the optimisation.
+
+    Raises InputError on a journal that is damaged or at work elsewhere, OSError.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__()
+        self.path = folder / ROUNDS
+        busy = InputError(
+            self.path.name, "whole file", "another fdvv works on it", "close the other one first"
+        )
+        self._journal = Journal.resume(self.path, KIND, busy, self._put)
+
+    def begin(self, trial: int) -> int:
+        """Begin a trial, or begin it again; return how often it was."""
+        begun = TrialBegun(trial, self._attempts.get(trial, 0) + 1, _now())
+        self._write("begun", begun)
+        return begun.attempt
+
+    def add(
+        self, trial: int, target_s: float, activations_s: tuple[float, ...], timing: RoundTiming
+    ) -> TaskRound:
+        """Write the next round of a trial that was begun to the disk."""
+        number = len(self.counting(trial)) + 1
+        attempt = self._attempts[trial]
+        found = TaskRound(trial, attempt, number, target_s, activations_s, timing, _now())
+        self._write("round", found)
+        return found
+
+    def rate(self, trial: int, answers: Sequence[int]) -> None:
+        """Write the answers to a trial's questionnaire to the disk."""
+        self._write("rated", TrialRated(trial, self._attempts[trial], tuple(answers), _now()))
+
+    def _write(self, key: str, body: TrialBegun | TaskRound | TrialRated) -> None:
+        self._journal.write({key: msgspec.to_builtins(body)})
+        self._put(key, body)
+
+    def close(self) -> None:
+        self._journal.close()
 
 
 def _now() -> str:

@@ -27,6 +27,7 @@ from fdvv.studio.played_trial import PlayStrip, playable, pointing_of, strip_of
 from fdvv.studio.rated_trial import waiting_trial
 from fdvv.task.pointing import TemporalPointing
 from fdvv.task.questionnaire import HIGHEST, ITEMS, LOWEST
+from fdvv.task.rounds import read_rounds
 from fdvv.task.score import Objective
 
 Number = Annotated[int, Meta(ge=0, le=2**31)]
@@ -205,7 +206,7 @@ def detail(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeDetail:
 def questions(session: Optimization, folder: Path) -> OptimizeQuestions | None:
     if not session.setup.asks_liking:
         return None
-    waiting = waiting_trial(session, folder)
+    waiting = waiting_trial(session, read_rounds(folder))
     items = [message_of(OptimizeItem, item) for item in ITEMS]
     return OptimizeQuestions(items, LOWEST, HIGHEST, waiting.number if waiting else None)
 
