@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -16,6 +17,7 @@ from fdvv.optimize.people.simulate import score_design
 from fdvv.optimize.people.taste import Taste, draw_taste, rate
 from fdvv.optimize.people.user import SimulatedUser, draw_users
 from fdvv.optimize.problem import TrialState
+from fdvv.optimize.run.memory import RunMemory
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.studio.contract import Message, Watchers, error_line
@@ -112,7 +114,7 @@ class Optimizations:
         self._held: dict[int, OpenRun] = {}
         self._played: dict[int, PlayedTrial] = {}
         self._simulated: dict[int, SimulatedPlay] = {}
-        self._found: dict[int, tuple[int, dict[str, float]]] = {}
+        self._memories = defaultdict[int, RunMemory](RunMemory)
         self.watchers = Watchers[Struct]()
         # a thread inside a session may take this lock, so its holder must not wait for a session
         self._lock = RLock()
@@ -145,7 +147,7 @@ class Optimizations:
         held = self.hold(run)
         try:
             with held.lock:
-                held.session = held.session or Optimization.open(self._folder / str(run))
+                held.session = held.session or Optimization.open(self._folder / str(run), self._memories[run])
                 yield held.session
         finally:
             self.leave(run)
@@ -193,21 +195,10 @@ class Optimizations:
         with self._lock:
             return self._simulated.get(run)
 
-    def found(self, run: int, session: Optimization) -> dict[str, float] | None:
-        """Return the recommended design, by the engine's model or the knee of the front; None at first."""
-        done = sum(one.state is TrialState.DONE for one in session.trials)
-        done += session.answered
-        if not done:
-            return None
-        if self._found.get(run, (0, {}))[0] != done:
-            self._found[run] = (done, session.recommended() or {})
-        return self._found[run][1] or None
-
     def take(self, run: int, trial: int) -> None:
         """Recommend another compromise of a run's front. InputError, see `Optimization.take`."""
         with self.session(run) as session:
             session.take(trial)
-            self._found.pop(run, None)
         self.announce(run)
 
     def announce(self, run: int) -> None:

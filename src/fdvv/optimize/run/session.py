@@ -10,6 +10,7 @@ from fdvv.optimize.problem import OPEN, Answer, Comparison, Line, Trial, TrialSt
 from fdvv.optimize.run.blocks import in_drawn_order
 from fdvv.optimize.run.compromise import keep_choice
 from fdvv.optimize.run.ledger import LEDGER_FILE, Ledger
+from fdvv.optimize.run.memory import RunMemory
 from fdvv.optimize.run.setup import SETUP_FILE, OptimizeSetup, read_setup, setup_text, stated
 from fdvv.optimize.run.state import RETEST, START, RunState
 from fdvv.optimize.space import Design
@@ -23,8 +24,10 @@ class Optimization(RunState):
     Made by `create` or `open`, for one process at a time; a context manager.
     """
 
-    def __init__(self, folder: Path, setup: OptimizeSetup, ledger: Ledger) -> None:
-        super().__init__(folder, setup, ledger)
+    def __init__(
+        self, folder: Path, setup: OptimizeSetup, ledger: Ledger, memory: RunMemory | None = None
+    ) -> None:
+        super().__init__(folder, setup, ledger, memory)
         self._given: set[int] = set()
 
     @classmethod
@@ -42,13 +45,16 @@ class Optimization(RunState):
         return cls.open(folder)
 
     @classmethod
-    def open(cls, folder: Path) -> Optimization:
-        """Continue a run. Raises InputError where there is none, or it is damaged or in use."""
+    def open(cls, folder: Path, memory: RunMemory | None = None) -> Optimization:
+        """Continue a run. Raises InputError where there is none, or it is damaged or in use.
+
+        memory : what its models said when it was open before; None: nothing is known of that.
+        """
         folder = Path(folder)
         setup = read_setup(folder / SETUP_FILE)
         ledger = Ledger(folder / LEDGER_FILE)
         try:
-            return cls(folder, setup, ledger)
+            return cls(folder, setup, ledger, memory)
         except BaseException:
             ledger.close()
             raise
@@ -153,7 +159,6 @@ class Optimization(RunState):
         if not self.setup.several or not self.searched or self.retests:
             reason = "a compromise is chosen between the search and its retest"
             raise InputError("run", "compromise", reason, "choose it then, in a run of several objectives")
-        self._found = -1, None
         return keep_choice(self.front(), number, self.folder)
 
     def retest(self) -> Trial | None:

@@ -14,6 +14,7 @@ from fdvv.optimize.problem import OPEN, Comparison, Engine, Line, Trial, TrialSt
 from fdvv.optimize.run.blocks import Block, Played, blocks_of, played_in_block
 from fdvv.optimize.run.compromise import recommended_of
 from fdvv.optimize.run.ledger import Ledger
+from fdvv.optimize.run.memory import RunMemory
 from fdvv.optimize.run.rivals import named_rivals
 from fdvv.optimize.run.setup import OptimizeSetup, designer_of, options_of, problem_of, space_of
 from fdvv.optimize.space import Design
@@ -29,6 +30,7 @@ class RunState:
     Parameters
     ----------
     folder : of the run, with the rig that its setup names. ledger : its trials and answers.
+    memory : of an earlier state of the same run; None: nothing is known of it.
 
     Attributes
     ----------
@@ -40,7 +42,9 @@ class RunState:
     Raises InputError, ModelError, BuildError.
     """
 
-    def __init__(self, folder: Path, setup: OptimizeSetup, ledger: Ledger) -> None:
+    def __init__(
+        self, folder: Path, setup: OptimizeSetup, ledger: Ledger, memory: RunMemory | None = None
+    ) -> None:
         self.folder, self.setup = folder, setup
         self.space = space_of(setup.space, RigCatalog(folder))
         self._designer = designer_of(setup.space)
@@ -53,8 +57,7 @@ class RunState:
         self.warnings = ledger.warnings
         self._ledger = ledger
         self._rivals = named_rivals(setup.rivals)
-        self._found: tuple[int, dict[str, float] | None] = (-1, None)
-        self._front: tuple[int, ParetoFront] = (-1, ParetoFront(self.problem, ()))
+        self._memory = memory or RunMemory()
 
     @property
     def trials(self) -> tuple[Trial, ...]:
@@ -154,12 +157,6 @@ class RunState:
         retested += [design for one in self.retest_comparisons for design in (one.first, one.second)]
         if fixed := next((design for design in retested if design != self.start), None):
             return fixed
-        known = sum(trial.state not in OPEN for trial in self.trials) + self.answered
-        if self._found[0] != known:  # an engine's model takes long
-            self._found = known, self._recommended()
-        return self._found[1]
-
-    def _recommended(self) -> dict[str, float] | None:
         try:
             if self.setup.several:
                 return recommended_of(self.front(), self.setup, self.folder).design
@@ -169,6 +166,13 @@ class RunState:
 
     def best(self) -> dict[str, float]:
         """Recommend a design by what the engine believes, not by luck. Raises ModelError if none is done."""
+        closed = tuple(trial for trial in self.trials if trial.state not in OPEN)
+        compared = tuple(one for one in self.comparisons if one.answer is not None)
+        chosen = tuple(line for line in self.lines if line.best is not None)
+        # an engine's model takes long
+        return self._memory.best.of((self.setup, closed, compared, chosen), self._best)
+
+    def _best(self) -> dict[str, float]:
         if self.pair_engine:
             return self.pair_engine.best(self.problem, self.comparisons)
         if self.line_engine:
@@ -182,10 +186,8 @@ class RunState:
 
     def front(self) -> ParetoFront:
         """Return the compromises that no other trial beats in expected scores, see `believed_front`."""
-        known = sum(trial.state is TrialState.DONE for trial in self.trials)
-        if self._front[0] != known:
-            self._front = known, believed_front(self.problem, self.trials)
-        return self._front[1]
+        done = tuple(trial for trial in self.trials if trial.state is TrialState.DONE)
+        return self._memory.front.of((self.setup, done), lambda: believed_front(self.problem, done))
 
     def model(self, design: Design, name: str = "design") -> FDVVModel:
         return self._designer(design).renamed(name)

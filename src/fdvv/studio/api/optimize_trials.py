@@ -86,7 +86,7 @@ class OptimizeModel(Message):
 @call("optimize.best")
 def best(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeBest:
     with optimizations.session(ask.run) as session:
-        return OptimizeBest(optimizations.found(ask.run, session))
+        return OptimizeBest(session.recommended())
 
 
 @contextmanager
