@@ -12,6 +12,7 @@ import pytest
 from playwright.sync_api import expect
 
 from fdvv.model.file import load_builtin
+from fdvv.thresholds.file import FILE_NAME as JNDS_FILE
 from tests.browser.accessibility import audit
 from tests.studio.running import RunningStudio
 from tests.support.buttons import write_cycle
@@ -147,6 +148,20 @@ def test_a_comparison_ends_in_a_sentence_and_the_next_step(library: Page) -> Non
         verdict.get_by_role("button", name="Share this comparison").click()
     library.goto(f"{base}#/library?over=builtin%3Amx-clear&over=builtin%3Amx-red&over=builtin%3Amx-brown")
     expect(verdict).to_contain_text(re.compile(r"mx-\w+ \(\d+\.\d JND\) feels nearest to mx-clear, mx-"))
+
+
+def test_where_the_jnds_cannot_be_read_the_comparison_says_so(page: Page, tmp_path: Path) -> None:
+    (tmp_path / JNDS_FILE).write_text("{")
+    studio = RunningStudio(tmp_path)
+    try:
+        page.goto(f"{studio.address}#/library?over=builtin%3Amx-clear&over=builtin%3Amx-red")
+        verdict = page.get_by_role("region", name="Verdict")
+        expect(verdict).to_contain_text(
+            re.compile(rf"against 60\.1 cN\. No distance: {JNDS_FILE}, end of file: .*, or remove it\."),
+            timeout=40_000,
+        )
+    finally:
+        studio.stop()
 
 
 def test_a_link_shows_the_same_view(library: Page, context: BrowserContext) -> None:

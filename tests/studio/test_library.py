@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -200,9 +201,13 @@ def test_distances_count_in_the_projects_own_jnds_while_its_file_is_there(
     assert sum(own[1]) < sum(before[1])
     assert own[0] in own[3]
     (project / JNDS_FILE).write_text("{")
-    broken = client.post("/api/library.like", json={"id": "builtin:mx-clear"})
-    assert broken.status_code != 200
-    assert JNDS_FILE in broken.text
+    for name, question in (("like", {"id": "builtin:mx-clear"}), ("find", {"like": "builtin:mx-clear"})):
+        broken = client.post(f"/api/library.{name}", json=question)
+        assert broken.status_code != 200
+        assert re.fullmatch(
+            rf"{JNDS_FILE}, end of file: not valid JSON .*; write {JNDS_FILE} again .*, or remove it",
+            broken.json()["error"],
+        )
     assert ask(client, "find", text="mx")["positions"]
     (project / JNDS_FILE).unlink()
     assert looked() == before

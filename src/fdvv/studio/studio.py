@@ -6,6 +6,8 @@ from pathlib import Path
 from threading import RLock
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
+from fdvv.errors import InputError
+
 if TYPE_CHECKING:
     from fdvv.library.catalog import Catalog
     from fdvv.model.noticeable import Jnds
@@ -52,9 +54,13 @@ class Studio:
     @property
     def jnds(self) -> Jnds:
         """What people notice: those of the project, read anew each time, or the literature's. InputError."""
-        from fdvv.thresholds.file import project_jnds
+        from fdvv.thresholds.file import FILE_NAME, project_jnds
 
-        return project_jnds(self.project)
+        try:
+            return project_jnds(self.project)
+        except InputError as error:  # pages get no paths, so the place names the file
+            place = f"{FILE_NAME}, {error.place}"
+            raise InputError(error.source, place, error.reason, error.remedy) from error
 
     def part(self, service: type[P]) -> P:
         """Return the one instance of a service, made with this studio on first use."""

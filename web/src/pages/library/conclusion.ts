@@ -2,7 +2,7 @@
 
 import { address } from "../../app/route";
 import type { Step, Verdict } from "../../app/verdict";
-import { call } from "../../net";
+import { call, StudioError } from "../../net";
 import type { LibraryButton } from "../../net/messages";
 import { effect, force, type Signal, signal, unitText, untracked } from "../../ui";
 import { figure } from "./columns";
@@ -23,6 +23,8 @@ const FIGURES = [
 export interface Distances {
   readonly jnd: ReadonlyMap<string, number>;
   readonly whose: string;
+  /** Why no distance could be computed; empty if none is wrong. */
+  readonly fault: string;
 }
 
 /** Return what the comparison comes to, and the next step. */
@@ -34,11 +36,16 @@ export function conclusion(store: LibraryStore): () => Verdict | null {
     if (!first) return null;
     const others = overlay.flatMap((id) => (id === reference ? [] : (store.buttons().get(id) ?? [])));
     if (!others.length) return { sentence: about(first), next: editing(first) };
-    const known = away();
     const next = overlay.length <= MOST_SHARED ? sharing(store) : editing(first);
-    const [second, ...more] = others as [LibraryButton];
-    return { sentence: more.length ? many(first, others, known) : two(first, second, known), next };
+    return { ...compared(first, others, away()), next };
   };
+}
+
+/** What buttons come to beside the first; without a distance, why there is none. */
+export function compared(first: LibraryButton, others: readonly LibraryButton[], away: Distances): Verdict {
+  const [second, ...more] = others as [LibraryButton];
+  const sentence = more.length ? many(first, others, away) : two(first, second, away);
+  return away.fault ? { sentence: `${sentence} No distance: ${away.fault}.`, kind: "warning" } : { sentence };
 }
 
 function editing({ id, name }: LibraryButton): Step {
@@ -91,7 +98,7 @@ function notices(jnd: number): string {
 
 /** How far every button is from the reference, JND; asked again when another becomes the reference. */
 function distances(store: LibraryStore): Signal<Distances> {
-  const none: Distances = { jnd: new Map(), whose: "" };
+  const none: Distances = { jnd: new Map(), whose: "", fault: "" };
   const found: Signal<Distances> = signal(none);
   effect(() => {
     const { reference, overlay } = store.shown();
@@ -103,10 +110,13 @@ function distances(store: LibraryStore): Signal<Distances> {
       ({ epoch, positions, distances_jnd, jnds }) => {
         if (epoch !== store.rows.epoch) return;
         const pairs = positions.map((at, i) => [store.rows.ids[at] ?? "", distances_jnd[i] ?? NaN] as const);
-        found.set({ jnd: new Map(pairs.filter(([, jnd]) => Number.isFinite(jnd))), whose: jnds });
+        found.set({ jnd: new Map(pairs.filter(([, jnd]) => Number.isFinite(jnd))), whose: jnds, fault: "" });
       },
-      // the list itself reports what is wrong with the index
-      () => undefined,
+      (error: unknown) => {
+        // while the index grows, the reference may not be in it yet
+        if (error instanceof StudioError && store.rows.at(reference) >= 0)
+          found.set({ ...none, fault: error.message });
+      },
     );
     return () => stop.abort();
   });
