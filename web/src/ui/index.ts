@@ -1,5 +1,6 @@
 /** The toolbox of every page. */
 
+export * from "./busy.svelte";
 export * from "./element";
 export * from "./force";
 export * from "./keys";

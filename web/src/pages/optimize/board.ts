@@ -3,7 +3,7 @@
 import { call } from "../../net";
 import type { Offer } from "../../net/messages";
 import { type StripView, stripView } from "../../play/strip";
-import { type Signal, signal, tell } from "../../ui";
+import { type Signal, signal } from "../../ui";
 import { Play, SIMULATED } from "./play";
 import { named, type RunStore, scoreText } from "./store";
 
@@ -56,18 +56,14 @@ export class Board {
 
   /** Ask for the next design and put it under the finger. */
   async begin(): Promise<void> {
-    try {
-      const { trial } = await call("optimize.next", { run: this.store.run });
-      this.last.set(null);
-      this.play.open(this.store.run, trial, this.device.peek());
-      this.play.clicker.wake();
-    } catch (error) {
-      tell(error);
-    }
+    const { trial } = await call("optimize.next", { run: this.store.run });
+    this.last.set(null);
+    this.play.open(this.store.run, trial, this.device.peek());
+    this.play.clicker.wake();
   }
 
-  abandon(trial: number): void {
-    call("optimize.abandon", { run: this.store.run, trial }).then(() => this.store.refresh(), tell);
+  abandon(trial: number): Promise<void> {
+    return this.store.after(call("optimize.abandon", { run: this.store.run, trial }));
   }
 
   showScores(on: boolean): void {

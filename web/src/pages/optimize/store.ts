@@ -4,13 +4,14 @@ import { workOn } from "../../app/current";
 import { Followed } from "../../app/followed";
 import { call, type LiveChannel, live } from "../../net";
 import type { OptimizeCurve, OptimizeDetail, OptimizeScore, OptimizeTrial } from "../../net/messages";
-import { onCleanup, type Signal, signal, tell, toast, unitText } from "../../ui";
+import { Busy, onCleanup, type Signal, signal, toast, unitText } from "../../ui";
 
 export type Design = Readonly<Record<string, number>>;
 
 export class RunStore extends Followed<OptimizeDetail> {
   /** Id of the button that the best design was saved as; empty before. */
   readonly saved: Signal<string> = signal("");
+  readonly saving = new Busy();
   /** Number of the trial that is looked at; null: the newest. */
   readonly chosen: Signal<number | null> = signal<number | null>(null);
 
@@ -71,15 +72,13 @@ export class RunStore extends Followed<OptimizeDetail> {
   }
 
   /** Save a design, null : the recommended one, as a button of one's own, which is worked on from then on. */
-  async save(chosen: Design | null, name: string): Promise<void> {
-    try {
+  save(chosen: Design | null, name: string): Promise<void> {
+    return this.saving.run(async () => {
       const design = chosen ?? (await call("optimize.best", { run: this.run })).design ?? {};
       const button = await saveDesign(this.run, design, name);
       this.saved.set(button);
       toast(`Saved as ${button.replace(/^own:/, "")}.`, "done");
-    } catch (error) {
-      tell(error);
-    }
+    });
   }
 
   /** Name of the first objective. */

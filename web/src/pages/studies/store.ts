@@ -3,7 +3,7 @@
 import { Followed } from "../../app/followed";
 import { call, type LiveChannel, live } from "../../net";
 import type { StudiesDetail, StudiesStanding, TimingPerson } from "../../net/messages";
-import { onCleanup, type Signal, signal, tell } from "../../ui";
+import { onCleanup, type Signal, signal } from "../../ui";
 
 const TIMED: readonly string[] = ["timing", "tapping"];
 
@@ -35,18 +35,6 @@ export class StudyStore extends Followed<StudiesDetail> {
     });
     watchStudies((changed) => (changed === null || changed === study) && void this.refresh());
     void this.refresh();
-  }
-
-  /** Do something that answers with the study as it is then. True if it was done. */
-  async act(work: () => Promise<StudiesDetail>): Promise<boolean> {
-    try {
-      this.detail.set(await work());
-      void this.refresh();
-      return true;
-    } catch (error) {
-      tell(error);
-      return false;
-    }
   }
 }
 
