@@ -1,7 +1,7 @@
 /** Documents of the studio: what a store needs of the server, and news of other tabs. */
 
 import type { Answer, Change, DocumentServer, DocumentStore, FDVVModel, OpenedDocument } from "../model";
-import { call, type Document, type LiveChannel, live, StudioError } from "../net";
+import { call, type Document, live, StudioError } from "../net";
 import type { Cleanup } from "../ui";
 
 /** What the server refuses for good; anything else may be well the next time. */
@@ -34,10 +34,8 @@ function plain(model: FDVVModel): Record<string, unknown> {
  * The function given back ends it, and the store. button : the id that it has by now.
  */
 export function follow(store: DocumentStore, button: () => string = () => store.button): Cleanup {
-  let channel: LiveChannel<"documents"> | null = null;
-  const watch = () => void channel?.send({ type: "watch" });
-  channel = live().channel("documents", {
-    opened: watch,
+  const channel = live().channel("documents", {
+    opened: (channel) => void channel.send({ type: "watch" }),
     onMessage: (news) => {
       // before the watch was in force others may have been at work
       if (news.type === "watching") return void store.refresh();
@@ -46,7 +44,6 @@ export function follow(store: DocumentStore, button: () => string = () => store.
       else store.gone(goneLine(news.renamed_to));
     },
   });
-  watch();
   const leaving = (event: BeforeUnloadEvent) => {
     if (store.unsaved) event.preventDefault();
   };

@@ -10,7 +10,7 @@ export interface Listener<K extends keyof Channels> {
   /** One line that the server says of this channel. */
   readonly wrong?: (line: string) => void;
   /** The connection is there, for the first time or again: ask for what is wanted now. */
-  readonly opened?: () => void;
+  readonly opened?: (channel: LiveChannel<K>) => void;
   readonly lost?: () => void;
 }
 
@@ -18,6 +18,11 @@ export interface LiveChannel<K extends keyof Channels> {
   /** Send; false if there is no connection, and then nothing was sent. */
   send(ask: Channels[K]["asks"]): boolean;
   close(): void;
+}
+
+interface Heard<K extends keyof Channels> {
+  readonly listener: Listener<K>;
+  readonly channel: LiveChannel<K>;
 }
 
 interface Envelope {
@@ -32,7 +37,7 @@ export class Live {
   readonly state: Signal<LiveState> = signal<LiveState>("opening");
   private socket: WebSocket | null = null;
   private tries = 0;
-  private readonly listeners = new Map<string, Set<Listener<never>>>();
+  private readonly heard = new Map<string, Set<Heard<never>>>();
 
   constructor(private readonly address: string) {}
 
@@ -43,7 +48,7 @@ export class Live {
     socket.onopen = () => {
       this.tries = 0;
       this.state.set("open");
-      this.each((listener) => listener.opened?.());
+      this.each(({ listener, channel }) => listener.opened?.(channel));
     };
     socket.onmessage = (event) => this.take(JSON.parse(event.data as string) as Envelope);
     socket.onclose = () => this.again();
@@ -51,14 +56,16 @@ export class Live {
 
   /** Listen to a channel until it is closed. */
   channel<K extends keyof Channels>(name: K, listener: Listener<K>): LiveChannel<K> {
-    const set = this.listeners.get(name) ?? new Set();
-    this.listeners.set(name, set);
-    set.add(listener as Listener<never>);
-    if (this.state.peek() === "open") listener.opened?.();
-    return {
+    const set = this.heard.get(name) ?? new Set();
+    this.heard.set(name, set);
+    const channel: LiveChannel<K> = {
       send: (ask) => this.send(name, ask),
-      close: () => set.delete(listener as Listener<never>),
+      close: () => set.delete(heard),
     };
+    const heard = { listener, channel } as unknown as Heard<never>;
+    set.add(heard);
+    if (this.state.peek() === "open") listener.opened?.(channel);
+    return channel;
   }
 
   private send(channel: string, body: unknown): boolean {
@@ -68,7 +75,7 @@ export class Live {
   }
 
   private take(envelope: Envelope): void {
-    for (const listener of [...(this.listeners.get(envelope.channel) ?? [])]) {
+    for (const { listener } of [...(this.heard.get(envelope.channel) ?? [])]) {
       if (envelope.error !== undefined) listener.wrong?.(envelope.error);
       else (listener.onMessage as (message: unknown) => void)(envelope.body);
     }
@@ -76,13 +83,13 @@ export class Live {
 
   private again(): void {
     const wait = AGAIN_ms[Math.min(this.tries++, AGAIN_ms.length - 1)] as number;
-    if (this.state.peek() !== "lost") this.each((listener) => listener.lost?.());
+    if (this.state.peek() !== "lost") this.each(({ listener }) => listener.lost?.());
     this.state.set("lost");
     setTimeout(() => this.open(), wait);
   }
 
-  private each(work: (listener: Listener<never>) => void): void {
-    for (const set of this.listeners.values()) for (const listener of [...set]) work(listener);
+  private each(work: (heard: Heard<never>) => void): void {
+    for (const set of this.heard.values()) for (const heard of [...set]) work(heard);
   }
 }
 

@@ -2,7 +2,7 @@
 
 import { keepComparison, workOn } from "../../app/current";
 import { keepQuery, route } from "../../app/route";
-import { call, type LiveChannel, live } from "../../net";
+import { call, live } from "../../net";
 import type { LibraryButton, LibraryFound, LibraryStatus } from "../../net/messages";
 import { batch, effect, onCleanup, type Signal, signal, tell, untracked } from "../../ui";
 import { Rows } from "./rows";
@@ -135,17 +135,14 @@ export class LibraryStore {
   }
 
   private watch(): void {
-    let channel: LiveChannel<"library"> | null = null;
-    const watch = () => channel?.send({ type: "watch" });
-    channel = live().channel("library", {
+    const channel = live().channel("library", {
       onMessage: (standing) => {
         this.standing.set(standing);
         void this.load();
       },
       wrong: tell,
-      opened: watch,
+      opened: (channel) => void channel.send({ type: "watch" }),
     });
-    watch();
     onCleanup(() => channel.close());
     // what is known already need not wait for the live connection
     void this.load();

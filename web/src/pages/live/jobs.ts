@@ -20,10 +20,11 @@ export interface Watched {
   readonly picture: JobPicture;
 }
 
-// it may be open already, and then `opened` is called before there is a channel to send on
-let channel: LiveChannel<"jobs"> | null = null;
-channel = live().channel("jobs", {
-  opened: follow,
+const channel = live().channel("jobs", {
+  opened: (channel) => {
+    channel.send({ type: "watch_jobs" });
+    askEvents(channel);
+  },
   onMessage: (message) => {
     if (message.type === "jobs") rows.set(message.jobs.map(heard));
     else if (message.type === "job") changed(message.row);
@@ -31,12 +32,6 @@ channel = live().channel("jobs", {
   },
   wrong: (line) => toast(line, "wrong"),
 });
-follow();
-
-function follow(): void {
-  channel?.send({ type: "watch_jobs" });
-  askEvents();
-}
 
 const heard_ms = new WeakMap<JobRow, number>();
 
@@ -61,19 +56,19 @@ function changed(row: JobRow): void {
 export function watchJob(job: string): void {
   if (untracked(() => watched().job) === job) return;
   watched.set({ job, events: 0, picture: emptyPicture() });
-  askEvents();
+  askEvents(channel);
 }
 
-function askEvents(): void {
+function askEvents(channel: LiveChannel<"jobs">): void {
   const { job, events } = watched.peek();
-  if (job) channel?.send({ type: "watch_job", job, from_event: events });
+  if (job) channel.send({ type: "watch_job", job, from_event: events });
 }
 
 /** Take events in; what is there already is passed over, after a gap they are asked for anew. */
 function take(job: string, from_event: number, events: readonly JobEvent[]): void {
   const now = watched.peek();
   if (job !== now.job) return;
-  if (from_event > now.events) return askEvents();
+  if (from_event > now.events) return askEvents(channel);
   const fresh = events.slice(now.events - from_event);
   if (fresh.length)
     watched.set({ job, events: now.events + fresh.length, picture: fresh.reduce(fold, now.picture) });

@@ -1,6 +1,6 @@
 /** What the connected device tells while it is looked at. */
 
-import { type DeviceStatus, type LiveChannel, live, type PressSeen } from "../../net";
+import { type DeviceStatus, live, type PressSeen } from "../../net";
 import { effect, onCleanup, type Signal, signal, toast } from "../../ui";
 import { type ScopeBins, withBins } from "./scope";
 
@@ -42,10 +42,7 @@ export const standing = Object.assign((): Status => ({ ...DEFAULTS, ...received(
 
 /** Look on for as long as the scope in which this is called lasts. */
 export function followDevice(): void {
-  // it may be open already, and then `opened` is called before there is a channel to send on
-  let channel: LiveChannel<"scope"> | null = null;
-  channel = live().channel("scope", {
-    opened: () => begin(),
+  const channel = live().channel("scope", {
     onMessage: (message) => {
       if (message.type === "standing") received.set(message);
       else if (message.type === "press_seen") seen.set(message);
@@ -53,14 +50,11 @@ export function followDevice(): void {
     },
     wrong: (line) => toast(line, "wrong"),
   });
-  function begin(): void {
-    const bin_s = span_s.peek() / COLUMNS;
-    scope.set({ bin_s, bins: [] });
-    channel?.send({ type: "watch_scope", bin_s });
-  }
   effect(() => {
-    span_s();
-    begin();
+    const bin_s = span_s() / COLUMNS;
+    if (live().state() !== "open") return;
+    scope.set({ bin_s, bins: [] });
+    channel.send({ type: "watch_scope", bin_s });
   });
-  onCleanup(() => channel?.close());
+  onCleanup(() => channel.close());
 }

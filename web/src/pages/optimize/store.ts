@@ -2,7 +2,7 @@
 
 import { workOn } from "../../app/current";
 import { Followed } from "../../app/followed";
-import { call, type LiveChannel, live } from "../../net";
+import { call, live } from "../../net";
 import type { OptimizeCurve, OptimizeDetail, OptimizeScore, OptimizeTrial } from "../../net/messages";
 import { Busy, onCleanup, type Signal, signal, toast, unitText } from "../../ui";
 
@@ -17,15 +17,12 @@ export class RunStore extends Followed<OptimizeDetail> {
 
   constructor(readonly run: number) {
     super(() => call("optimize.detail", { run }));
-    let channel: LiveChannel<"optimize"> | null = null;
-    const watch = () => void channel?.send({ type: "watch" });
-    channel = live().channel("optimize", {
-      opened: watch,
+    const channel = live().channel("optimize", {
+      opened: (channel) => void channel.send({ type: "watch" }),
       onMessage: (news) => {
         if (news.type === "watching" || news.run === run) void this.refresh();
       },
     });
-    watch();
     onCleanup(() => channel.close());
     void this.refresh();
   }

@@ -1,7 +1,7 @@
 /** One study as the operator may know it, followed while the page is open. */
 
 import { Followed } from "../../app/followed";
-import { call, type LiveChannel, live } from "../../net";
+import { call, live } from "../../net";
 import type { StudiesDetail, StudiesStanding, TimingPerson } from "../../net/messages";
 import { onCleanup, type Signal, signal } from "../../ui";
 
@@ -40,12 +40,9 @@ export class StudyStore extends Followed<StudiesDetail> {
 
 /** Hear of changes until the page goes. changed : a study's name, or null where any may have. */
 export function watchStudies(changed: (study: string | null) => void): void {
-  let channel: LiveChannel<"studies"> | null = null;
-  const watch = () => void channel?.send({ type: "watch" });
-  channel = live().channel("studies", {
-    opened: watch,
+  const channel = live().channel("studies", {
+    opened: (channel) => void channel.send({ type: "watch" }),
     onMessage: (news) => changed(news.type === "changed" ? news.study : null),
   });
-  watch();
   onCleanup(() => channel.close());
 }

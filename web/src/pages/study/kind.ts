@@ -11,7 +11,6 @@ const TIMED: readonly string[] = ["timing", "tapping"];
 /** Ask what a study is, again whenever the studio is back, until it has said so. */
 export function kindOf(study: string, seat: string): Signal<StudyScreens> {
   const found = signal<StudyScreens>("");
-  const look = () => channel.send({ type: "look", study, seat, holder: holder(study, seat) });
   const channel = live().channel("study", {
     onMessage: (message) => {
       if (message.type !== "about") return;
@@ -23,7 +22,7 @@ export function kindOf(study: string, seat: string): Signal<StudyScreens> {
       channel.close();
       found.set("labels");
     },
-    opened: () => queueMicrotask(look),
+    opened: (channel) => void channel.send({ type: "look", study, seat, holder: holder(study, seat) }),
   });
   onCleanup(() => channel.close());
   return found;

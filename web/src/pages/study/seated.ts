@@ -1,6 +1,5 @@
 /** Who sits at a participant's screen, whatever the study asks of them: seat, card, language, pause, way out. */
 
-import { live } from "../../net";
 import type {
   EndBreak,
   Here,
@@ -118,11 +117,6 @@ export abstract class SeatedSession<S extends SeatedStep = SeatedStep> {
   protected expect(sent: () => boolean): void {
     this.reason.set("");
     if (sent()) this.waiting.set(true);
-  }
-
-  /** Begin, once there is a channel; it may be open already. */
-  protected begin(): void {
-    if (live().state.peek() === "open") this.opened();
   }
 
   protected left(): void {

@@ -33,10 +33,12 @@ export class StudySession extends SeatedSession<StudyStep> implements FingerTarg
     this.channel = live().channel("study", {
       onMessage: (message) => this.take(message),
       wrong: (line) => this.refused(line),
-      opened: () => this.channel && this.opened(),
+      opened: (channel) => {
+        this.channel = channel;
+        this.opened();
+      },
       lost: () => this.left(),
     });
-    this.begin();
     onCleanup(() => this.channel?.close());
   }
 

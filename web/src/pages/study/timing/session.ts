@@ -47,16 +47,16 @@ export class TimingSession extends SeatedSession<TimingStepMessage> implements P
     this.channel = live().channel("timing", {
       onMessage: (message) => this.take(message),
       wrong: (line) => this.refused(line),
-      opened: () => {
+      opened: (channel) => {
+        this.channel = channel;
         this.clocks.reset();
-        if (this.channel) this.opened();
+        this.opened();
       },
       lost: () => {
         this.away();
         this.left();
       },
     });
-    this.begin();
     const blurred = () => this.status.peek() === "there" && !this.beside() && this.pause();
     addEventListener("blur", blurred);
     onCleanup(() => {
