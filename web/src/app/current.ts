@@ -1,12 +1,17 @@
 /** The button that a person works on: pages carry it to the next one. */
 
 import { type Signal, signal } from "../ui/signal.svelte";
-import { address } from "./route";
+import { address, route } from "./route";
 
 const KEPT = "fdvv-current";
 
 /** Id of the button, such as `builtin:mx-clear` or `own:Mine`; empty before there is one. */
 export const current: Signal<string> = signal(sessionStorage.getItem(KEPT) ?? "");
+
+/** The button that another page asked for, else the one that is worked on; empty if there is none. */
+export function askedButton(): string {
+  return route().query.get("button") || current();
+}
 
 /** Make a button the one that is worked on. */
 export function workOn(button: string): void {

@@ -3,6 +3,7 @@
 import type { Answer, Change, DocumentServer, DocumentStore, FDVVModel, OpenedDocument } from "../model";
 import { call, type Document, live, StudioError } from "../net";
 import type { Cleanup } from "../ui";
+import { nameOf } from "./names";
 
 /** What the server refuses for good; anything else may be well the next time. */
 const REFUSED: ReadonlySet<number> = new Set([400, 413, 415, 422]);
@@ -56,7 +57,5 @@ export function follow(store: DocumentStore, button: () => string = () => store.
 }
 
 function goneLine(renamedTo: string | null): string {
-  return renamedTo
-    ? `this button is now called ${renamedTo.replace(/^own:/, "")}`
-    : "this button was deleted";
+  return renamedTo ? `this button is now called ${nameOf(renamedTo)}` : "this button was deleted";
 }

@@ -22,6 +22,10 @@ export function keyCode(usage: number): string {
 
 /** Name a key for people. */
 export function keyName(code: string, usage: number): string {
-  if (!code) return `key ${usage}`;
+  return code ? printed(code) : `key ${usage}`;
+}
+
+/** Write a browser's name of a key as it is printed on it. */
+export function printed(code: string): string {
   return code.replace(/^(Key|Digit)/, "").replace(/([a-z])([A-Z])/g, "$1 $2");
 }

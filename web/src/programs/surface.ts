@@ -49,14 +49,6 @@ export function flatSurface(name: string, force_cN: number): Surface {
   ]);
 }
 
-/** Make the slowest row depend on velocity: at each given one, so many times itself. */
-export function scaledSurface(surface: Surface, name: string, ratios: ReadonlyMap<number, number>): Surface {
-  const speeds = [...ratios.keys()].sort((a, b) => a - b);
-  const slowest = surface.force_cN[0]!;
-  const force_cN = speeds.map((speed) => slowest.map((force) => rounded_cN(ratios.get(speed)! * force)));
-  return { ...surface, name, velocity_mm_s: speeds, force_cN };
-}
-
 /** Multiply every force by a ratio. */
 export function timesSurface(surface: Surface, ratio: number): Surface {
   return mapForces(surface, (force_cN) => force_cN * ratio);

@@ -35,6 +35,18 @@ export function tell(error: unknown): void {
   toast(lineOf(error), "wrong");
 }
 
+/** Put a text on the clipboard, and say so. */
+export async function copyText(text: string, said = "Copied"): Promise<void> {
+  try {
+    // a browser has none for an address of another machine without TLS
+    if (!navigator.clipboard) throw new Error("the browser allows no copying here: select the text instead");
+    await navigator.clipboard.writeText(text);
+    toast(said, "done");
+  } catch (error) {
+    tell(error);
+  }
+}
+
 /** Remove the errors of what goes, and with a whole page all of its notices. */
 export function dismissNotices(all: boolean): void {
   for (const { id, important } of sonner.getActiveToasts()) if (all || important) sonner.dismiss(id);

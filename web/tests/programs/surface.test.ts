@@ -18,10 +18,6 @@ function near(found: Surface, wanted: Surface): void {
 describe("surfaces", () => {
   it("are what fdvv.program makes of the same numbers", () => {
     near(
-      made.scaledSurface(BASE, "scaled", new Map(golden.ratios as [number, number][])),
-      golden.scaled as Surface,
-    );
-    near(
       made.raisedSurface({ ...BASE, name: "raised" }, golden.points as [number, number][]),
       golden.raised as Surface,
     );

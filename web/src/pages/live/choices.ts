@@ -1,10 +1,9 @@
 /** What forms offer: asked for when the page opens, and again when a job has left something. */
 
-import { workOn } from "../../app/current";
+import { askedButton, workOn } from "../../app/current";
 import { call, type WorkChoices } from "../../net";
 import { type Signal, signal, tell, untracked } from "../../ui";
 import { nameFor } from "./fields";
-import { askedButton } from "./where";
 
 export const choices: Signal<WorkChoices | null> = signal<WorkChoices | null>(null);
 

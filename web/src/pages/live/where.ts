@@ -1,6 +1,5 @@
 /** Where the page is: a section, the job that is looked at, the button that work is asked for, all in the address. */
 
-import { current } from "../../app/current";
 import { address, go, route } from "../../app/route";
 import type { JobRow } from "../../net";
 
@@ -20,11 +19,6 @@ export function section(): Section {
 /** The job that is looked at; empty where a new one is set up. */
 export function shownJob(): string {
   return route().query.get("job") ?? "";
-}
-
-/** The button that another page asked work for, else the one that is worked on; empty if there is none. */
-export function askedButton(): string {
-  return route().query.get("button") || current();
 }
 
 export function sectionOf(row: JobRow): Exclude<Section, "device"> {

@@ -2,6 +2,7 @@
 
 import { workOn } from "../../app/current";
 import { Followed } from "../../app/followed";
+import { nameOf } from "../../app/names";
 import { call, live } from "../../net";
 import type { OptimizeCurve, OptimizeDetail, OptimizeScore, OptimizeTrial } from "../../net/messages";
 import { Busy, onCleanup, type Signal, signal, toast, unitText } from "../../ui";
@@ -74,7 +75,7 @@ export class RunStore extends Followed<OptimizeDetail> {
       const design = chosen ?? (await call("optimize.best", { run: this.run })).design ?? {};
       const button = await saveDesign(this.run, design, name);
       this.saved.set(button);
-      toast(`Saved as ${button.replace(/^own:/, "")}.`, "done");
+      toast(`Saved as ${nameOf(button)}.`, "done");
     });
   }
 

@@ -32,7 +32,8 @@ export interface SeatedStep {
 }
 
 const HERE_ms = 1000;
-const OVER: readonly string[] = ["withdrawn", "declined", "done"];
+/** Kinds of the steps at which the study is over for who sits here. */
+export const OVER: readonly string[] = ["done", "declined", "withdrawn"];
 
 export abstract class SeatedSession<S extends SeatedStep = SeatedStep> {
   readonly standing: Signal<SessionStatus> = signal<SessionStatus>("opening");

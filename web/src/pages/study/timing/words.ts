@@ -1,5 +1,6 @@
 /** What the screens of a timing study say, in every language that they know. */
 
+import { printed } from "../../../keyboard/key_names";
 import { chosen, filled } from "../words";
 
 const EN = {
@@ -161,8 +162,7 @@ export function timingWord(
 
 /** Name a key for people: `KeyboardEvent.code` as it is printed on it. */
 export function keyText(language: string, code: string): string {
-  if (code === "Space") return timingWord(language, "space");
-  return code.replace(/^(Key|Digit)/, "").replace(/([a-z])([A-Z])/g, "$1 $2");
+  return code === "Space" ? timingWord(language, "space") : printed(code);
 }
 
 /** Write a moment for people, in their language and at their place. */
