@@ -44,7 +44,7 @@ export interface Brush {
   clipped(box: Box, work: () => void): void;
 }
 
-export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif";
+const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif";
 
 /** Wide enough that what lies behind a letter does not read as one. */
 const HALO_px = 5;

@@ -21,7 +21,7 @@ export interface Palette {
 export const RELEASE_DASH: readonly number[] = [6, 4];
 
 /** Dashes that go with the series colours, so that colour is never the only difference. */
-export const SERIES_DASH: readonly (readonly number[])[] = [
+const SERIES_DASH: readonly (readonly number[])[] = [
   [],
   [7, 3],
   [2, 3],

@@ -7,7 +7,7 @@
 
 import { ModelError, type Numbers } from "./types";
 
-export const LARGEST_DEGREE = 5;
+const LARGEST_DEGREE = 5;
 
 /** Refuse what is no clamped spline of degree 1 to 5. Throws ModelError. */
 export function checkSpline(t: Numbers, c: Numbers, k: number): void {

@@ -6,7 +6,7 @@ import type { Numbers } from "./types";
 export const LEAST_DROP_cN = 4;
 
 /** Forces of peak and valley are means over this length. */
-export const RESOLUTION_mm = 0.05;
+const RESOLUTION_mm = 0.05;
 
 /** The largest fall of force with displacement. */
 export interface Bump {

@@ -6,7 +6,7 @@ import { type ButtonLike, ModelError, type Spline, type Stroke } from "./types";
 import { blendOf, nearest } from "./velocity";
 
 /** Differences are read at this step. */
-export const DIFFERENCE_STEP_mm = 0.01;
+const DIFFERENCE_STEP_mm = 0.01;
 
 /** Force of one curve less that of the reference, over the displacement that both have. */
 export interface Difference {

@@ -9,9 +9,9 @@ import { nearest } from "./velocity";
 /** Landmarks are read off the spline at this step. */
 export const STEP_mm = 0.005;
 /** The contact step ends within this length of the contact. */
-export const CONTACT_REACH_mm = 0.4;
+const CONTACT_REACH_mm = 0.4;
 /** A contact step is steeper than this. */
-export const STOP_LEAST_cN_mm = 100;
+const STOP_LEAST_cN_mm = 100;
 /** 1 cN mm = 0.01 mJ. */
 export const mJ_PER_cN_mm = 0.01;
 

@@ -21,7 +21,7 @@ export type FileModel = Omit<FDVVModel, "vibrations" | "provenance" | "version">
 };
 
 /** The points whose place may be known with a spread. */
-export const POINT_SPREADS = ["travel_spread", "actuation_spread", "reset_spread"] as const;
+const POINT_SPREADS = ["travel_spread", "actuation_spread", "reset_spread"] as const;
 
 /**
  * Return a model in its one form: curves and vibrations in reading order (presses first, slow before fast),

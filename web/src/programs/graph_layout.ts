@@ -54,7 +54,7 @@ const BEND = 44;
 const RING = 22;
 
 /** Return the lines of an arrow's label: its condition, with a note if it plays a signal, and its guard. */
-export function linesOf(transition: Transition): readonly string[] {
+function linesOf(transition: Transition): readonly string[] {
   const first = `${shortly(transition.when)}${transition.signal ? " ♪" : ""}`;
   return transition.only_if ? [first, `if ${shortly(transition.only_if)}`] : [first];
 }

@@ -4,7 +4,7 @@ import type { Surface } from "./document";
 export type ForcePoint = readonly [displacement_mm: number, force_cN: number];
 
 /** Forces are kept to a ten-thousandth of a centinewton, as fdvv.program keeps them. */
-export function rounded_cN(force_cN: number): number {
+function rounded_cN(force_cN: number): number {
   return Math.round(force_cN * 1e4) / 1e4 + 0;
 }
 

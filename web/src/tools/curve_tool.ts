@@ -18,7 +18,7 @@ import {
 import { toggled, united } from "./selection";
 
 /** How soon and how near a second tap must be to count as double. */
-export const DOUBLE = { time_ms: 400, distance_px: 12 } as const;
+const DOUBLE = { time_ms: 400, distance_px: 12 } as const;
 
 interface Tap extends CanvasPoint {
   readonly time_ms: number;

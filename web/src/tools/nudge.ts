@@ -7,7 +7,7 @@
 import type { KeyRecord } from "./records";
 
 /** The step of an arrow key. */
-export const STEP_cN = 1;
+const STEP_cN = 1;
 export const STEP_mm = 0.05;
 
 /** The total way from the beginning, in data units. */

@@ -25,7 +25,7 @@ export interface Scene {
 }
 
 /** How far from a thing each device still grips it; a finger needs 44 px of target. */
-export const REACH_px = { mouse: 10, pen: 14, touch: 22 } as const;
+const REACH_px = { mouse: 10, pen: 14, touch: 22 } as const;
 
 /** How far a pointer may tremble before it drags. */
 export const TREMBLE_px = { mouse: 3, pen: 4, touch: 8 } as const;

@@ -12,7 +12,7 @@ export function conclusionOf(model: FDVVModel, id: string): Verdict {
 }
 
 /** Say in one sentence how a model feels. */
-export function sentenceOf(model: FDVVModel): string {
+function sentenceOf(model: FDVVModel): string {
   const { name, actuation_mm, travel_mm } = model;
   const press = model.curves.find(({ stroke }) => stroke === "press");
   if (!press) return `${name} has no press curve yet.`;

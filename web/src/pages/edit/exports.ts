@@ -20,12 +20,12 @@ export function exportsOf({ model }: EditorController, plot: Plot): Action[] {
 }
 
 /** A model as the text of its file. */
-export function modelText(model: FDVVModel): string {
+function modelText(model: FDVVModel): string {
   return `${JSON.stringify(model, null, 2)}\n`;
 }
 
 /** Every curve every 0.01 mm, two columns each. */
-export function curvesCsv(model: FDVVModel): string {
+function curvesCsv(model: FDVVModel): string {
   const columns = model.curves.flatMap((curve) => {
     const what = `${curve.stroke}_${curve.velocity_mm_s ?? "unknown"}_mm_s`;
     const x_mm = places_mm(curve, 0.01);

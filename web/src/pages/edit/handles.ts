@@ -35,7 +35,7 @@ export interface PositionHandle {
 }
 
 /** Places of the travel are rounded to this while they are dragged. */
-export const RASTER_mm = 0.01;
+const RASTER_mm = 0.01;
 const ROW_px = 20;
 
 /** The handles of a model; the onset is that of the vibration that serves the active curve. */

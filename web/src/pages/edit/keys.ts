@@ -93,7 +93,7 @@ function positionToAdd(editor: EditorController, canvas: EditorCanvas): number {
 }
 
 /** Go through the curves in reading order. */
-export function nextCurve(editor: EditorController, by: 1 | -1): void {
+function nextCurve(editor: EditorController, by: 1 | -1): void {
   const { curves } = editor.model.peek();
   const active = curveAt(editor.model.peek(), editor.active.peek());
   const at = active ? curves.indexOf(active) : -1;

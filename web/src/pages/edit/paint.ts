@@ -8,7 +8,7 @@ import { DIMMED, lineOf } from "./look";
 import { inPixels, sampled } from "./samples";
 
 /** A curve as a line. */
-export function paintCurve(brush: Brush, view: View, curve: ForceCurve, line: Line): void {
+function paintCurve(brush: Brush, view: View, curve: ForceCurve, line: Line): void {
   const { x_mm, force_cN } = sampled(curve);
   brush.line(inPixels(view.x, x_mm), inPixels(view.y, force_cN), line);
 }

@@ -1,10 +1,10 @@
 /** The move that a cue shows: the same as on the terminal (minimum jerk down, a short rest, and up again). */
 
 /** At the bottom, between down and up. */
-export const DWELL_s = 0.05;
+const DWELL_s = 0.05;
 
 /** The way covered, 0 to 1, when that part of the time has passed: the smoothest move there is. */
-export function minimumJerk(part: number): number {
+function minimumJerk(part: number): number {
   return part ** 3 * (10 - 15 * part + 6 * part ** 2);
 }
 

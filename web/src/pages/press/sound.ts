@@ -4,11 +4,11 @@ import { acceleration_m_s2 } from "../../math";
 import type { ShakeSignal } from "../../net/messages";
 
 /** Acceleration that fills the loudspeaker at full volume. */
-export const FULL_m_s2 = 20;
+const FULL_m_s2 = 20;
 /** Speed of a press at which a click is as loud as its model says. */
-export const AS_MODELLED_mm_s = 100;
+const AS_MODELLED_mm_s = 100;
 /** What a moment of the simulation is heard after it was reported; steadies what the network does not. */
-export const DELAY_s = 0.04;
+const DELAY_s = 0.04;
 /** Clocks that moved so far apart were stopped; between two frames good ones drift by so much at most. */
 const APART_s = 0.1;
 const DRIFT_s = 2e-6;
@@ -21,7 +21,7 @@ export function loudness(velocity_mm_s: number): number {
 }
 
 /** Make the samples of a signal as a buffer of a context, FULL_m_s2 as 1. */
-export function bufferOf(context: BaseAudioContext, signal: ShakeSignal): AudioBuffer {
+function bufferOf(context: BaseAudioContext, signal: ShakeSignal): AudioBuffer {
   const like = { ...signal, stroke: "press" as const, velocity_mm_s: null, onset_mm: 0 };
   const count = Math.round(signal.duration_s * context.sampleRate) + 1;
   const samples = acceleration_m_s2(
@@ -34,7 +34,7 @@ export function bufferOf(context: BaseAudioContext, signal: ShakeSignal): AudioB
 }
 
 /** Play a buffer at a time of the context: the one graph for loudspeaker and file. */
-export function playAt(
+function playAt(
   context: BaseAudioContext,
   to: AudioNode,
   buffer: AudioBuffer,
