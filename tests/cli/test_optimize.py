@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -94,6 +95,24 @@ def test_other_tasks_are_played_too(fdvv: Run, task: str) -> None:
     assert ran.status == 0, ran.err
     assert ran.json["level"] is None
     assert ran.json["best"] is not None
+
+
+def test_what_is_liked_better_is_asked_for_where_nothing_is_scored(fdvv: Run, tmp_path: Path) -> None:
+    asked = ("--task", "preference", "--space", "paper", "--trials", "4", "--retest", "6", "--person", "3")
+    ran = fdvv("optimize", "run", "--folder", "run", *asked)
+    assert ran.status == 0, ran.err
+    lines = ran.out.splitlines()
+    assert lines[0] == "preference (simulated), engine preference-line, 4 lines"
+    assert lines[1].startswith("recommended: x1_mm")
+    assert re.fullmatch(r"Preferred to the first design in \d of \d answers \(.*\), simulated.*", lines[3])
+    assert lines[4].startswith("next: ")
+    again = fdvv("optimize", "replay", "run")
+    assert again.out == "preference-line suggests 4 lines again, each the same\n"
+    assert fdvv("optimize", "report", "run").status == 0
+    assert "4 of 4 lines answered" in (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
+    found = fdvv("optimize", "run", "--folder", "other", *asked, "--engine", "preference", "--json").json
+    assert [one["answer"] for one in found["comparisons"]] != [None] * 4
+    assert found["trials"] == []
 
 
 def test_a_button_is_varied_and_tried_as_it_is_first(fdvv: Run) -> None:

@@ -12,15 +12,16 @@ from fdvv.cli.optimize.options import (
     ON_STRIP,
     Play,
     also_option,
-    engine_option,
     group_option,
     level_option,
     on_strip,
     rig_option,
+    run_engine_option,
     strip_options,
     weight_option,
 )
 from fdvv.optimize.problem import Trial
+from fdvv.optimize.run.assessor import assessor_of
 from fdvv.optimize.run.begin import RunRequest, begin_run
 from fdvv.optimize.run.ending import beaten_by
 from fdvv.optimize.run.front import front_mark, score_digits
@@ -83,12 +84,21 @@ def optimize() -> None:
 @ui.option(
     "--prior", type=ui.FOLDER, help="Begin from what others did: a finished fdvv optimize population --grid."
 )
-@ui.option("--task", default="temporal-pointing", help="What is played.")
+@ui.option(
+    "--task",
+    default="temporal-pointing",
+    help="What is played: temporal-pointing, tapping, accuracy; or preference, to say what is liked better.",
+)
 @also_option
 @weight_option
 @level_option
-@engine_option
-@ui.option("--trials", type=click.IntRange(1, 100_000), default=30, help="How many designs are tried.")
+@run_engine_option
+@ui.option(
+    "--trials",
+    type=click.IntRange(1, 100_000),
+    default=30,
+    help="How many designs are tried, or comparisons made.",
+)
 @ui.option("--presses", type=click.IntRange(2, 1000), default=20, help="Of a trial.")
 @ui.option("--person", type=ui.COUNT, default=0, help="Seed that the simulated person is drawn with.")
 @group_option
@@ -128,18 +138,18 @@ def replay(folder: Path, as_json: bool) -> None:
     Exit status 1 if one is not: another version of a library, or a folder that was changed by hand.
     """
     with Optimization.open(folder) as session:
-        engine, made = session.setup.engine, session.trials
+        engine, asks_for = session.setup.engine, session.asks_for
+        suggested = session.asked + sum(trial.origin == engine for trial in session.trials)
     different = [trial.number for trial in replay_differences(folder)]
-    suggested = sum(trial.origin == engine for trial in made)
     if as_json:
         ui.print_json(
             {"engine": engine, "suggested": suggested, "different": different, "same": not different}
         )
     elif not different:
-        click.echo(f"{engine} suggests {ui.counted(suggested, 'trial')} again, each the same")
+        click.echo(f"{engine} suggests {ui.counted(suggested, asks_for)} again, each the same")
     if different:
         numbers = ", ".join(map(str, different))
-        raise ui.failed(f"{folder}: {engine} now suggests otherwise at trial {numbers}")
+        raise ui.failed(f"{folder}: {engine} now suggests otherwise at {asks_for} {numbers}")
 
 
 @optimize.command()
@@ -160,14 +170,14 @@ def report(folder: Path, output: Path | None, as_json: bool) -> None:
 
 
 def _request(
-    engine: tuple[str, dict[str, Any]], trials: int, person: int, strip: str | None, **arguments: Any
+    engine: tuple[str, dict[str, Any]] | None, trials: int, person: int, strip: str | None, **arguments: Any
 ) -> Any:
     if strip and arguments["task"] != POINTING:
         raise click.UsageError(f"on a strip one plays {POINTING}, not {arguments['task']}")
     if strip and (gone := [name for name in arguments["also"] if name not in ON_STRIP]):
         raise click.UsageError(f"on a strip {gone[0]} is not measured; play it in the studio")
     arguments["weights"] = dict(arguments.pop("weights"))
-    name, options = engine
+    name, options = engine or (None, {})
     simulated = person if strip in (None, "host") else None
     switches = arguments.pop("switches") or None
     return RunRequest(
@@ -184,15 +194,17 @@ def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool
         ui.print_stderr(
             f"presses take {search} for {session.setup.budget} trials, {end} for {at_end} at the end"
         )
-    with ui.progress("trials", budget) as move:
+    with ui.progress(f"{session.asks_for}s", budget) as move:
         try:
-            if play is None:
+            if session.setup.preference:
+                assessor_of(session.setup).play(session, lambda: move(_answers(session), budget))
+            elif play is None:
                 player_of(session.setup).play(session, lambda trial: _on_trial(trial, budget, move, verbose))
             else:
                 for trial in play(session):
                     _on_trial(trial, budget, move, verbose)
         except KeyboardInterrupt:
-            kept = ui.counted(len(session.trials), "trial")
+            kept = ui.counted(len(session.trials) or _answers(session), session.asks_for)
             raise KeyboardInterrupt(
                 f"stopped with {kept} kept; go on with: fdvv optimize resume {session.folder}"
             ) from None
@@ -201,6 +213,11 @@ def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool
         ui.print_json(document)
     else:
         _print(session, document)
+
+
+def _answers(session: Optimization) -> int:
+    """Return how many answers there are, those of the retest among them."""
+    return session.answered + sum(one.answer is not None for one in session.retest_comparisons)
 
 
 def _on_trial(trial: Trial, budget: int, move: Any, verbose: bool) -> None:
@@ -216,11 +233,11 @@ def _print(session: Optimization, document: dict[str, Any]) -> None:
     trials = document["trials"]
     click.echo(
         f"{session.setup.title}{ui.simulated(document['simulated'])}, engine {document['engine']}, "
-        f"{ui.counted(len(trials), 'trial')}"
+        f"{ui.counted(len(trials) or session.answered, session.asks_for)}"
     )
     if session.setup.several:
         _print_front(document)
-    else:
+    elif not session.setup.preference:
         rows = [[t[key] for key in ("number", "state", "score", "error")] for t in trials[-LAST:]]
         name = document["objective"]
         ui.print_table(["trial", "state", name, "error"], rows, left=2, digits={name: 1, "error": 1})

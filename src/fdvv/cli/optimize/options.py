@@ -70,11 +70,10 @@ class EngineType(click.ParamType[tuple[str, dict[str, Any]]]):
         return name, options
 
 
-engine_option = ui.option(
-    "--engine",
-    type=EngineType(),
-    default="gp",
-    help="Suggests designs (docs/explanation/optimisation.md); name:{JSON} for options.",
+ENGINE = "Suggests designs (docs/explanation/optimisation.md); name:{JSON} for options."
+engine_option = ui.option("--engine", type=EngineType(), default="gp", help=ENGINE)
+run_engine_option = ui.option(
+    "--engine", type=EngineType(), help=f"{ENGINE} gp, or preference-line with --task preference."
 )
 
 level_option = ui.choice_option("--level", ("easy", "hard"), help="Of the task.")

@@ -26,7 +26,7 @@ from fdvv.twin.rig import Rig
 from fdvv.twin.settings import settings_of
 from fdvv.units import FloatArray, N_from_cN, m_from_mm, mm_from_m
 
-TASK_RIGS = ("ideal", "paper", "light")
+TASK_RIGS = IDEAL, _, _ = "ideal", "paper", "light"
 """Shipped rigs that tasks are played on; on all but the ideal one the rig's own forces come on top."""
 KEY_mm = 4.0
 """Travel of the usual key, on which a stroke has the person's pace."""

@@ -90,6 +90,11 @@ def expected_liking(model: FDVVModel, taste: Taste) -> float:
     return float(item_points(model, taste).mean())
 
 
+def felt_liking(model: FDVVModel, taste: Taste, random: np.random.Generator) -> float:
+    """Return how much a person likes a button as they feel it once, points of the questionnaire's scale."""
+    return expected_liking(model, taste) + TRIAL_NOISE * float(random.standard_normal())
+
+
 def rate(model: FDVVModel, taste: Taste, seed: int) -> tuple[int, ...]:
     """Answer the items after a trial: same arguments, same answers."""
     random = np.random.default_rng([seed, RATE])

@@ -13,10 +13,12 @@ from typing import Any
 from fdvv.button.open import open_button
 from fdvv.errors import InputError
 from fdvv.optimize.engines.multi_objective import check_weights
+from fdvv.optimize.engines.registry import LINE_ENGINES, pair_engine_names
 from fdvv.optimize.experiment.setup import LEVELS
 from fdvv.optimize.model_space import model_space, neutral_design
 from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.people.groups import PAPER_GROUP
+from fdvv.optimize.people.press_simulator import IDEAL
 from fdvv.optimize.population.population import RESULT_FILE, PopulationResult, read_population
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.player import (
@@ -28,8 +30,9 @@ from fdvv.optimize.run.player import (
 )
 from fdvv.optimize.run.rivals import NONE, PEOPLE, SWITCHES, Rival, fixed_rivals, switch_rivals
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup, wished
+from fdvv.optimize.run.setup import PREFERENCE, OptimizeSetup, SpaceSetup, model_space_setup, wished
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS, SUFFIX
+from fdvv.task.pointing import ASYNCHRONY
 from fdvv.task.questionnaire import LIKING
 from fdvv.task.score import Objective
 from fdvv.twin.files import current_rig_name
@@ -109,7 +112,8 @@ class RunRequest:
         SIMULATED_BLOCKS. switches : played in them beside start and result, built in or files, and with them
         the best fixed design where the space has one; None: SWITCHES where the person is simulated, else
         none, since each takes a real person minutes.
-    task, level, presses : what is played. engine, options, budget, seed : of the run.
+    task, level, presses : what is played; of PREFERENCE designs are compared, without presses. engine,
+        options, budget, seed : of the run; engine None: gp, or preference-line where designs are compared.
     person, group, rig : the simulated one, of which group, and what is pressed; person None: a human plays.
     also : objectives beside the task's first, of WISHES. weights : of objectives, by which a compromise of
         several is recommended; empty: the knee of the front.
@@ -126,13 +130,13 @@ class RunRequest:
     task: str = POINTING
     level: str | None = "easy"
     presses: int = 20
-    engine: str = "gp"
+    engine: str | None = None
     options: dict[str, Any] = field(default_factory=dict)
     budget: int = 30
     seed: int = 0
     person: int | None = 0
     group: str = PAPER_GROUP
-    rig: str = "ideal"
+    rig: str = IDEAL
     also: Sequence[str] = ()
     weights: Mapping[str, float] = field(default_factory=dict)
 
@@ -146,7 +150,7 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
         rivals = _rivals(request, space, start)
         setup = OptimizeSetup(
             space=space,
-            engine=request.engine,
+            engine=_engine(request),
             options=request.options,
             task=request.task,
             level=request.level if request.task == POINTING else None,
@@ -162,8 +166,36 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
         return Optimization.create(folder, setup, project)
 
 
+def _engine(request: RunRequest) -> str:
+    """Return the engine's name. Raises InputError on one that reads what the task does not ask."""
+    of_answers = (*LINE_ENGINES, *pair_engine_names())
+    compares = request.task == PREFERENCE
+    if request.engine is None:
+        return of_answers[0] if compares else "gp"
+    if compares and request.engine not in of_answers:
+        remedy = f"use one of {', '.join(of_answers)}"
+        raise InputError("engine", request.engine, "reads scores, but designs are compared", remedy)
+    if not compares and request.engine in of_answers:
+        reason = f"reads what somebody likes better, but {request.task} is scored"
+        raise InputError("engine", request.engine, reason, f"play {PREFERENCE}, or leave the engine out")
+    return request.engine
+
+
+def _check_compared(request: RunRequest) -> None:
+    """Refuse what has no meaning where designs are compared. Raises InputError."""
+    scored = {"--also": request.also, "--weight": request.weights, "--switch": request.switches}
+    if asked := next((name for name, value in scored.items() if value), None):
+        raise InputError(asked, PREFERENCE, "designs are compared, not scored", "leave it out")
+    if request.person is not None and request.rig != IDEAL:
+        reason = "a simulated person compares designs as they are"
+        raise InputError("--rig", request.rig, reason, f"leave it out, or play {POINTING}")
+
+
 def _objectives(request: RunRequest) -> tuple[Objective, ...]:
     """Return what a run is about, the task's own foremost. Raises InputError."""
+    if request.task == PREFERENCE:
+        _check_compared(request)
+        return (ASYNCHRONY,)  # nothing scores it
     wishes = wished(request.also)
     also = tuple(one.name for one in wishes if one != LIKING)
     task = task_named(request.task, request.level, request.presses, also)
@@ -186,7 +218,7 @@ def _rivals(request: RunRequest, space: SpaceSetup, start: dict[str, float] | No
     """Return what is played at the end beside start and result; nothing where nothing is played."""
     wanted = request.switches
     if wanted is None:
-        wanted = (NONE,) if request.person is None else SWITCHES
+        wanted = (NONE,) if request.person is None or request.task == PREFERENCE else SWITCHES
     switches = switch_rivals(wanted, (request.space or "", start))
     if request.retest == 0 or not switches:
         return ()

@@ -73,10 +73,15 @@ def _cell(row: dict[str, Any], name: str) -> str:
     return f"{score_text(row['expected'][name], name)} ± {score_text(row['error'][name], name)}"
 
 
+UNITS = {"_N_s": "N s", "_cN_mm": "cN/mm"}
+"""Of names whose unit has two parts."""
+
+
 def score_label(name: str) -> str:
-    """Write an objective's name for an axis: asynchrony_ms is asynchrony (ms)."""
-    words, _, unit = name.rpartition("_")
-    return f"{words.replace('_', ' ')} ({unit})" if words else name
+    """Write the name of an objective or a parameter for an axis: asynchrony_ms is asynchrony (ms)."""
+    end = next((end for end in UNITS if name.endswith(end)), f"_{name.rpartition('_')[2]}")
+    words = name.removesuffix(end)
+    return f"{words.replace('_', ' ')} ({UNITS.get(end, end[1:])})" if words != name else name
 
 
 def score_digits(name: str) -> int:

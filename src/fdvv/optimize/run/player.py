@@ -123,15 +123,21 @@ def about_player(person: int, rig: str, presses: int, group: str = PAPER_GROUP) 
     return {"player": {"person": person, "group": group, "rig": rig, "presses": presses}}
 
 
-def player_of(setup: OptimizeSetup) -> SimulatedPlayer:
-    """Return the simulated person that a setup names. InputError where it names none: a human plays it."""
+def person_of(setup: OptimizeSetup) -> int:
+    """Return the seed of the simulated person that a setup names. InputError where it names none."""
     player = setup.about.get("player")
     if not isinstance(player, dict) or not isinstance(player.get("person"), int):
         remedy = "resume it in the studio, or begin a run with --person"
         raise InputError("run", "$.about.player", "no simulated person plays this run", remedy)
+    return int(player["person"])
+
+
+def player_of(setup: OptimizeSetup) -> SimulatedPlayer:
+    """Return the simulated person that a setup names. InputError where it names none: a human plays it."""
+    person, player = person_of(setup), setup.about["player"]
     presses, rig = int(player.get("presses", 20)), str(player.get("rig", "ideal"))
     # runs of an earlier fdvv name no group
     people = group_named(str(player.get("group", PAPER_GROUP)))
-    user = draw_user(0, player["person"], people)
+    user = draw_user(0, person, people)
     task = task_named(setup.task, setup.level, presses, setup.task_also)
-    return SimulatedPlayer(user, task, rig, setup.seed, taste=draw_taste(0, player["person"]))
+    return SimulatedPlayer(user, task, rig, setup.seed, taste=draw_taste(0, person))

@@ -12,7 +12,7 @@ from fdvv import __version__
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.problem import Trial, TrialState
+from fdvv.optimize.problem import Answer, Trial, TrialState
 from fdvv.optimize.run.ending import final_report
 from fdvv.optimize.run.front import front_report, front_section, score_label, score_text
 from fdvv.optimize.run.state import RunState
@@ -97,6 +97,7 @@ def _legend(axes: Any, panels: Sequence[DesignPanel]) -> None:
 
 
 SIMULATED = "a simulated person pressed the twin; no human and no hardware took part"
+COMPARED = "a simulated person with a taste of their own answered; no human and no hardware took part"
 
 
 def optimize_report(session: RunState) -> dict[str, Any]:
@@ -105,7 +106,8 @@ def optimize_report(session: RunState) -> dict[str, Any]:
     front : of several objectives, see `front_report`. retests : see `Retest`, by objective.
     at_bound : its values that are the least or the most allowed. retest, against_fixed : see `Retest`;
     against_switches : see `AgainstSwitches`; None of none. final_means : of all that was played at the end.
-    verdict, ending : in sentences.
+    verdict, ending : in sentences. lines, comparisons : of the search, where it asks for these. answers : of
+    its retest.
     """
     setup, best, retest = session.setup, session.recommended(), retest_of(session)
     return {
@@ -119,12 +121,15 @@ def optimize_report(session: RunState) -> dict[str, Any]:
         "budget": setup.budget,
         "finished": session.finished,
         "trials": [trial_report(trial) for trial in session.trials],
+        "lines": [asdict(line) for line in session.lines],
+        "comparisons": [asdict(one) for one in session.comparisons],
         "best": best,
         "at_bound": at_bound(session.space, best, session.start) if best else {},
         "front": front_report(session),
         "retest": asdict(retest) if retest else None,
         "retests": {name: asdict(one) for name, one in retests_of(session).items()},
         "verdict": verdict_sentence(session),
+        "answers": [one.answer for one in session.retest_comparisons if one.answer],
         **final_report(session),
         "simulated": setup.simulated,
     }
@@ -149,21 +154,28 @@ def trial_report(trial: Trial) -> dict[str, Any]:
 def optimize_html(session: RunState) -> str:
     """Write the page of a run. Needs matplotlib (BuildError without it)."""
     report, setup = optimize_report(session), session.setup
-    done = [t for t in session.trials if t.state is TrialState.DONE]
-    counts = f"{len(session.trials)} of {setup.budget} trials, {len(done)} of them scored"
     sections = [
         _verdict(report),
         front_section(session),
         _found(session, report),
         _scores(session),
-        _trials(session),
+        _answers(session) if setup.preference else _trials(session),
     ]
     footer = f"fdvv {__version__}; engine {setup.engine}, seed {setup.seed}, begun {setup.created}"
+    notice = COMPARED if setup.preference else SIMULATED
     shown = [section for section in sections if section is not None]
-    summary = f"Space {session.space.name}, engine {setup.engine}: {counts}."
+    summary = f"Space {session.space.name}, engine {setup.engine}: {_counts(session)}."
     return render_html(
-        f"Optimisation: {setup.title}", summary, shown, footer, SIMULATED if setup.simulated else None
+        f"Optimisation: {setup.title}", summary, shown, footer, notice if setup.simulated else None
     )
+
+
+def _counts(session: RunState) -> str:
+    budget = session.setup.budget
+    if session.setup.preference:
+        return f"{session.answered} of {budget} {session.asks_for}s answered"
+    done = [trial for trial in session.trials if trial.state is TrialState.DONE]
+    return f"{len(session.trials)} of {budget} trials, {len(done)} of them scored"
 
 
 def control_points(design: dict[str, float]) -> FloatArray | None:
@@ -178,6 +190,9 @@ def _verdict(report: dict[str, Any]) -> Section | None:
     if report["verdict"] is None:
         return None
     text, means = [report["verdict"], *report["ending"]], report["final_means"]
+    if pairs := report["answers"]:
+        played = f"Start and result were compared {len(pairs)} times, blind, in a drawn order."
+        text.append(f'{played} {pairs.count(Answer.EQUAL)} answers were "equal" and count for neither.')
     if not means:
         return Section("Verdict", tuple(text))
     most = max(one["trials"] for one in means)
@@ -195,12 +210,15 @@ def _found(session: RunState, report: dict[str, Any]) -> Section:
     """Show the recommended design beside the one that was begun from."""
     best, start = report["best"], session.start
     if best is None or start is None:
-        return Section("Design found", ("Nothing is scored yet.",))
+        known = "answered" if session.setup.preference else "scored"
+        return Section("Design found", (f"Nothing is {known} yet.",))
     # another program's own numbers are no buttons to draw
     figures = () if session.setup.space.kind == "own" else (_designs_svg(session, start, best),)
     limits = {one.name: (f"{one.low:.2f}", f"{one.high:.2f}") for one in session.space.parameters}
     rows = tuple((name, f"{start[name]:.2f}", f"{best[name]:.2f}", *limits[name]) for name in limits)
     text = ["The recommendation is by expected scores, given all trials, not by the luckiest score."]
+    if session.setup.preference:
+        text = ["The recommendation is by expected liking, given all answers, not by the last one."]
     for name, which in report["at_bound"].items():
         text.append(f"{name} is the {which} allowed: a better design may lie beyond.")
     columns = ("parameter", "start", "recommended", "least", "most")
@@ -225,6 +243,27 @@ def _scores(session: RunState) -> Section | None:
     panel = TrainingScores(session.setup.level or session.setup.task, np.array([values]))
     axes = plot_training([panel], score_label(name), simulated=session.setup.simulated)
     return Section("Scores", (), (figure_svg(axes, "Score of every trial"),))
+
+
+def _answers(session: RunState) -> Section:
+    """List what was liked best of every line, or better of every two."""
+    liked = [
+        (str(line.number), f"{line.best + 1} of {len(line.stops)}", line.stops[line.best])
+        for line in session.lines
+        if line.best is not None
+    ]
+    for one in session.comparisons:
+        if one.answer is not None:
+            design = {Answer.FIRST: one.first, Answer.SECOND: one.second}.get(one.answer)
+            liked.append((str(one.number), str(one.answer), design or {}))
+    names = session.space.names
+    digits = {name: 0 if name.endswith("_cN") else 2 for name in names}
+    rows = tuple(
+        (*said, *(f"{design[name]:.{digits[name]}f}" if design else "–" for name in names))
+        for *said, design in liked
+    )
+    columns = (session.asks_for, "liked best", *(score_label(name) for name in names))
+    return Section("Answers", (), (), (Table(columns, rows),))
 
 
 def _trials(session: RunState) -> Section:

@@ -58,6 +58,8 @@ class SpaceSetup(Struct, frozen=True, forbid_unknown_fields=True):
     buttons: bool = False
 
 
+PREFERENCE = "preference"
+"""The task in which designs are compared, not scored."""
 WISHES = (*MORE, LIKING.name)
 """What temporal pointing may be optimised for beside its asynchrony."""
 
@@ -116,7 +118,7 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     @property
     def preference(self) -> bool:
         """Whether designs are compared, not scored."""
-        return self.task == "preference"
+        return self.task == PREFERENCE
 
     @property
     def presses(self) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Literal
 
 from fdvv.errors import InputError, ModelError
 from fdvv.model.file import model_from_json
@@ -89,6 +90,18 @@ class RunState:
         return self._ledger.lines
 
     @property
+    def asks_for(self) -> Literal["trial", "line", "comparison"]:
+        """What the search asks for, one after the other."""
+        if self.line_engine:
+            return "line"
+        return "comparison" if self.pair_engine else "trial"
+
+    @property
+    def asked(self) -> int:
+        """How many comparisons or lines the search asked for."""
+        return len(self.comparisons) + len(self.lines)
+
+    @property
     def answered(self) -> int:
         """How many comparisons or lines of the search are answered."""
         answers = [one.answer for one in self.comparisons]
@@ -98,12 +111,12 @@ class RunState:
     def left(self) -> int:
         """How many more trials, comparisons or lines may be suggested."""
         spent = sum(trial.state is not TrialState.ABANDONED for trial in self.trials)
-        return max(0, self.setup.budget - spent - len(self.comparisons) - len(self.lines))
+        return max(0, self.setup.budget - spent - self.asked)
 
     @property
     def searched(self) -> bool:
         """Whether the budget is spent and nothing of the search is open."""
-        unanswered = self.answered < len(self.comparisons) + len(self.lines)
+        unanswered = self.answered < self.asked
         return not self.left and not unanswered and not any(trial.state in OPEN for trial in self.trials)
 
     @property

@@ -220,7 +220,7 @@ def verdict_sentence(session: RunState) -> str | None:
         count = round((found.difference + 0.5) * found.pairs)
         share = f"95 %: {100 * (found.low + 0.5):.0f} to {100 * (found.high + 0.5):.0f} %"
         end = "." if kind == "better" else f"; keep {name}."
-        return f"Preferred to {name} in {count} of {found.pairs} answers ({share}){end}"
+        return f"Preferred to {name} in {count} of {found.pairs} answers ({share}){played}{end}"
     phrase = phrase_of(session)
     doubt, by = phrase.doubt(found.low, found.high, found.chance), phrase.difference(found.difference)
     if kind == "same":

@@ -15,7 +15,7 @@ from fdvv.optimize.people.groups import PAPER_GROUP
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.begin import offered_grid, offered_grids
 from fdvv.optimize.run.rivals import PEOPLE, SWITCHES, Rival, fixed_rivals, switch_rivals
-from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup, wished
+from fdvv.optimize.run.setup import PREFERENCE, OptimizeSetup, SpaceSetup, model_space_setup, wished
 from fdvv.optimize.space import Design
 from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.optimize import OTHERS, START, TITLE, Level, Name, Number, OptimizeAsk
@@ -143,7 +143,7 @@ def create(studio: Studio, ask: OptimizeCreate) -> OptimizeAsk:
     setup = OptimizeSetup(
         space=space,
         engine=ask.engine,
-        task="preference" if ask.preference else TASK,
+        task=PREFERENCE if ask.preference else TASK,
         level=ask.level,
         simulated=ask.simulated,
         objectives=(ASYNCHRONY, *wished(also)),

@@ -1,0 +1,67 @@
+"""A simulated person who says which designs of an optimisation they like better. Simulated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fdvv.optimize.people.taste import Taste, draw_taste, felt_liking
+from fdvv.optimize.problem import Answer
+from fdvv.optimize.run.player import person_of
+from fdvv.optimize.run.session import Optimization
+from fdvv.optimize.run.setup import OptimizeSetup
+from fdvv.optimize.space import Design
+from fdvv.units import FloatArray
+
+EQUAL_points = 0.15
+"""Two designs whose liking differs by less are called equal: half the noise of one. Assumed."""
+LINE, PAIR = 41, 42
+"""Streams of random numbers that nothing else draws from."""
+
+
+@dataclass(frozen=True)
+class SimulatedAssessor:
+    """Somebody simulated who compares designs as they are; no rig renders them.
+
+    Attributes
+    ----------
+    taste : what the person likes. seed : of the answers; each depends on it and on its number alone.
+    """
+
+    taste: Taste
+    seed: int = 0
+
+    def answer_next(self, session: Optimization) -> bool:
+        """Answer the next line or comparison of a run, then of its retest; False when both are over."""
+        if session.line_engine is not None and (line := session.line()) is not None:
+            liked = self._felt(session, line.stops, LINE, line.number)
+            session.choose(line.number, int(liked.argmax()))
+            return True
+        pair = session.compare()
+        if pair is None:
+            return False
+        session.answer(pair.number, self.compare(session, pair.first, pair.second, pair.number))
+        return True
+
+    def compare(self, session: Optimization, first: Design, second: Design, number: int) -> Answer:
+        """Return which of two designs is liked better, in the comparison of that number."""
+        more = float(np.subtract(*self._felt(session, (first, second), PAIR, number)))
+        if abs(more) < EQUAL_points:
+            return Answer.EQUAL
+        return Answer.FIRST if more > 0 else Answer.SECOND
+
+    def _felt(self, session: Optimization, designs: Sequence[Design], *path: int) -> FloatArray:
+        random = np.random.default_rng([self.seed, *path])
+        return np.array([felt_liking(session.model(one), self.taste, random) for one in designs])
+
+    def play(self, session: Optimization, report: Callable[[], None] = lambda: None) -> None:
+        """Answer until the run is over. An interrupted run continues with the same answers."""
+        while self.answer_next(session):
+            report()
+
+
+def assessor_of(setup: OptimizeSetup) -> SimulatedAssessor:
+    """Return the simulated person that a setup names. InputError where it names none: a human answers."""
+    return SimulatedAssessor(draw_taste(0, person_of(setup)), setup.seed)
