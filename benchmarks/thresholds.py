@@ -2,7 +2,7 @@
 
 Every observer has a known JND of force, snap and vibration. Three interleaved staircases, one of each, are
 analysed by their turns and by the belief of the other method too: so what choosing brings is parted from what
-analysing brings. Their rules were tuned on the seeds from 700; those from 1000 judge, which nothing was chosen by.
+analysing brings. Their rules were tuned on the seeds from 700; those from 1000 judge and chose nothing.
 
     python -m benchmarks.thresholds [--seeds 1000-1299] [--kinds proportional,proxy] [--combined]
 
