@@ -252,10 +252,11 @@ def _answers(session: RunState) -> Section:
         for line in session.lines
         if line.best is not None
     ]
+    sides = {Answer.FIRST: "A", Answer.SECOND: "B", Answer.EQUAL: "equal"}
     for one in session.comparisons:
         if one.answer is not None:
-            design = {Answer.FIRST: one.first, Answer.SECOND: one.second}.get(one.answer)
-            liked.append((str(one.number), str(one.answer), design or {}))
+            which, design = sides[one.answer], {"A": one.first, "B": one.second}.get(sides[one.answer], {})
+            liked.append((str(one.number), which, design))
     names = session.space.names
     digits = {name: 0 if name.endswith("_cN") else 2 for name in names}
     rows = tuple(
