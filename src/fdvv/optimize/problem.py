@@ -133,8 +133,8 @@ class Engine(Protocol):
     def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
         """Suggest count designs that hold the constraints, given all trials so far (every state).
 
-        Trials that are suggested or shown are under way; failed ones tell that their neighbourhood may fail;
-        abandoned ones tell nothing. InputError if no design of the space holds the constraints.
+        Trials that are suggested or shown are under way; failed ones say that their neighbourhood may fail;
+        abandoned ones say nothing. InputError if no design of the space holds the constraints.
         """
 
     def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:

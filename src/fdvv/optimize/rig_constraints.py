@@ -17,10 +17,10 @@ MISSED_RATIO = 0.25
 """Of a curve's mean force; where limits and lag keep more of it, a feasibility report calls it spoilt."""
 KEPT_RATIO = 0.5
 """Of a bump's drop; a report says that less cannot be followed."""
-MARGIN = 0.5
+LEAST_MARGIN_RATIO = 0.5
 """Of stiffness under a finger; a report says that less buzzes."""
-MOST_MARGIN = 10.0
-"""A flat curve's margin has no end; more than this tells nothing."""
+MOST_MARGIN_RATIO = 10.0
+"""A flat curve's margin has no end; more than this says nothing."""
 
 
 def rig_constraints(
@@ -49,7 +49,7 @@ def rig_constraints(
         beyond = max(0.0, model.travel_mm - rig.info.travel_limit_mm)
         slack = min(_slack(curve) for curve in report.curves)
         margin = min(curve.stable.margin for curve in report.curves)
-        return slack - beyond, min(margin - MARGIN, MOST_MARGIN)
+        return slack - beyond, min(margin - LEAST_MARGIN_RATIO, MOST_MARGIN_RATIO)
 
     name = rig.entry.rig_id
     force = f"{name} gives the force and the bump, as its limits and lag let it"

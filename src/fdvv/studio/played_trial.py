@@ -37,7 +37,7 @@ class RoundOver(Message):
     start_ms, end_ms : presses between count.
     display : from drawing to light. input : from finger to the browser's event.
     clock_ms, clock_error_ms : the server's clock less the page's; None where it is not known yet.
-    frame_ms : between two pictures. hand, input : of a device's key "button" and nothing: it tells its own.
+    frame_ms : between two pictures. hand, input : of a device's key "button" and nothing: it has its own.
     """
 
     number: Count
@@ -53,7 +53,7 @@ class RoundOver(Message):
     def timing(
         self, source: ClockSource, pressed: PlayDelay, transport_ms: float | None, hand: str
     ) -> RoundTiming:
-        """Return how the round was timed. pressed : delay from the finger to what tells of a press."""
+        """Return how the round was timed. pressed : delay from the finger to what reports a press."""
         return RoundTiming(
             source,
             self.display.ms,

@@ -146,14 +146,14 @@ TITLE, START, OTHERS = "title", "start", "others"
 
 def run_row(run: int, session: Optimization) -> OptimizeRow:
     setup, trials = session.setup, session.trials
-    counting = sum(one.state is not TrialState.ABANDONED for one in trials)
+    tried = sum(one.state is not TrialState.ABANDONED for one in trials)
     return message_of(
         OptimizeRow,
         setup,
         run=run,
         title=str(setup.about.get(TITLE, "")) or f"run {run}",
         level=setup.level or "",
-        spent=session.answered if setup.preference else counting,
+        spent=session.answered if setup.preference else tried,
         sentence=verdict_sentence(session),
         made=setup.created,
         problem="",

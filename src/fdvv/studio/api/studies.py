@@ -65,7 +65,7 @@ class StudiesDetail(Message):
     """A study for the operator.
 
     history : what was done with it, one line each. waiting : open invitations.
-    device : what renders it, one of those that `studies.devices` tells.
+    device : what renders it, one of `studies.devices`.
     open : people can begin and come back; else the key holder opens the sessions first.
     code_alone : people whose code alone opens the blind, for an earlier fdvv enrolled them.
     """
