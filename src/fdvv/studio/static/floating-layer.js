@@ -1,1 +1,1 @@
-import{Br as e,Et as t,Nr as n,Qr as r,Vn as i,Zr as a,ai as o,br as s,dr as c,xr as l}from"./shared.js";function u(u,d){r(d,!0);let f=i(d,`tooltip`,3,!1);t.create(n(()=>f()));var p=l(),m=e(p);c(m,()=>d.children??o),s(u,p),a()}export{u as t};
+import{Dr as e,Er as t,Kr as n,Pt as r,_r as i,di as a,ii as o,qn as s,ri as c,zr as l}from"./shared.js";function u(u,d){o(d,!0);let f=s(d,`tooltip`,3,!1);r.create(l(()=>f()));var p=e(),m=n(p);i(m,()=>d.children??a),t(u,p),c()}export{u as t};
