@@ -13,7 +13,7 @@ from playwright.sync_api import expect
 
 from fdvv.timing.files.study import TimingStudy
 from tests.browser.study_screens import NAME, PASSPHRASE, open_sessions, wait_for_part
-from tests.browser.timing_screens import Timer, frozen_timing, recorded, timing_text
+from tests.browser.timing_screens import STEP, Timer, frozen_timing, recorded, timing_text
 from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:
@@ -163,13 +163,13 @@ def test_another_key_counts_for_nothing_and_the_one_that_does_is_named(
     study: TimingStudy, timer: Timer
 ) -> None:
     timer.trial("Training 1", 1)
-    for _ in range(CONDITIONS):
-        timer.page.wait_for_selector(".timed[data-status=away], .study-sheet[data-key]")
+    for number in range(1, CONDITIONS + 1):
+        timer.wait_for(f"Trial {number} of {CONDITIONS}")
+        timer.page.wait_for_selector(STEP)
         if timer.page.locator(".study-sheet[data-key=F13]").count():
             break
         timer.prepare()
         timer.begin()
-        timer.page.wait_for_selector(".timed[data-status=away], .study-sheet[data-key=F13]")
     timer.hit("Space")
     expect(timer.page.locator(".other")).to_have_text("That key does not count. Please press MX Brown (F13).")
     expect(timer.page.locator(".study-sheet[data-key=F13]")).to_be_visible()
