@@ -187,7 +187,7 @@ def _request(
 
 def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool) -> None:
     ui.print_warnings(session.warnings)
-    at_end = session.retest_left + len(session.retests)
+    at_end = session.retest_left + len(session.retests) + len(session.retest_answers)
     budget = session.setup.budget + at_end
     if not session.setup.simulated:
         search, end = (f"{played_min(session.setup, n):.0f} min" for n in (session.setup.budget, at_end))
@@ -197,14 +197,14 @@ def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool
     with ui.progress(f"{session.asks_for}s", budget) as move:
         try:
             if session.setup.preference:
-                assessor_of(session.setup).play(session, lambda: move(_answers(session), budget))
+                assessor_of(session.setup).play(session, lambda: move(_answered(session), budget))
             elif play is None:
                 player_of(session.setup).play(session, lambda trial: _on_trial(trial, budget, move, verbose))
             else:
                 for trial in play(session):
                     _on_trial(trial, budget, move, verbose)
         except KeyboardInterrupt:
-            kept = ui.counted(len(session.trials) or _answers(session), session.asks_for)
+            kept = ui.counted(len(session.trials) or _answered(session), session.asks_for)
             raise KeyboardInterrupt(
                 f"stopped with {kept} kept; go on with: fdvv optimize resume {session.folder}"
             ) from None
@@ -215,9 +215,9 @@ def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool
         _print(session, document)
 
 
-def _answers(session: Optimization) -> int:
+def _answered(session: Optimization) -> int:
     """Return how many answers there are, those of the retest among them."""
-    return session.answered + sum(one.answer is not None for one in session.retest_comparisons)
+    return session.answered + len(session.retest_answers)
 
 
 def _on_trial(trial: Trial, budget: int, move: Any, verbose: bool) -> None:

@@ -144,6 +144,8 @@ class RunRequest:
 def begin_run(folder: Path, request: RunRequest) -> Optimization:
     """Begin a run in a folder that is new or empty. Raises InputError, BuildError, OSError."""
     request = replace(request, space=request.space or (PAPER if request.prior else BUTTON))
+    if request.task == PREFERENCE:
+        _check_compared(request)
     with _shelf_of(request.within) as (project, rig_id):
         space, start = _space(request, rig_id)
         objectives = _objectives(request)
@@ -194,7 +196,6 @@ def _check_compared(request: RunRequest) -> None:
 def _objectives(request: RunRequest) -> tuple[Objective, ...]:
     """Return what a run is about, the task's own foremost. Raises InputError."""
     if request.task == PREFERENCE:
-        _check_compared(request)
         return (ASYNCHRONY,)  # nothing scores it
     wishes = wished(request.also)
     also = tuple(one.name for one in wishes if one != LIKING)

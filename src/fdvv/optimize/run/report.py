@@ -17,6 +17,7 @@ from fdvv.optimize.run.ending import final_report
 from fdvv.optimize.run.front import front_report, front_section, score_label, score_text
 from fdvv.optimize.run.state import RunState
 from fdvv.optimize.run.verdict import at_bound, retest_of, retests_of, verdict_sentence
+from fdvv.optimize.space import Design
 from fdvv.report import style
 from fdvv.report.report import Section, Table, render_html
 from fdvv.report.score_figures import TrainingScores, plot_training
@@ -129,7 +130,7 @@ def optimize_report(session: RunState) -> dict[str, Any]:
         "retest": asdict(retest) if retest else None,
         "retests": {name: asdict(one) for name, one in retests_of(session).items()},
         "verdict": verdict_sentence(session),
-        "answers": [one.answer for one in session.retest_comparisons if one.answer],
+        "answers": list(session.retest_answers),
         **final_report(session),
         "simulated": setup.simulated,
     }
@@ -216,9 +217,9 @@ def _found(session: RunState, report: dict[str, Any]) -> Section:
     figures = () if session.setup.space.kind == "own" else (_designs_svg(session, start, best),)
     limits = {one.name: (f"{one.low:.2f}", f"{one.high:.2f}") for one in session.space.parameters}
     rows = tuple((name, f"{start[name]:.2f}", f"{best[name]:.2f}", *limits[name]) for name in limits)
-    text = ["The recommendation is by expected scores, given all trials, not by the luckiest score."]
-    if session.setup.preference:
-        text = ["The recommendation is by expected liking, given all answers, not by the last one."]
+    by_scores = "expected scores, given all trials, not by the luckiest score"
+    by_answers = "expected liking, given all answers, not by the last one"
+    text = [f"The recommendation is by {by_answers if session.setup.preference else by_scores}."]
     for name, which in report["at_bound"].items():
         text.append(f"{name} is the {which} allowed: a better design may lie beyond.")
     columns = ("parameter", "start", "recommended", "least", "most")
@@ -247,24 +248,25 @@ def _scores(session: RunState) -> Section | None:
 
 def _answers(session: RunState) -> Section:
     """List what was liked best of every line, or better of every two."""
-    liked = [
-        (str(line.number), f"{line.best + 1} of {len(line.stops)}", line.stops[line.best])
+    rows = [
+        (str(line.number), f"{line.best + 1} of {len(line.stops)}", *_cells(session, line.stops[line.best]))
         for line in session.lines
         if line.best is not None
     ]
-    sides = {Answer.FIRST: "A", Answer.SECOND: "B", Answer.EQUAL: "equal"}
     for one in session.comparisons:
         if one.answer is not None:
-            which, design = sides[one.answer], {"A": one.first, "B": one.second}.get(sides[one.answer], {})
-            liked.append((str(one.number), which, design))
-    names = session.space.names
-    digits = {name: 0 if name.endswith("_cN") else 2 for name in names}
-    rows = tuple(
-        (*said, *(f"{design[name]:.{digits[name]}f}" if design else "–" for name in names))
-        for *said, design in liked
-    )
-    columns = (session.asks_for, "liked best", *(score_label(name) for name in names))
-    return Section("Answers", (), (), (Table(columns, rows),))
+            sides = {Answer.FIRST: ("A", one.first), Answer.SECOND: ("B", one.second)}
+            which, design = sides.get(one.answer, ("equal", None))
+            rows.append((str(one.number), which, *_cells(session, design)))
+    columns = (session.asks_for, "liked best", *map(score_label, session.space.names))
+    return Section("Answers", (), (), (Table(columns, tuple(rows)),))
+
+
+def _cells(session: RunState, design: Design | None) -> list[str]:
+    """Write the numbers of a design for a table; a dash for each of none."""
+    if design is None:
+        return ["–"] * len(session.space.names)
+    return [f"{design[name]:.{0 if name.endswith('_cN') else 2}f}" for name in session.space.names]
 
 
 def _trials(session: RunState) -> Section:
@@ -281,11 +283,9 @@ def _trials(session: RunState) -> Section:
     rows = []
     for trial in session.trials:
         report = trial_report(trial)
-        digits = {name: 0 if name.endswith("_cN") else 2 for name in session.space.names}
-        values = (f"{trial.design[name]:.{places}f}" for name, places in digits.items())
         scored = ("–" if report[key] is None else f"{report[key]:.1f}" for key in ("score", "error"))
         others = (score_text(report["scores"].get(name), name) for name in objectives[1:])
-        rows.append((str(trial.number), report["state"], *scored, *others, *values))
+        rows.append((str(trial.number), report["state"], *scored, *others, *_cells(session, trial.design)))
     failed = tuple(
         f"Trial {t.number} failed: {t.reason}." for t in session.trials if t.state is TrialState.FAILED
     )

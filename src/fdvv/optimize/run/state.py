@@ -11,7 +11,7 @@ from fdvv.model.file import model_from_json
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.multi_objective import ParetoFront, believed_front
 from fdvv.optimize.engines.registry import LINE_ENGINES, engine_of, line_engine_of, pair_engine_of
-from fdvv.optimize.problem import OPEN, Comparison, Engine, Line, Trial, TrialState
+from fdvv.optimize.problem import OPEN, Answer, Comparison, Engine, Line, Trial, TrialState
 from fdvv.optimize.run.blocks import Block, Played, blocks_of, played_in_block
 from fdvv.optimize.run.compromise import recommended_of
 from fdvv.optimize.run.ledger import Ledger
@@ -85,6 +85,11 @@ class RunState:
         return self._ledger.comparisons[len(self.comparisons) :]
 
     @property
+    def retest_answers(self) -> tuple[Answer, ...]:
+        """What was answered in the retest so far."""
+        return tuple(one.answer for one in self.retest_comparisons if one.answer is not None)
+
+    @property
     def lines(self) -> tuple[Line, ...]:
         """The lines of the search, where the engine reads these."""
         return self._ledger.lines
@@ -136,8 +141,7 @@ class RunState:
         blocks = self.setup.retest_pairs
         if self.setup.preference:
             alike = self.searched and self.recommended() in (None, self.start)
-            answered = sum(one.answer is not None for one in self.retest_comparisons)
-            return 0 if alike or self.start is None else blocks - answered
+            return 0 if alike or self.start is None else blocks - len(self.retest_answers)
         return max(0, blocks * self._block_size - len(self.retests)) if blocks else 0
 
     @property
