@@ -7,6 +7,8 @@ import os
 import shutil
 import struct
 import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -36,12 +38,44 @@ def require_tools() -> None:
 def build(program: Path) -> Path:
     """Bring a program up to date, one process at a time, and return it."""
     require_tools()
+    with locked():
+        make(program, BOARDS)
+    return program
+
+
+def build_with(program: Path, folder: Path, source: str, old: str, new: str) -> Path:
+    """Plant a fault: build a program in a folder from sources in which one text of one file is another."""
+    build(program)
+    sources, objects = folder / "firmware", f"{board_of(program)}.objects"
+    shutil.copytree(REPOSITORY / "firmware", sources)
+    with locked():
+        shutil.copytree(BUILD / objects, folder / objects)  # no older than the sources: one is compiled
+    text = (sources / "boards" / source).read_text()
+    assert text.count(old) == 1
+    (sources / "boards" / source).write_text(text.replace(old, new))
+    return make(folder / program.name, sources / "boards")
+
+
+@contextmanager
+def locked() -> Iterator[None]:
+    """Keep other processes from the built files."""
     BUILD.mkdir(parents=True, exist_ok=True)
     with (BUILD / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        board = BOARDS / program.stem.removesuffix("_check")
-        command = ["make", "-s", "-C", str(board), f"BUILD={BUILD}", str(program)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        yield
+
+
+def board_of(program: Path) -> str:
+    """Return the board that a program is for."""
+    return program.stem.removesuffix("_check")
+
+
+def make(program: Path, boards: Path) -> Path:
+    """Make a program in its folder from the sources of its board."""
+    tinyusb = TINYUSB.parent / "usr" / "src" / "tinyusb" / "src"
+    places = [f"BUILD={program.parent}", f"TINYUSB={tinyusb}"]
+    command = ["make", "-s", "-C", str(boards / board_of(program)), *places, str(program)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return program
 

@@ -15,6 +15,7 @@ from fdvv.compensation.force_loop.gains import force_loop_gains
 from fdvv.device.linked import LinkedDevice
 from fdvv.device.plant import Inputs, Outputs
 from fdvv.device.twin import SimulatedPerson
+from fdvv.device.wire import RefusedError
 from fdvv.firmware.core import INPUTS, OUTPUTS, Core, RecordArray
 from fdvv.model.press import Press
 from fdvv.protocol.tables import Fault, LoopState
@@ -26,7 +27,7 @@ from fdvv_m0.m4 import PIN_ENABLE, M4Emulator
 from fdvv_m0.records import TickInputs
 from tests.support.force_loop_press import CONTROLLER, KNOWN, RIG
 
-from ._m0 import M4_CHECK, M4_CONTROLLER, build, frames, sizes_bytes
+from ._m0 import M4_CHECK, M4_CONTROLLER, build, build_with, frames, sizes_bytes
 from ._simavr import say
 from .test_m0_cost import benchmark
 
@@ -123,6 +124,33 @@ def test_the_drive_is_off_until_it_is_armed(elf: Path) -> None:
     emulator = started(elf)
     assert not emulator.port.level(PIN_ENABLE)
     assert {change.duty_q15 for change in emulator.pwm_log} == {0}
+
+
+def planted_reference(program: Path, folder: Path) -> Path:
+    """Build a program whose DAC has the analogue supply as its reference."""
+    return build_with(program, folder, "itsybitsy_m4/drive.c", "DAC_CTRLB_REFSEL_VREFPU", "1 << 1")
+
+
+def test_a_command_of_zero_is_no_force_and_would_be_all_of_it_with_the_analogue_supply_as_reference(
+    tmp_path: Path,
+) -> None:
+    now = started(build(M4_CHECK)).outputs()
+    assert (now.enable, now.duty_q15) == (True, 0)
+    now = started(planted_reference(M4_CHECK, tmp_path)).outputs()
+    assert (now.enable, now.duty_q15) == (True, -32768)
+
+
+def test_a_setpoint_that_is_not_zero_at_the_start_is_a_fault_and_keeps_the_drive_off(
+    elf: Path, tmp_path: Path
+) -> None:
+    board = EmulatedBoard(planted_reference(elf, tmp_path))
+    device = LinkedDevice(board, SimulatedPerson(RIG, seed=2))
+    assert device.fault().fault is Fault.OUTPUT
+    with pytest.raises(RefusedError, match="a fault is latched"):
+        device.clear_fault()
+    with pytest.raises(RefusedError, match="a fault is latched, output"):
+        device.upload(plain_surface(), 4.0)
+    assert not any(change.enable for change in board.emulator.pwm_log)
 
 
 def test_a_press_with_the_loop_closed_over_usb_is_that_of_the_core_bit_for_bit(

@@ -162,6 +162,22 @@ static void arm(void)
     } while ((uint16_t)(before + 1u) != acquire.armed);
 }
 
+/* Another input of converter 0 than the position. Between the burst and arm(). */
+static uint16_t read_other(uint16_t input)
+{
+    uint16_t counts;
+    ADC_CTRLB(ADC0_BASE) = 0; /* no longer free-running */
+    sync_adc(ADC0_BASE);
+    ADC_SWTRIG(ADC0_BASE) = ADC_SWTRIG_FLUSH;
+    sync_adc(ADC0_BASE);
+    convert(ADC0_BASE, input);
+    counts = result(ADC0_BASE);
+    ADC_INPUTCTRL(ADC0_BASE) = AIN_POSITION | ADC_INPUTCTRL_GROUND;
+    ADC_CTRLB(ADC0_BASE) = ADC_CTRLB_FREERUN;
+    sync_adc(ADC0_BASE);
+    return counts;
+}
+
 void board_acquire_start(uint16_t tick_us, uint8_t reads)
 {
     MCLK_APBAMASK |= MCLK_APBAMASK_TC0 | MCLK_APBAMASK_TC1;
@@ -171,6 +187,8 @@ void board_acquire_start(uint16_t tick_us, uint8_t reads)
     acquire.tick_us = tick_us;
     acquire.reads = reads > BOARD_READS_MAX ? BOARD_READS_MAX : reads;
     start_adc();
+    read_other(AIN_SETPOINT); /* void, as the first after a choice of the reference */
+    board_drive_read_back(read_other(AIN_SETPOINT));
     start_dma();
     start_events();
     start_timers();
@@ -196,22 +214,6 @@ static uint16_t millivolts(uint32_t counts)
     return (uint16_t)((counts * SUPPLY_GAIN_Q11) >> 11);
 }
 
-/* Between the burst and arm(). */
-static uint16_t read_thermistor(void)
-{
-    uint16_t counts;
-    ADC_CTRLB(ADC0_BASE) = 0; /* no longer free-running */
-    sync_adc(ADC0_BASE);
-    ADC_SWTRIG(ADC0_BASE) = ADC_SWTRIG_FLUSH;
-    sync_adc(ADC0_BASE);
-    convert(ADC0_BASE, AIN_THERMISTOR);
-    counts = result(ADC0_BASE);
-    ADC_INPUTCTRL(ADC0_BASE) = AIN_POSITION | ADC_INPUTCTRL_GROUND;
-    ADC_CTRLB(ADC0_BASE) = ADC_CTRLB_FREERUN;
-    sync_adc(ADC0_BASE);
-    return counts;
-}
-
 uint8_t board_acquire(board_readings *readings)
 {
     if (!(DMAC_CHINTFLAG & DMAC_CHINTFLAG_TCMPL)) return 0;
@@ -227,7 +229,7 @@ uint8_t board_acquire(board_readings *readings)
     readings->supply_mV = acquire.supply_mV;
     if (++acquire.since == BOARD_THERMISTOR_TICKS) {
         acquire.since = 0;
-        acquire.thermistor_counts = read_thermistor();
+        acquire.thermistor_counts = read_other(AIN_THERMISTOR);
     }
     readings->thermistor_counts = acquire.thermistor_counts;
     arm();

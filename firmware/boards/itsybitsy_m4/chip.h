@@ -222,7 +222,7 @@ enum {
 #define DAC_DATA0 REG16(0x43002410)
 enum {
     DAC_CTRLA_ENABLE = 1 << 1,
-    DAC_CTRLB_REFSEL_VDDANA = 1 << 1,
+    DAC_CTRLB_REFSEL_VREFPU = 0 << 1, /* pin VREFA, unbuffered */
     DAC_DACCTRL_ENABLE = 1 << 1,
     DAC_DACCTRL_CC12M = 2 << 2,
     DAC_DACCTRL_REFRESH_60_US = 2 << 8,

@@ -3,16 +3,23 @@
 #include "chip.h"
 #include "pins.h"
 
-enum { SETPOINT_ZERO = 2048, SETPOINT_SHIFT = 4 /* Q15 to half of 12 bits */ };
+enum {
+    SETPOINT_ZERO = 2048,
+    SETPOINT_SHIFT = 4,  /* Q15 to half of 12 bits */
+    SETPOINT_ERROR = 128 /* 0.1 V: more than DAC and converter are off together */
+};
 /* 3 MHz: 50 Hz is 60000 steps */
 enum { STOP_STEPS = 60000, STOP_STEPS_US = 3, STOP_LOWEST_US = 400, STOP_HIGHEST_US = 2600, STOP = 3 };
 
-static uint8_t is_enabled;
+static uint8_t is_enabled, is_zero_wrong;
 
 static void start_setpoint(void)
 {
     board_clock(GCLK_ID_DAC, 3);
-    DAC_CTRLB = DAC_CTRLB_REFSEL_VDDANA;
+    PORT_PMUX(PIN_SETPOINT) = PORT_MUX_B | (PORT_MUX_B << 4); /* and PIN_REFERENCE, in the same register */
+    PORT_PINCFG(PIN_REFERENCE) = PORT_PINCFG_PMUXEN;
+    /* not the analogue supply: erratum 2.9.2, as MicroPython quotes it; code 0 gave half of it */
+    DAC_CTRLB = DAC_CTRLB_REFSEL_VREFPU;
     DAC_DACCTRL0 = DAC_DACCTRL_ENABLE | DAC_DACCTRL_CC12M | DAC_DACCTRL_REFRESH_60_US;
     DAC_CTRLA = DAC_CTRLA_ENABLE;
     while (DAC_SYNCBUSY) {
@@ -20,7 +27,6 @@ static void start_setpoint(void)
     while (!(DAC_STATUS & DAC_STATUS_READY0)) {
     }
     DAC_DATA0 = SETPOINT_ZERO;
-    PORT_PMUX(PIN_SETPOINT) = PORT_MUX_B;
     PORT_PINCFG(PIN_SETPOINT) = PORT_PINCFG_PMUXEN;
     PORT_OUTSET = PIN_BIT(PIN_FAULT); /* pull-up */
     PORT_PINCFG(PIN_FAULT) = PORT_PINCFG_INEN | PORT_PINCFG_PULLEN;
@@ -57,9 +63,15 @@ void board_drive(int16_t duty_q15, uint8_t enable)
     is_enabled = enable ? 1 : 0;
 }
 
+void board_drive_read_back(uint16_t counts)
+{
+    is_zero_wrong = counts < SETPOINT_ZERO - SETPOINT_ERROR || counts > SETPOINT_ZERO + SETPOINT_ERROR;
+}
+
 uint8_t board_drive_fault(void)
 {
     uint32_t pins = PORT_IN;
+    if (is_zero_wrong) return 1;
     return is_enabled ? !(pins & PIN_BIT(PIN_FAULT)) : (pins & PIN_BIT(PIN_ENABLE)) != 0;
 }
 

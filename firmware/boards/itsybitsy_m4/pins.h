@@ -9,6 +9,7 @@
 
 enum {
     PIN_SETPOINT = 2,   /* (A0) DAC0: current setpoint, half the supply is 0 */
+    PIN_REFERENCE = 3,  /* (AREF) of DAC0; 3.3 V, tied on the board */
     PIN_POSITION = 4,   /* (A4) ADC0/AIN4 */
     PIN_THERMISTOR = 6, /* (A5) ADC0/AIN6, 10 kOhm to the supply, 100 nF to ground */
     PIN_SDA = 12,       /* (SDA) SERCOM2 */
@@ -27,7 +28,8 @@ enum {
     PIN_B_SUPPLY = 9    /* (A3) ADC1/AIN1, supply through 220 kOhm over 22 kOhm */
 };
 
-enum { AIN_POSITION = 4, AIN_THERMISTOR = 6, AIN_FORCE = 0, AIN_SUPPLY = 1 };
+/* converter 0 reads position, thermistor and setpoint, converter 1 the others */
+enum { AIN_POSITION = 4, AIN_THERMISTOR = 6, AIN_SETPOINT = 0, AIN_FORCE = 0, AIN_SUPPLY = 1 };
 
 #define PIN_BIT(pin) (1u << (pin))
 

@@ -43,7 +43,10 @@ void board_drive_start(void);
  * would drive through it. If not enabled, there is no current. */
 void board_drive(int16_t duty_q15, uint8_t enable);
 
-/* 1 if the drive reports a fault, or its pins are not off while it is disabled. */
+/* M4: compare what a converter reads at the setpoint's pin, in counts, with zero; while the drive is disabled. */
+void board_drive_read_back(uint16_t counts);
+
+/* 1 if the drive reports a fault, or its pins are not off while it is disabled, or its setpoint was not zero. */
 uint8_t board_drive_fault(void);
 
 /* The key line: high while the key is down. */

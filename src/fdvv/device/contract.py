@@ -84,7 +84,10 @@ FAULTY_PARTS = {
     Fault.SUPPLY_LOW: (SUPPLY, "measure it under load; look at joints, fuse and stop button"),
     Fault.SUPPLY_HIGH: (SUPPLY, "measure it, and the divider that the board reads it by"),
     Fault.BROWN_OUT: (SUPPLY, "measure it under load; look at joints and fuse"),
-    Fault.OUTPUT: (DRIVER, "look for a short of the coil's wires; feel whether it is hot"),
+    Fault.OUTPUT: (
+        DRIVER,
+        "look for a short of the coil's wires; feel whether it is hot; an M4 needs 3.3 V at AREF",
+    ),
     Fault.VIBRATION_BOARD: ("vibration board", "look at its cable and its power"),
     **{fault: ("thermistor", text) for fault, text in WHAT_TO_LOOK_AT.items()},
 }

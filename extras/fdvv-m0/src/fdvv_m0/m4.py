@@ -53,10 +53,11 @@ ADC0, ADC1, ADC_INPUTCTRL, ADC_CTRLB, ADC_SWTRIG = 0x43001C00, 0x43002000, 4, 6,
 ADC_EVCTRL, ADC_INTFLAG, ADC_RESULT = 2, 0x2E, 0x40
 FREERUN, ADC_ENABLE, START_BY_EVENT, FLUSH, START, READY = 2, 2, 2, 1, 2, 1
 CONVERSION_CLOCKS, POSITION, FORCE, SUPPLY = 13, 4 | 0x18 << 8, 0x18 << 8, 1 | 0x18 << 8
-THERMISTOR = 6 | 0x18 << 8
+THERMISTOR, SETPOINT = 6 | 0x18 << 8, 0x18 << 8
 DMA_CTRL, DMA_BASE, DMA_CHANNEL, DMA_FLAG = 0x4100A000, 0x4100A034, 0x4100A040, 0x4100A04E
 DMA_ENABLE, DMA_BY_ADC0, COMPLETE, DESCRIPTOR = 2, 68 << 8 | 2 << 20, 2, 1 | 1 << 8 | 1 << 11
-DAC_CTRLA, DAC_STATUS, DAC_DATA, ZERO = 0x43002400, 0x43002407, 0x43002410, 2048
+DAC_CTRLA, DAC_CTRLB, DAC_STATUS, DAC_DATA, ZERO = 0x43002400, 0x43002401, 0x43002407, 0x43002410, 2048
+VREFPU, VDDANA, VREFA_PMUX, VREFA_PINCFG = 0, 1, 0x41008031, 0x41008043
 
 
 class Moved:
@@ -165,6 +166,9 @@ class Setpoint:
     def _enable(self, size: int, value: int) -> None:
         if self._clocks.peripheral_hz(42) > DAC_MHZ * 1e6:
             raise DeviceError("the DAC's clock exceeds 12 MHz")
+        is_connected = self._bus.get(VREFA_PMUX, 1) >> 4 == 1 and self._bus.get(VREFA_PINCFG, 1) & 1
+        if self._reference() not in (VREFPU, VDDANA) or (self._reference() == VREFPU and not is_connected):
+            raise DeviceError(f"reference {self._reference()} of the DAC is not connected, or not modelled")
         self._bus.put(DAC_CTRLA, size, value)
         self._bus.put(DAC_STATUS, 1, value >> 1 & 1)
 
@@ -173,10 +177,23 @@ class Setpoint:
         self.written_cycle = self._bus.cycles
         self.changed()
 
+    def _reference(self) -> int:
+        return self._bus.get(DAC_CTRLB, 1) >> 1 & 3
+
+    def pin_counts(self) -> int:
+        """Return the output in 4096ths of the supply.
+
+        With the analogue supply as reference code 0 gives half of it, and the code counts as signed, as in
+        differential mode: what a user of TinyGo measured (its pull request 1198). MicroPython quotes the
+        maker's erratum 2.9.2: that reference is not available.
+        """
+        code = self._bus.get(DAC_DATA, 2) & 0xFFF
+        return code ^ ZERO if self._reference() == VDDANA else code
+
     def changed(self) -> None:
         """Log the setpoint if it is another than before."""
         enable = self._port().level(PIN_ENABLE)
-        duty = 16 * (self._bus.get(DAC_DATA, 2) - ZERO) if enable else 0
+        duty = 16 * (self.pin_counts() - ZERO) if enable else 0
         last = self.changes[-1] if self.changes else None
         if last is None or (last.duty_q15, last.enable) != (duty, enable):
             now_us = self._bus.cycles / self._bus.cpu_mhz
@@ -244,8 +261,14 @@ class Timers:
 class Converters:
     """Converter 0, started by the event and stored by DMA, or by the program; converter 1, by the program."""
 
-    def __init__(self, bus: Bus, clocks: Oscillators, inputs: Callable[[], TickInputs]) -> None:
-        self._bus, self._clocks, self._inputs = bus, clocks, inputs
+    def __init__(
+        self,
+        bus: Bus,
+        clocks: Oscillators,
+        inputs: Callable[[], TickInputs],
+        setpoint_counts: Callable[[], int],
+    ) -> None:
+        self._bus, self._clocks, self._inputs, self._setpoint_counts = bus, clocks, inputs, setpoint_counts
         self._run, self._is_running = 0, False
         self.burst_ready_cycle: int | None = None
         bus.on_write(ADC0 + ADC_SWTRIG, self._trigger)
@@ -272,12 +295,15 @@ class Converters:
         self._is_running = False
         if value & START:
             chosen = self._bus.get(ADC0 + ADC_INPUTCTRL, 2)
-            if chosen != THERMISTOR or self._bus.get(ADC0 + ADC_CTRLB, 2) & FREERUN:
-                raise DeviceError("the program starts converter 0 for another input than the thermistor")
-            self._bus.after(self._conversion_cycles(ADC0, 40), self._finish_thermistor)
+            if chosen not in (THERMISTOR, SETPOINT) or self._bus.get(ADC0 + ADC_CTRLB, 2) & FREERUN:
+                raise DeviceError(
+                    "the program starts converter 0 for another input than thermistor or setpoint"
+                )
+            self._bus.after(self._conversion_cycles(ADC0, 40), lambda: self._finish_other(chosen))
 
-    def _finish_thermistor(self) -> None:
-        self._bus.put(ADC0 + ADC_RESULT, 2, self._inputs().thermistor_counts)
+    def _finish_other(self, chosen: int) -> None:
+        counts = self._setpoint_counts() if chosen == SETPOINT else self._inputs().thermistor_counts
+        self._bus.put(ADC0 + ADC_RESULT, 2, counts)
         self._bus.put(ADC0 + ADC_INTFLAG, 1, READY)
 
     def _convert(self, _size: int, value: int) -> None:
@@ -383,7 +409,7 @@ class M4Emulator(M0Emulator):
         parts.pwm.changes = self.pwm_log
         parts.wire = Wire(Moved(bus, 0x41012000 - 0x42001400), parts.clocks)  # type: ignore[arg-type]
         parts.wire.messages = self.wire_log
-        parts.converter = Converters(bus, parts.clocks, lambda: self._inputs)
+        parts.converter = Converters(bus, parts.clocks, lambda: self._inputs, parts.pwm.pin_counts)
         parts._timer = Timers(bus, parts.clocks, self._ticked)
         parts._watchdog = SlowWatchdog(bus, lambda: self._request_reset("watchdog"))
 
