@@ -336,6 +336,16 @@ def test_a_missed_tick_is_a_gap_and_no_record(known: Bench) -> None:
     assert heads[-1].late == 2
 
 
+def test_readings_that_come_twice_in_a_tick_do_not_count_as_late(known: Bench) -> None:
+    known.ask(Message.TELEMETRY, TelemetryRequest(every=1))
+    plant = known.person.rest(Settings())
+    plant.meddle = lambda _tick, inputs: inputs._replace(elapsed_ticks=0)
+    known.port.connect(plant)
+    known.run(1)
+    known.port.connect(known.person.rest(Settings()))
+    assert heads_of(known.run(40))[-1].late == 0
+
+
 def test_a_fault_is_reported_at_once_with_its_evidence(known: Bench) -> None:
     upload(known)
     known.ask(Message.ARM)

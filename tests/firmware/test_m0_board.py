@@ -256,6 +256,23 @@ def test_ticks_that_the_processor_missed_are_counted_and_the_clock_stays_true(el
     assert all(frame.highest - frame.lowest == 0 for frame in telemetry)
 
 
+def test_a_tick_that_comes_while_the_converter_is_made_ready_for_it_is_counted_as_missed(elf: Path) -> None:
+    # stalls that end before, in and after that time: a conversion that the missed tick started goes on
+    stalls = {200 + 4 * k: 205 + 0.25 * k for k in range(140)}
+    emulator: list[M0Emulator] = []
+
+    def world(outputs: TickOutputs) -> TickInputs:
+        emulator[0].stall(stalls.get(outputs.tick, 0.0))
+        return TickInputs(outputs.tick)
+
+    emulator.append(M0Emulator(elf, world))
+    emulator[0].run_ticks(780)
+    telemetry, _echo = frames(emulator[0].read())
+    assert {frame.elapsed_ticks for frame in telemetry} == {1, 2}
+    assert all(b.time_us - a.time_us == TICK_US * b.elapsed_ticks for a, b in pairwise(telemetry))
+    assert all(f.lowest == f.highest == f.time_us // TICK_US for f in telemetry)
+
+
 def test_running_in_pieces_is_running_at_once(elf: Path) -> None:
     whole, pieces = (M0Emulator(elf, Scripted(hopping)) for _ in range(2))
     whole.run_ticks(200)

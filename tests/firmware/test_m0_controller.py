@@ -120,6 +120,7 @@ def held_down(device: LinkedDevice, key_mm: float = 3.5) -> M0Emulator:
     device.upload_program(BUTTON)
     random, settings = np.random.default_rng(0), device.settings()
     device.port.connect(ScriptedPlant(np.full(10, key_mm), 100.0, settings, random))
+    device.port.step()  # the cap lies there before the board is armed: else it has jumped
     device.client.arm()
     device.client.listen(device.port.now_s() + 0.02)
     emulator = board_of(device).emulator

@@ -243,6 +243,28 @@ def test_a_pulled_cable_ends_the_force_and_opens_the_loop(elf: Path) -> None:
     assert LoopState(device.client.read_force_loop().state) is LoopState.OPEN
 
 
+def flushed_while_it_runs(program: Path, folder: Path) -> Path:
+    """Build a program that flushes converter 0 while it runs free."""
+    stop, flush = "        stop_position();\n", "        ADC_SWTRIG(ADC0_BASE) = ADC_SWTRIG_FLUSH;\n"
+    return build_with(program, folder, "itsybitsy_m4/acquire.c", stop, flush)
+
+
+def test_a_converter_that_is_flushed_while_it_runs_free_starts_again_before_its_tick(tmp_path: Path) -> None:
+    emulator = started(flushed_while_it_runs(M4_CHECK, tmp_path))
+    while not emulator.usb.is_open:
+        emulator.run_ticks(1)
+    emulator.run_ticks(50)
+    ticks, _ = frames(emulator.read()[: 24 * 40])
+    assert {t.elapsed_ticks for t in ticks[1:]} == {0, 1}
+
+
+def test_readings_that_come_twice_in_a_tick_do_not_count_as_late(elf: Path, tmp_path: Path) -> None:
+    device = LinkedDevice(EmulatedBoard(flushed_while_it_runs(elf, tmp_path)), SimulatedPerson(RIG, seed=2))
+    counters = device.client.counters()
+    say(f"flushed while it runs: {counters.late} of {counters.ticks} ticks late")
+    assert counters.late < counters.ticks
+
+
 def test_a_program_that_hangs_is_reset_by_the_watchdog_with_the_drive_off(elf: Path) -> None:
     emulator = started(elf)
     emulator.hang("board_acquire")

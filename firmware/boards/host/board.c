@@ -94,7 +94,7 @@ void fdvv_host_tick(fdvv_host *host, const fdvv_inputs *inputs, fdvv_outputs *ou
     current = host;
     host->inputs = *inputs;
     host->counters.ticks += inputs->elapsed_ticks;
-    host->counters.late += (uint32_t)(inputs->elapsed_ticks - 1);
+    if (inputs->elapsed_ticks > 1) host->counters.late += inputs->elapsed_ticks - 1u; /* 0 would make it wrap around */
     fdvv_core_tick(&host->core, inputs, outputs);
     fdvv_core_after_tick(&host->core, inputs);
     if (host->slot != FDVV_NONE) {

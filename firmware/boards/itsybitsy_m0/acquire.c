@@ -49,6 +49,15 @@ static void select_input(uint32_t input)
     sync_adc();
 }
 
+/* A flush lets a converter that still runs free start again, so the bit goes first. */
+static void stop_adc(void)
+{
+    ADC_CTRLB = ADC_CTRLB_12_BIT_DIV4;
+    sync_adc();
+    ADC_SWTRIG = ADC_SWTRIG_FLUSH;
+    sync_adc();
+}
+
 static void start_adc(void)
 {
     board_clock(GCLK_ID_ADC, 2); /* 8 MHz / 4: the maximum of the ADC is 2.1 MHz */
@@ -123,8 +132,7 @@ static void arm(void)
     uint16_t before;
     do {
         before = TC_COUNT(TC4_BASE);
-        ADC_SWTRIG = ADC_SWTRIG_FLUSH;
-        sync_adc();
+        stop_adc();
         select_input(AIN_POSITION);
         ADC_INTFLAG = ADC_INTFLAG_RESRDY;
         DMAC_CHCTRLA = 0;
@@ -157,10 +165,7 @@ static uint32_t other_input(void)
 
 static void convert_other(void)
 {
-    ADC_CTRLB = ADC_CTRLB_12_BIT_DIV4; /* no longer free-running */
-    sync_adc();
-    ADC_SWTRIG = ADC_SWTRIG_FLUSH;
-    sync_adc();
+    stop_adc();
     select_input(other_input());
     ADC_INTFLAG = ADC_INTFLAG_RESRDY;
     ADC_SWTRIG = ADC_SWTRIG_START;

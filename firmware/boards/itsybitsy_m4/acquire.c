@@ -64,6 +64,15 @@ static uint16_t result(uint32_t base)
     return ADC_RESULT(base);
 }
 
+/* A flush lets a converter that still runs free start again, so the bit goes first. */
+static void stop_position(void)
+{
+    ADC_CTRLB(ADC0_BASE) = 0;
+    sync_adc(ADC0_BASE);
+    ADC_SWTRIG(ADC0_BASE) = ADC_SWTRIG_FLUSH;
+    sync_adc(ADC0_BASE);
+}
+
 /* Ratiometric from 0 to the supply; three fields of three bits each are its calibration. */
 static void start_converter(uint32_t base, uint8_t clock, uint8_t calibration_at)
 {
@@ -92,7 +101,6 @@ static void start_adc(void)
     PORT_B_PINCFG(PIN_B_SUPPLY) = PORT_PINCFG_PMUXEN;
     ADC_EVCTRL(ADC0_BASE) = ADC_EVCTRL_STARTEI;
     ADC_INPUTCTRL(ADC0_BASE) = AIN_POSITION | ADC_INPUTCTRL_GROUND;
-    ADC_CTRLB(ADC0_BASE) = ADC_CTRLB_FREERUN;
     ADC_CTRLA(ADC0_BASE) = ADC_CTRLA_DIV4 | ADC_CTRLA_ENABLE;
     ADC_CTRLA(ADC1_BASE) = ADC_CTRLA_DIV4 | ADC_CTRLA_ENABLE;
     sync_adc(ADC0_BASE);
@@ -152,7 +160,8 @@ static void arm(void)
     uint16_t before;
     do {
         before = count_of(TC1_BASE);
-        ADC_SWTRIG(ADC0_BASE) = ADC_SWTRIG_FLUSH;
+        stop_position();
+        ADC_CTRLB(ADC0_BASE) = ADC_CTRLB_FREERUN; /* from the tick's event on */
         sync_adc(ADC0_BASE);
         ADC_INTFLAG(ADC0_BASE) = ADC_INTFLAG_RESRDY;
         DMAC_CHCTRLA = 0;
@@ -166,14 +175,10 @@ static void arm(void)
 static uint16_t read_other(uint16_t input)
 {
     uint16_t counts;
-    ADC_CTRLB(ADC0_BASE) = 0; /* no longer free-running */
-    sync_adc(ADC0_BASE);
-    ADC_SWTRIG(ADC0_BASE) = ADC_SWTRIG_FLUSH;
-    sync_adc(ADC0_BASE);
+    stop_position();
     convert(ADC0_BASE, input);
     counts = result(ADC0_BASE);
     ADC_INPUTCTRL(ADC0_BASE) = AIN_POSITION | ADC_INPUTCTRL_GROUND;
-    ADC_CTRLB(ADC0_BASE) = ADC_CTRLB_FREERUN;
     sync_adc(ADC0_BASE);
     return counts;
 }

@@ -102,7 +102,7 @@ static void update_counters(const board_readings *readings)
     uint32_t served_us = board_now_us() - readings->time_us;
     if (served_us > counters.worst_tick_us) counters.worst_tick_us = served_us;
     counters.ticks += readings->elapsed_ticks;
-    counters.late += (uint32_t)(readings->elapsed_ticks - 1);
+    if (readings->elapsed_ticks > 1) counters.late += readings->elapsed_ticks - 1u; /* 0 would make it wrap around */
     counters.vibration_errors = board_wire_errors();
 }
 

@@ -52,8 +52,12 @@ class Converter:
 
     def _triggered(self, _size: int, value: int) -> None:
         if value & FLUSH:
+            # its data sheet: if a conversion was pending, the converter starts a new one
+            is_pending = self._is_running and bool(self._bus.get(ADC_CTRLB, 2) & FREERUN)
             self._run += 1
             self._is_running = False
+            if is_pending:
+                self._start()
         if value & START:
             self._start()
 

@@ -291,8 +291,12 @@ class Converters:
         return int.from_bytes(self._bus.ram_read(base + 2, 2), "little") if base else 0
 
     def _trigger(self, _size: int, value: int) -> None:
+        # the data sheet of SWTRIG.FLUSH: if a conversion was pending, the converter starts a new one
+        is_pending = self._is_running and bool(self._bus.get(ADC0 + ADC_CTRLB, 2) & FREERUN)
         self._run += 1
-        self._is_running = False
+        self._is_running = is_pending
+        if is_pending:
+            self._begin()
         if value & START:
             chosen = self._bus.get(ADC0 + ADC_INPUTCTRL, 2)
             if chosen not in (THERMISTOR, SETPOINT) or self._bus.get(ADC0 + ADC_CTRLB, 2) & FREERUN:
