@@ -1,6 +1,6 @@
 """Settings of the site; ``make docs`` builds it (tools/make_site.py)."""
 
-from fdvv import __version__
+from fdvv._version import __version__
 
 project = "fdvv"
 author = "The fdvv authors"

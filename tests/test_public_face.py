@@ -36,7 +36,7 @@ def test_type_checkers_and_python_import_the_same_names() -> None:
         for alias in node.names
     }
     assert imports == {(module, name) for module, names in fdvv._MODULES.items() for name in names}
-    assert {name for _, name in imports} | {"__version__"} == set(fdvv.__all__)
+    assert {name for _, name in imports} == set(fdvv.__all__)
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:

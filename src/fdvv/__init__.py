@@ -11,6 +11,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from fdvv._version import __version__
     from fdvv.bench.model import process_recording
     from fdvv.button.compare import compare
     from fdvv.button.fit import FitSettings, fit_file, fit_files
@@ -52,9 +53,8 @@ if TYPE_CHECKING:
     from fdvv.twin.finger import Finger
     from fdvv.twin.rig import Rig
 
-__version__ = "0.1.0"
-
 _MODULES = {
+    "fdvv._version": ("__version__",),
     "fdvv.bench.model": ("process_recording",),
     "fdvv.button.compare": ("compare",),
     "fdvv.button.fit": (

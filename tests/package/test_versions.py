@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from tests.package.conftest import REPOSITORY
 
-from fdvv import __version__
+from fdvv._version import __version__
 
 CHANGELOG = (REPOSITORY / "CHANGELOG.md").read_text(encoding="utf-8")
 HEADS = re.findall(r"^## \[(.+?)\](?: - (\S+))?$", CHANGELOG, flags=re.MULTILINE)

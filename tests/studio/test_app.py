@@ -11,7 +11,7 @@ import msgspec
 import pytest
 from starlette.testclient import TestClient
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.errors import InputError
 from fdvv.studio.contract import Call
 from fdvv.studio.parts import load_parts

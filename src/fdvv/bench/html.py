@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.bench.figures import (
     plot_averages,
     plot_clocks,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.button.figures import plot_fit, plot_scan
 from fdvv.cli.demo_run import DemoResult
 from fdvv.cli.ui import bump_kept

@@ -11,7 +11,8 @@ from typing import Any, NoReturn
 
 import click
 
-from fdvv import __version__, extras
+from fdvv import extras
+from fdvv._version import __version__
 from fdvv.cli import ui
 from fdvv.errors import BuildError, DeviceError, FdvvError, InputError, WorkerError
 from fdvv.force_text import UNITS, shown_in

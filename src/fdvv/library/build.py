@@ -12,7 +12,7 @@ from typing import Any, Literal
 import msgspec
 from msgspec.structs import replace
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.button.fit import one_line
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal

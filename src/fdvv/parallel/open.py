@@ -10,7 +10,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.errors import BuildError, InputError
 from fdvv.parallel.executor import (
     TRIES,

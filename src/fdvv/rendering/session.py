@@ -17,7 +17,7 @@ import msgspec
 import numpy as np
 from msgspec.json import Decoder
 
-import fdvv
+from fdvv._version import __version__
 from fdvv.compensation.presses import AcceptanceLimits
 from fdvv.device.contract import Device
 from fdvv.device.remote import Remote
@@ -108,7 +108,7 @@ def table_digest(surface: ForceSurface) -> str:
 
 
 def versions() -> dict[str, str]:
-    return {"fdvv": fdvv.__version__, "python": platform.python_version(), "numpy": np.__version__}
+    return {"fdvv": __version__, "python": platform.python_version(), "numpy": np.__version__}
 
 
 def now() -> str:

@@ -22,7 +22,7 @@ import msgspec
 from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.errors import FdvvError, InputError
 from fdvv.model.file import builtin_names
 from fdvv.optimize.engines.registry import engine_names, pair_engine_names

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.force_text import force_number, force_text, force_unit
 from fdvv.model.curve import Stroke
 from fdvv.report.report import Section, Table, render_html

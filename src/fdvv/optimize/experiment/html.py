@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.force_text import force_text
 from fdvv.io.documents import finite
 from fdvv.io.files import write_atomic

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.optimize.group.group import Group
 from fdvv.optimize.group.playoff import Playoff
 from fdvv.optimize.run.front import score_label

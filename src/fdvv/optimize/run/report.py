@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel

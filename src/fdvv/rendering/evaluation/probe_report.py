@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.force_text import force_number, force_unit
 from fdvv.model.noticeable import Jnds, JndSource
 from fdvv.rendering.evaluation.noticed import Noticed, noticed

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.studio.contract import Empty, Message, call
 from fdvv.studio.studio import Studio
 

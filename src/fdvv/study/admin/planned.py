@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Self
 
-import fdvv
+from fdvv._version import __version__
 from fdvv.errors import InputError
 from fdvv.io.files import read_limited, sync_folder, write_atomic
 from fdvv.rendering.session import now
@@ -78,9 +78,7 @@ class PlannedStudy(KeptFolder):
         write_atomic(folder / layout.KEEPER_FILE, keeper, private=True)
         files[layout.KEEPER_FILE] = digest(keeper)
         digests = {name: layout.builtin_digest(name) for name in builtins}
-        frozen = Frozen(
-            files=files, builtins=digests, seal=holder.seal.text, fdvv=fdvv.__version__, when=now()
-        )
+        frozen = Frozen(files=files, builtins=digests, seal=holder.seal.text, fdvv=__version__, when=now())
         fingerprint, self.run_key = self._begin_log(frozen), holder.run_key
         return fingerprint
 

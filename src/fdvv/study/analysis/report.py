@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.report.prose import listed
 from fdvv.report.report import Section, render_html, write_report
 from fdvv.report.svg import figure_svg

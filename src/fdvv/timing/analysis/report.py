@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from fdvv import __version__
+from fdvv._version import __version__
 from fdvv.io.documents import finite
 from fdvv.report.prose import (
     ANOVA_COLUMNS,
