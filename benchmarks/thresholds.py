@@ -24,6 +24,7 @@ from scipy.special import ndtr
 from fdvv.model.file import load_builtin
 from fdvv.model.grown import grown
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import AT_JND, DIMENSIONS
 from fdvv.study.plan.plan import Thresholds
 from fdvv.study.plan.threshold_trials import threshold_estimate, trial_change
 from fdvv.study.simulation.people import draw_people
@@ -34,7 +35,6 @@ from fdvv.study.simulation.perception import (
     perceived_difference,
 )
 from fdvv.thresholds.belief import Change, Trial
-from fdvv.thresholds.observer import AT_JND, DIMENSIONS
 from fdvv.units import FloatArray
 
 KINDS = ("proportional", "exponent", "lapsing", "tiring", "lognormal", "proxy")

@@ -10,6 +10,7 @@ from fdvv.compensation.identification.rig_file import RigRecord
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.library.build import LibraryManifest
 from fdvv.model.file import ModelRecord
+from fdvv.model.jnd_file import JndRecord, MeasuredJnd
 from fdvv.optimize.experiment.setup import ExperimentSetup
 from fdvv.optimize.population.plan import PopulationPlan
 from fdvv.optimize.population.population import ChunkRecord
@@ -38,7 +39,6 @@ from fdvv.study.plan.events import Event
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.sweep.plan import SweepPlan
 from fdvv.task.rounds import TaskRound, TrialRated
-from fdvv.thresholds.file import JndRecord, MeasuredJnd
 from fdvv.timing.plan.events import TimingEvent
 from fdvv.timing.plan.plan import TimingPlan
 from fdvv.vibration.exciter import ExciterRecord, KnownExciter

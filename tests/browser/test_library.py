@@ -12,7 +12,7 @@ import pytest
 from playwright.sync_api import expect
 
 from fdvv.model.file import load_builtin
-from fdvv.thresholds.file import FILE_NAME as JNDS_FILE
+from fdvv.model.jnd_file import FILE_NAME as JNDS_FILE
 from tests.browser.accessibility import audit
 from tests.studio.running import RunningStudio
 from tests.support.buttons import write_cycle

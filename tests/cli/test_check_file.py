@@ -19,6 +19,7 @@ from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.device.recording import Recorder
 from fdvv.errors import InputError
 from fdvv.model.file import load_builtin, save_model
+from fdvv.model.jnd_file import save_jnds
 from fdvv.program.compile import compile_program
 from fdvv.program.file import save_program
 from fdvv.program.library import load_shipped
@@ -28,7 +29,6 @@ from fdvv.rendering.session import MANIFEST
 from fdvv.rendering.session_log import PRESSES
 from fdvv.testing.conformance import plain_surface
 from fdvv.testing.scripted import ScriptedDevice
-from fdvv.thresholds.file import save_jnds
 from tests.recording.files import motive
 from tests.recording.takes import ABOUT, take
 from tests.support.damage import DAMAGES, Damage

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.thresholds.file import save_jnds
-from fdvv.thresholds.observer import DIMENSIONS
+from fdvv.model.jnd_file import save_jnds
+from fdvv.model.noticeable import DIMENSIONS
 from tests.cli.conftest import Run, tactile_csv
 from tests.support.jnds import as_literature, record_of
 

@@ -20,9 +20,8 @@ from fdvv.library.row import NUMBERS as SHELF_NUMBERS
 from fdvv.library.row import ButtonRow, ButtonType, Origin
 from fdvv.library.search import CatalogSearch, SearchQuery
 from fdvv.model.file import builtin_names, load_builtin
-from fdvv.model.noticeable import LITERATURE
-from fdvv.thresholds.file import jnds_of
-from fdvv.thresholds.observer import Dimension
+from fdvv.model.jnd_file import jnds_of
+from fdvv.model.noticeable import LITERATURE, Dimension
 from fdvv.units import FloatArray
 from tests.support.catalog_rows import bumped, button, dome, row, spring
 from tests.support.jnds import as_literature, record_of

@@ -15,6 +15,8 @@ from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError, InputError
 from fdvv.model.file import load_builtin
+from fdvv.model.jnd_file import FILE_NAME as JNDS_FILE
+from fdvv.model.jnd_file import save_jnds
 from fdvv.rendering.compensate import CompensationResult, compensate
 from fdvv.studio.api import device as part
 from fdvv.studio.api.device import DevicePress, ScopeFrame, WatchScope
@@ -23,8 +25,6 @@ from fdvv.studio.device_findings import PressSeen
 from fdvv.studio.device_session import DeviceConnect, DeviceSession, DeviceStatus, DeviceUpload
 from fdvv.studio.jobs.jobs import Jobs
 from fdvv.studio.studio import Studio
-from fdvv.thresholds.file import FILE_NAME as JNDS_FILE
-from fdvv.thresholds.file import save_jnds
 from fdvv.twin.files import load_rig
 from tests.studio.jobs import DEVICES, PATIENCE_s, learning
 from tests.support.jnds import as_literature, record_of

@@ -12,11 +12,11 @@ import pytest
 from fdvv.errors import InputError
 from fdvv.library.catalog import Catalog
 from fdvv.model.file import model_from_json
+from fdvv.model.jnd_file import FILE_NAME as JNDS_FILE
+from fdvv.model.jnd_file import save_jnds
 from fdvv.studio.jobs.file import RESULT_FOLDERS, result_file, result_names, rig_name
 from fdvv.studio.jobs.inputs import inputs_of
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order
-from fdvv.thresholds.file import FILE_NAME as JNDS_FILE
-from fdvv.thresholds.file import save_jnds
 from fdvv.twin.files import load_rig, rig_to_toml
 from tests.studio.jobs import DEVICES, learning, tuning
 from tests.support.jnds import as_literature, record_of

@@ -14,11 +14,11 @@ from starlette.testclient import TestClient
 
 from fdvv.library.row import NUMBERS as SHELF_NUMBERS
 from fdvv.model.file import MODEL_SUFFIX, builtin_names, load_builtin, save_model
+from fdvv.model.jnd_file import FILE_NAME as JNDS_FILE
+from fdvv.model.jnd_file import save_jnds
 from fdvv.studio.api.library_buttons import sampled_strokes
 from fdvv.studio.server import address_of, create_app
 from fdvv.studio.studio import Studio
-from fdvv.thresholds.file import FILE_NAME as JNDS_FILE
-from fdvv.thresholds.file import save_jnds
 from tests.studio.conftest import LIVE, ORIGIN, TOKEN
 from tests.support.buttons import write_cycle
 from tests.support.jnds import as_literature, record_of

@@ -10,6 +10,7 @@ import pytest
 
 from fdvv.device.twin import TwinDevice
 from fdvv.model.file import load_builtin, save_model
+from fdvv.model.jnd_file import save_jnds
 from fdvv.model.noticeable import LITERATURE
 from fdvv.project.measured_bands import measured_button
 from fdvv.rendering.compensate import uncompensated
@@ -20,7 +21,6 @@ from fdvv.studio.jobs.orders import Order, ProbeOrder
 from fdvv.studio.jobs.process import ended
 from fdvv.studio.jobs.work import Work
 from fdvv.studio.jobs.work_learn import PROBE_SEED
-from fdvv.thresholds.file import save_jnds
 from fdvv.twin.files import load_rig, rig_to_toml
 from tests.studio.jobs import learning, tuning
 from tests.support.jnds import as_literature, record_of

@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 from fdvv.errors import InputError
 from fdvv.model.file import load_builtin
 from fdvv.model.grown import grown
+from fdvv.model.jnd_file import JndRecord, jnds_of
 from fdvv.model.noticeable import LITERATURE
 from fdvv.study.admin.study import Study
 from fdvv.study.analysis.analyse import analyse
@@ -23,7 +24,6 @@ from fdvv.study.analysis.read_answers import UNSEALED, read_answers
 from fdvv.study.plan.plan_file import template_text
 from fdvv.study.simulation.perception import haptic_features, perceived_difference
 from fdvv.study.simulation.sessions import simulate_study
-from fdvv.thresholds.file import JndRecord, jnds_of
 from tests.support.jnds import measured, record_of
 from tests.support.study_people import CHEAP, PASSPHRASE
 

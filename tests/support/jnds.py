@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from fdvv.model.noticeable import LITERATURE
-from fdvv.thresholds.file import JndRecord, MeasuredJnd
-from fdvv.thresholds.observer import Dimension
+from fdvv.model.jnd_file import JndRecord, MeasuredJnd
+from fdvv.model.noticeable import LITERATURE, Dimension
 
 FALL_cN, ABOVE = 20.0, 6.0
 

@@ -10,10 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import ndtr
 
+from fdvv.model.noticeable import AT_JND, DIMENSIONS
 from fdvv.thresholds import belief, choose
 from fdvv.thresholds.belief import Belief, Trial, belief_after
 from fdvv.thresholds.choose import candidates, directions, information, next_change
-from fdvv.thresholds.observer import AT_JND, DIMENSIONS, LAPSE, share_correct
+from fdvv.thresholds.observer import LAPSE, share_correct
 from fdvv.thresholds.prior import ThresholdPrior
 
 PRIOR = ThresholdPrior()

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fdvv.model.noticeable import DIMENSIONS
 from fdvv.thresholds.belief import Trial
 from fdvv.thresholds.choose import next_change
 from fdvv.thresholds.estimate import estimate
-from fdvv.thresholds.observer import DIMENSIONS, JND, PARAMETERS, log_strength, share_correct
+from fdvv.thresholds.observer import JND, PARAMETERS, log_strength, share_correct
 from fdvv.thresholds.prior import ThresholdPrior
 
 PRIOR = ThresholdPrior()

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import expit
 
+from fdvv.model.noticeable import DIMENSIONS
 from fdvv.thresholds.observer import (
-    DIMENSIONS,
     EXPONENT,
     JND,
     LAPSE,

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
+from fdvv.model.jnd_file import jnds_of
 from fdvv.model.vibration import Mode, Vibration
-from fdvv.thresholds.file import jnds_of
 from fdvv.units import FloatArray
 from fdvv.vibration.compare import BANDS_Hz, CapMotions, RATE_Hz, band_power, compare_vibration, least_s
 from tests.support.jnds import as_literature, record_of

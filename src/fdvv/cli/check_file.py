@@ -13,6 +13,7 @@ from fdvv.errors import BuildError, FdvvError, InputError
 from fdvv.formats.force.read import read_force_file
 from fdvv.io.files import open_plain
 from fdvv.model.file import load_model
+from fdvv.model.jnd_file import load_jnds
 from fdvv.optimize.run.ledger import KIND as LEDGER
 from fdvv.optimize.run.ledger import read_ledger
 from fdvv.program.check import check_program
@@ -26,7 +27,6 @@ from fdvv.rendering.session import MANIFEST
 from fdvv.rendering.session_log import PRESSES
 from fdvv.study.files.chained_log import REMEDY as CHAIN_REMEDY
 from fdvv.study.files.chained_log import read_chained
-from fdvv.thresholds.file import load_jnds
 
 HEAD_bytes = 400
 IMAGE = b"FDVP"

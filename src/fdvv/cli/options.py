@@ -112,8 +112,8 @@ jnds_option = ui.option(
 
 
 def opened_jnds(path: Path | None) -> Jnds:
+    from fdvv.model.jnd_file import load_jnds
     from fdvv.model.noticeable import LITERATURE
-    from fdvv.thresholds.file import load_jnds
 
     return load_jnds(path) if path else LITERATURE
 

@@ -2,18 +2,24 @@
 
 One JND is the difference that three of four comparisons notice. No study that was read measured whole strokes
 of push-buttons against each other; what is taken over from elsewhere is marked as an assumption. What a study
-of thresholds or staircases measured of one's own people replaces it (fdvv.thresholds.file).
+of thresholds or staircases measured of one's own people replaces it (fdvv.model.jnd_file).
 """
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from fdvv.units import FloatArray
+
+Dimension = Literal["force", "snap", "vibration"]
+DIMENSIONS: tuple[Dimension, ...] = ("force", "snap", "vibration")
+
+AT_JND = 0.6744897501960817
+"""d' over the root of two at one JND: three of four comparisons are right there (Thurstone 1927)."""
 
 THRESHOLD_um, BEST_Hz = 0.2, 250.0
 LOWEST_Hz, HIGHEST_Hz = 40.0, 1000.0

@@ -185,7 +185,7 @@ def probe(
         held against it.
     playback : also press with the model's vibrations, where it has some and the device an exciter; force is
     judged on the presses without. None, and in a session begun without: the cap's own motion is compared.
-    jnds : what a finger notices; a project has its own where its people were measured (fdvv.thresholds.file).
+    jnds : what a finger notices; a project has its own where its people were measured (fdvv.model.jnd_file).
 
     Raises DeviceError if the device fails or too many presses in a row cannot be used, InputError on bad
     speeds and on a folder that is no session of this probe, KeyboardInterrupt on Ctrl-C.

@@ -54,7 +54,7 @@ class Studio:
     @property
     def jnds(self) -> Jnds:
         """What people notice: those of the project, read anew each time, or the literature's. InputError."""
-        from fdvv.thresholds.file import FILE_NAME, project_jnds
+        from fdvv.model.jnd_file import FILE_NAME, project_jnds
 
         try:
             return project_jnds(self.project)

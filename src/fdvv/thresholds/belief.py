@@ -14,16 +14,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from fdvv.thresholds.observer import (
-    AT_JND,
-    EXPONENT,
-    JND,
-    LAPSE,
-    PARAMETERS,
-    SUMMATION,
-    share_correct,
-    summed,
-)
+from fdvv.model.noticeable import AT_JND
+from fdvv.thresholds.observer import EXPONENT, JND, LAPSE, PARAMETERS, SUMMATION, share_correct, summed
 from fdvv.thresholds.prior import ThresholdPrior
 from fdvv.units import FloatArray
 

@@ -7,8 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from fdvv.model.noticeable import DIMENSIONS, Dimension
 from fdvv.thresholds.belief import FEW_PARTICLES, Belief, Change, Trial, belief_after
-from fdvv.thresholds.observer import DIMENSIONS, JND, Dimension, share_correct
+from fdvv.thresholds.observer import JND, share_correct
 from fdvv.thresholds.prior import ThresholdPrior
 from fdvv.units import FloatArray
 

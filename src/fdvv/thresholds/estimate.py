@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fdvv.model.noticeable import DIMENSIONS, Dimension
 from fdvv.thresholds.belief import PARTICLES, Belief, Trial, belief_after
-from fdvv.thresholds.observer import DIMENSIONS, JND, Dimension, log_jnd_along
+from fdvv.thresholds.observer import JND, log_jnd_along
 from fdvv.thresholds.prior import ThresholdPrior
 from fdvv.units import FloatArray
 

@@ -13,19 +13,13 @@ Parameters are arrays (..., PARAMETERS) without bounds, so that a belief about t
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 
+from fdvv.model.noticeable import AT_JND, DIMENSIONS
 from fdvv.units import FloatArray
 
-Dimension = Literal["force", "snap", "vibration"]
-DIMENSIONS: tuple[Dimension, ...] = ("force", "snap", "vibration")
 PARAMETERS = 8
 JND, EXPONENT, SUMMATION, LAPSE = slice(0, 3), slice(3, 6), 6, 7
-
-AT_JND = 0.6744897501960817
-"""d' over the root of two at one JND: three of four comparisons are right there (Thurstone 1927)."""
 
 STEPS = 8
 """Of Newton's method to where a direction crosses the surface; it converges quadratically from outside."""

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.thresholds.observer import DIMENSIONS, EXPONENT, JND, LAPSE, PARAMETERS, SUMMATION
+from fdvv.model.noticeable import DIMENSIONS
+from fdvv.thresholds.observer import EXPONENT, JND, LAPSE, PARAMETERS, SUMMATION
 from fdvv.units import FloatArray
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
+from fdvv.model.jnd_file import jnds_of
 from fdvv.model.noticeable import LITERATURE
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.evaluation.probe_curve import ProbeCurve
@@ -22,7 +23,6 @@ from fdvv.rendering.evaluation.verdict import (
 from fdvv.rendering.evaluation.vibration_presses import NONE_ASKED, RenderedVibration
 from fdvv.rendering.probe import probe
 from fdvv.testing.scripted import ScriptedDevice
-from fdvv.thresholds.file import jnds_of
 from fdvv.vibration.compare import VibrationError
 from tests.support.jnds import as_literature, record_of
 

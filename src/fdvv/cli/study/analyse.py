@@ -12,6 +12,7 @@ from fdvv.cli import ui
 from fdvv.cli.study.timing import timing_analyse, timing_export
 from fdvv.errors import InputError
 from fdvv.io.files import read_limited
+from fdvv.model.jnd_file import FILE_NAME, jnds_of, save_jnds
 from fdvv.model.noticeable import LITERATURE
 from fdvv.study.admin.study import Study
 from fdvv.study.analysis.analyse import analyse as analysed
@@ -26,7 +27,6 @@ from fdvv.study.analysis.report import study_summary, write_study_report
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
-from fdvv.thresholds.file import FILE_NAME, jnds_of, save_jnds
 from fdvv.timing.plan.plan_file import is_timing
 
 table_options = ui.options(

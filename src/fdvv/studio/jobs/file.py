@@ -20,10 +20,10 @@ from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_records
 from fdvv.io.documents import Kind, pretty, read_document
 from fdvv.io.files import read_limited, write_atomic
+from fdvv.model.jnd_file import FILE_NAME as JNDS_NAME
 from fdvv.studio.contract import Message
 from fdvv.studio.jobs.events import JobEvent
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, KindName, Order
-from fdvv.thresholds.file import FILE_NAME as JNDS_NAME
 from fdvv.twin.files import current_rig_name
 
 JOB, EVENTS = "job.json", "events.jsonl"

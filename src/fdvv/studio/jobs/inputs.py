@@ -11,13 +11,13 @@ from fdvv.device.open import pressed_by_person
 from fdvv.errors import InputError
 from fdvv.library.catalog import Catalog
 from fdvv.model.file import model_to_json
+from fdvv.model.jnd_file import project_jnds
 from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import LITERATURE
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS
 from fdvv.studio.devices import require_listed
 from fdvv.studio.jobs.file import JobFolder, check_name, result_file
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order, RigOrder, TuneOrder, kind_of
-from fdvv.thresholds.file import project_jnds
 from fdvv.twin.capture.participant import PARTICIPANTS
 from fdvv.twin.files import button_names, current_rig_name, load_rig, rig_to_toml
 

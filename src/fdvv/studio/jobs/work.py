@@ -15,6 +15,7 @@ from fdvv.compensation.presses import AcceptanceLimits
 from fdvv.device.bench import BenchInfo
 from fdvv.device.contract import Device, DeviceInfo
 from fdvv.device.open import pressed_by_person
+from fdvv.model.jnd_file import project_jnds
 from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import Jnds
 from fdvv.rendering.actuation_file import load_actuation
@@ -30,7 +31,6 @@ from fdvv.studio.jobs import events
 from fdvv.studio.jobs.file import JobFolder
 from fdvv.studio.jobs.orders import RigOrder
 from fdvv.studio.rounding import DIGITS, finite_or_none, finite_row, rounded
-from fdvv.thresholds.file import project_jnds
 
 PressStage = Literal["compensate", "baseline", "probe"]
 

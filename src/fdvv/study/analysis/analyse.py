@@ -8,6 +8,7 @@ from types import MappingProxyType
 import numpy as np
 
 from fdvv.errors import InputError, ModelError
+from fdvv.model.noticeable import Dimension
 from fdvv.stats.rank_tests import signed_rank
 from fdvv.study.analysis.choices import choice_results
 from fdvv.study.analysis.columns import TIMING
@@ -27,7 +28,6 @@ from fdvv.study.plan.claim import (
     usual_claim,
 )
 from fdvv.study.plan.plan import Claim, StudyPlan
-from fdvv.thresholds.observer import Dimension
 
 FEW_PEOPLE = 6
 """People below which the exact signed-rank test cannot be significant at .05, whatever they say."""

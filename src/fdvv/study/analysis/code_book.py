@@ -14,11 +14,11 @@ import numpy as np
 
 from fdvv.io.documents import Kind, pretty
 from fdvv.io.files import read_limited, write_atomic
+from fdvv.model.noticeable import DIMENSIONS
 from fdvv.study.files.layout import read_record
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.trial import EQUAL
-from fdvv.thresholds.observer import DIMENSIONS
 
 CODE_BOOK_FILE = "codebook.json"
 KIND = Kind("fdvv-codebook", 1, "a code book", "write it with fdvv study export")

@@ -10,10 +10,10 @@ from typing import get_args
 import numpy as np
 
 from fdvv.errors import InputError
+from fdvv.model.noticeable import DIMENSIONS
 from fdvv.study.analysis.code_book import CodeBook, rating_column
 from fdvv.study.plan.plan import StudyKind
 from fdvv.study.plan.trial import EQUAL
-from fdvv.thresholds.observer import DIMENSIONS
 
 TIMING = "timing"
 """A kind of answers that no plan declares: scores in a unit of time, by button and level, for an ANOVA."""

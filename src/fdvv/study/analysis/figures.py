@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
+from fdvv.model.noticeable import Dimension
 from fdvv.report import style
 from fdvv.report.prose import stars
 from fdvv.report.score_figures import ScoreBars, plot_score_bars
@@ -19,7 +20,6 @@ from fdvv.study.analysis.records import JndResult, StudyAnalysis, ThresholdResul
 from fdvv.study.analysis.sentences import name_rows
 from fdvv.study.analysis.words import button_name
 from fdvv.study.plan.answers import Answers
-from fdvv.thresholds.observer import Dimension
 from fdvv.units import FloatArray
 
 if TYPE_CHECKING:

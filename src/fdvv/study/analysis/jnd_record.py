@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from fdvv.errors import InputError
+from fdvv.model.jnd_file import JndRecord, MeasuredJnd
 from fdvv.model.model import FDVVModel
-from fdvv.model.noticeable import acceleration_above_threshold
+from fdvv.model.noticeable import DIMENSIONS, Dimension, acceleration_above_threshold
 from fdvv.study.admin.study import Study
 from fdvv.study.analysis.analyse import analyse
 from fdvv.study.analysis.jnds import PACE_mm_s, standard_sizes
@@ -21,8 +22,6 @@ from fdvv.study.plan.plan import ADAPTIVE, Item, StudyPlan
 from fdvv.study.plan.plan_words import JND_share, question_text
 from fdvv.study.plan.staircase import target_share
 from fdvv.study.stimulus.renderer import stimulus_model
-from fdvv.thresholds.file import JndRecord, MeasuredJnd
-from fdvv.thresholds.observer import DIMENSIONS, Dimension
 
 RATE_Hz = 8000.0
 """At which a vibration is sampled to say how far above the faintest it is."""

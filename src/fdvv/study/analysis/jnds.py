@@ -11,6 +11,7 @@ import numpy as np
 from fdvv.errors import InputError
 from fdvv.model.landmarks import landmarks
 from fdvv.model.model import FDVVModel
+from fdvv.model.noticeable import DIMENSIONS, Dimension
 from fdvv.study.analysis.ratings import spread_of
 from fdvv.study.analysis.records import JndResult, JndSurface, Spread
 from fdvv.study.plan.answers import Answers, means_by
@@ -18,7 +19,6 @@ from fdvv.study.plan.plan import StudyPlan, Thresholds
 from fdvv.study.plan.threshold_trials import threshold_estimate
 from fdvv.study.stimulus.renderer import stimulus_model
 from fdvv.thresholds.belief import Trial
-from fdvv.thresholds.observer import DIMENSIONS, Dimension
 from fdvv.units import FloatArray
 
 UNITS: Mapping[Dimension, str] = {"force": "cN", "snap": "cN", "vibration": "m/s²"}

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from fdvv.model.noticeable import Dimension
 from fdvv.stats.anova import Anova
 from fdvv.stats.effect_size import Estimate
 from fdvv.stats.ordinal import OrdinalModel
@@ -17,7 +18,6 @@ from fdvv.study.analysis.multiverse import Multiverse
 from fdvv.study.plan.answers import Screening
 from fdvv.study.plan.plan import Claim
 from fdvv.thresholds.estimate import JndEstimate
-from fdvv.thresholds.observer import Dimension
 from fdvv.units import FloatArray
 
 UNITS = ("s", "ms", "us")

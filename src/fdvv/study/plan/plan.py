@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct, structs
 
-from fdvv.thresholds.observer import DIMENSIONS, Dimension
+from fdvv.model.noticeable import DIMENSIONS, Dimension
 from fdvv.thresholds.prior import ThresholdPrior
 
 StudyKind = Literal["realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase", "thresholds"]

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from importlib import resources
 
 from fdvv.force_text import force_text
+from fdvv.model.noticeable import DIMENSIONS
 from fdvv.study.plan.plan import Item, Question, Rating, Stimulus, StudyPlan
 from fdvv.study.plan.schedule import LABELS
 from fdvv.study.plan.staircase import target_share
-from fdvv.thresholds.observer import DIMENSIONS
 
 KINDS_WITH_TIES = ("realism", "2ac", "preference")
 """In which "equal" may be answered; in the others one must be named, or only ratings are given."""

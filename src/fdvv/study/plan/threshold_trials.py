@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from msgspec import structs
 
+from fdvv.model.noticeable import DIMENSIONS
 from fdvv.study.plan.plan import Stimulus, Thresholds
 from fdvv.thresholds.belief import Change, Trial
 from fdvv.thresholds.choose import next_change
 from fdvv.thresholds.estimate import ThresholdEstimate, estimate
-from fdvv.thresholds.observer import DIMENSIONS
 
 PRACTICE_JND = 4.0
 """By how much of the expected JND a button grows in practice: nearly everybody feels it."""

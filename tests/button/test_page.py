@@ -11,8 +11,8 @@ import pytest
 from fdvv.errors import ModelError
 from fdvv.library.page import buttons_page, difference_sentences
 from fdvv.model.file import load_builtin, model_from_json
+from fdvv.model.jnd_file import jnds_of
 from fdvv.model.noticeable import LITERATURE
-from fdvv.thresholds.file import jnds_of
 from tests.support.buttons import line_model
 from tests.support.jnds import as_literature, record_of
 

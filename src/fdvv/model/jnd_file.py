@@ -14,8 +14,7 @@ from fdvv.errors import InputError
 from fdvv.force_text import force_text
 from fdvv.io.documents import Kind, pretty, read_record
 from fdvv.io.files import write_atomic
-from fdvv.model.noticeable import LITERATURE, Jnds, JndSource
-from fdvv.thresholds.observer import AT_JND, DIMENSIONS, Dimension
+from fdvv.model.noticeable import AT_JND, DIMENSIONS, LITERATURE, Dimension, Jnds, JndSource
 
 FILE_NAME = "jnds.json"
 """Its name in a project."""

@@ -13,9 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError
-from fdvv.model.noticeable import LITERATURE
-from fdvv.thresholds.file import FILE_NAME, jnds_of, load_jnds, project_jnds, save_jnds
-from fdvv.thresholds.observer import DIMENSIONS, Dimension
+from fdvv.model.jnd_file import FILE_NAME, jnds_of, load_jnds, project_jnds, save_jnds
+from fdvv.model.noticeable import DIMENSIONS, LITERATURE, Dimension
 from tests.support.jnds import as_literature, measured, record_of
 from tests.support.studies import Killed, kill_at
 
