@@ -16,10 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
+from fdvv.button.like import LikeTable, distances
 from fdvv.errors import FdvvError
 from fdvv.library.catalog import source_files
 from fdvv.library.figures import row_of_file
-from fdvv.library.like import LikeTable, distances
 from fdvv.library.row import ButtonRow
 from fdvv.units import FloatArray
 

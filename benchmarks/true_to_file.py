@@ -24,12 +24,12 @@ import numpy as np
 from benchmarks.button_lines import Line
 from benchmarks.library_likeness import BENCHES
 from fdvv.button.fit import FitSettings, MeasuredParts, ModelFit, fit_force_file, measured_parts
+from fdvv.button.kind import kind_of
 from fdvv.errors import FdvvError
 from fdvv.formats.force.read import read_force_file
 from fdvv.formats.force.types import ForceFile
 from fdvv.library.catalog import source_files
 from fdvv.library.figures import polyline_model
-from fdvv.library.kind import kind_of
 from fdvv.model.bump import STOP_LEAST_cN_mm, find_contact_mm
 from fdvv.model.curve import Stroke
 from fdvv.model.landmarks import landmarks

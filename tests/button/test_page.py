@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import pytest
 
+from fdvv.button.page import buttons_page, difference_sentences
 from fdvv.errors import ModelError
-from fdvv.library.page import buttons_page, difference_sentences
 from fdvv.model.file import load_builtin, model_from_json
 from fdvv.model.jnd_file import jnds_of
 from fdvv.model.noticeable import LITERATURE

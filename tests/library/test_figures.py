@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from fdvv.button.fit import fit_file
+from fdvv.button.kind import ButtonType
 from fdvv.library.figures import row_of_file
 from fdvv.library.row import NUMBERS as SHELF_NUMBERS
-from fdvv.library.row import ButtonType, Origin
+from fdvv.library.row import Origin
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.file import builtin_names, load_builtin
 from fdvv.model.landmarks import landmarks

@@ -12,12 +12,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fdvv.button.kind import ButtonType
+from fdvv.button.like import LikeTable, distances
 from fdvv.errors import InputError
 from fdvv.library.catalog import source_files
 from fdvv.library.figures import row_of_file
-from fdvv.library.like import LikeTable, distances
 from fdvv.library.row import NUMBERS as SHELF_NUMBERS
-from fdvv.library.row import ButtonRow, ButtonType, Origin
+from fdvv.library.row import ButtonRow, Origin
 from fdvv.library.search import CatalogSearch, SearchQuery
 from fdvv.model.file import builtin_names, load_builtin
 from fdvv.model.jnd_file import jnds_of

@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
 
 from fdvv.force_text import force_text
-from fdvv.library.row import ButtonType
-from fdvv.library.stated import Stated
 from fdvv.model.bump import Bump, find_bump
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
+
+
+class ButtonType(StrEnum):
+    """What the force of a button does; a question mark belongs to what force alone can only suggest."""
+
+    LINEAR = "linear"
+    TACTILE = "tactile"
+    CLICKY = "clicky?"
+    DOME = "dome?"
+    UNCLEAR = "unclear"
+
 
 STOP_SHARE_mm = 0.15
 """A fall this near to the end of the travel is the stage turning or the stop giving way, not a bump."""
@@ -50,12 +60,6 @@ class ButtonKind(NamedTuple):
     kind: ButtonType
     fact: str
     sure_ratio: float | None = None
-
-    def reason(self, stated: Stated | None = None) -> str:
-        """Say what is stated first, then what the curve suggests, how surely, and by which fact."""
-        first = f"stated {stated}; the curve suggests {str(self.kind).rstrip('?')}, " if stated else ""
-        sure = "" if self.sure_ratio is None else f"right for {100 * self.sure_ratio:.0f} % of such curves: "
-        return f"{first}{sure}{self.fact}"
 
 
 def bump_of(model: FDVVModel, stroke: Stroke) -> Bump | None:

@@ -1,4 +1,4 @@
-"""How unlike two buttons feel, from their rows: force along press and release, shape, landmarks.
+"""How unlike two buttons feel: force along press and release, shape, landmarks.
 
 All is in just noticeable differences (fdvv.model.noticeable), the literature's or a project's own.
 The three parts are mean squares and count alike; docs/explanation/library.md tells how well that works.
@@ -8,10 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import NamedTuple, Protocol
 
+import msgspec
 import numpy as np
 
-from fdvv.library.row import SKETCH_POINTS, ButtonRow
+from fdvv.button.kind import bump_of
+from fdvv.model.curve import Stroke
+from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.units import FloatArray
 
@@ -26,15 +30,53 @@ _SIZES = (GRID_mm.size, GRID_mm.size, SHAPE_points, SHAPE_points, 5)
 _FORCE, _SHAPE, _LANDMARKS = (0, 1), (2, 3), (4,)
 _NO_ROWS: FloatArray = np.empty((0, sum(_SIZES)))
 
+SKETCH_POINTS = 64
+"""Per stroke, evenly from contact to the end of the travel."""
+
+
+class Sketch(msgspec.Struct, frozen=True):
+    """The slowest press and its release in tenths of a centinewton, 64 points each; empty if not there."""
+
+    press_dcN: tuple[int, ...] = ()
+    release_dcN: tuple[int, ...] = ()
+
+
+class ComparedButton(Protocol):
+    """What buttons are compared by; figures of a bump are None without one."""
+
+    @property
+    def travel_mm(self) -> float: ...
+    @property
+    def peak_mm(self) -> float | None: ...
+    @property
+    def valley_mm(self) -> float | None: ...
+    @property
+    def drop_cN(self) -> float | None: ...
+    @property
+    def release_drop_cN(self) -> float | None: ...
+    @property
+    def sketch(self) -> Sketch: ...
+
+
+class ButtonFigures(NamedTuple):
+    """A ComparedButton that is in no library."""
+
+    travel_mm: float
+    peak_mm: float | None
+    valley_mm: float | None
+    drop_cN: float | None
+    release_drop_cN: float | None
+    sketch: Sketch
+
 
 class LikeTable:
     """What many buttons are compared by; positions count them in the order they were added."""
 
     def __init__(self) -> None:
-        self._rows: list[ButtonRow] = []
+        self._rows: list[ComparedButton] = []
         self._jnds, self._table = LITERATURE, _NO_ROWS
 
-    def extend(self, rows: Sequence[ButtonRow]) -> None:
+    def extend(self, rows: Sequence[ComparedButton]) -> None:
         self._rows += rows
 
     def parts(self, at: int, jnds: Jnds = LITERATURE) -> FloatArray:
@@ -55,6 +97,31 @@ class LikeTable:
         return np.where(np.isfinite(found), found, np.inf)
 
 
+def sketch_of(model: FDVVModel) -> Sketch:
+    """Draw the slowest press and its release with 64 points each, contact to end of travel."""
+    return Sketch(*(_sketch(model, stroke) for stroke in (Stroke.PRESS, Stroke.RELEASE)))
+
+
+def _sketch(model: FDVVModel, stroke: Stroke) -> tuple[int, ...]:
+    curve = model.nearest(stroke)
+    if curve is None:
+        return ()
+    x = np.linspace(0.0, model.travel_mm, SKETCH_POINTS)
+    tenths: Sequence[int] = np.rint(10 * np.clip(curve.force_cN(x), -3000, 3000)).astype(int).tolist()
+    return tuple(tenths)
+
+
+def button_figures(model: FDVVModel) -> ButtonFigures:
+    """Return what a model is compared by."""
+    bump, back = bump_of(model, Stroke.PRESS), bump_of(model, Stroke.RELEASE)
+    return ButtonFigures(
+        model.travel_mm,
+        *((bump.peak_mm, bump.valley_mm, bump.drop_cN) if bump else (None, None, None)),
+        back.drop_cN if back else None,
+        sketch_of(model),
+    )
+
+
 def distances(parts: FloatArray) -> FloatArray:
     """Return the root of the mean square of the parts, (n,)."""
     return np.asarray(np.sqrt(np.mean(parts**2, axis=1)))
@@ -68,7 +135,7 @@ def _mean(squares: FloatArray) -> FloatArray:
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
-def _vectors(rows: Sequence[ButtonRow], jnds: Jnds) -> FloatArray:
+def _vectors(rows: Sequence[ComparedButton], jnds: Jnds) -> FloatArray:
     """Return what buttons are compared by, a row each; NaN where it is unknown."""
     travel_mm = np.array([[row.travel_mm] for row in rows])
     strokes = [_sketches([row.sketch.press_dcN for row in rows])]
@@ -105,7 +172,7 @@ def _normalised(force_cN: FloatArray) -> FloatArray:
     return np.asarray(part / np.maximum(part.mean(axis=1, keepdims=True), 1.0))
 
 
-def _landmarks(row: ButtonRow, jnds: Jnds) -> list[float]:
+def _landmarks(row: ComparedButton, jnds: Jnds) -> list[float]:
     """Return travel, places of peak and valley, drops of press and release; without a bump the drop is 0."""
     places = (row.travel_mm, row.peak_mm, row.valley_mm)
     return [

@@ -7,12 +7,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from fdvv.button.compare import Comparison, compare
+from fdvv.button.kind import kind_sentence
+from fdvv.button.like import LikeTable, button_figures, distances
 from fdvv.errors import ModelError
 from fdvv.force_text import force_number, force_unit, shown_force
-from fdvv.library.figures import row_of_model
-from fdvv.library.kind import kind_sentence
-from fdvv.library.like import LikeTable, distances
-from fdvv.library.row import Origin
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.file import MODEL_SUFFIX, model_to_json
 from fdvv.model.model import FDVVModel
@@ -79,10 +77,10 @@ def buttons_page(
 def difference_sentences(models: Sequence[FDVVModel], jnds: Jnds = LITERATURE) -> Iterator[str]:
     """Say of every button but the first how unlike the first it feels, in just noticeable differences.
 
-    The distance is fdvv.library.like's, an estimate. jnds : what it is counted in.
+    The distance is fdvv.button.like's, an estimate. jnds : what it is counted in.
     """
     table = LikeTable()
-    table.extend([row_of_model(model, str(at), Origin.OWN) for at, model in enumerate(models)])
+    table.extend([button_figures(model) for model in models])
     parts = table.parts(0, jnds)[1:]
     for model, jnd, of in zip(models[1:], distances(parts), parts, strict=True):
         if not np.isfinite(jnd):

@@ -10,13 +10,13 @@ import click
 
 from fdvv.button.compare import Comparison, spread_reports
 from fdvv.button.compare import compare as compare_models
+from fdvv.button.kind import kind_sentence
 from fdvv.button.open import button_files, open_button, open_files, open_models
 from fdvv.cli import ui
 from fdvv.cli.options import jnds_option, opened_jnds
 from fdvv.errors import InputError
 from fdvv.force_text import ForceTitle, force_name, force_number, force_unit
 from fdvv.io.documents import ACTUATION, own_kind
-from fdvv.library.kind import kind_sentence
 from fdvv.model.curve import Stroke
 from fdvv.model.landmarks import LandmarkError, landmark_errors, landmarks
 from fdvv.model.model import FDVVModel
@@ -74,7 +74,7 @@ def compare(
         ui.print_json({**result.to_dict(), "refused": refused})
         return
     if len(models) <= MOST_SENTENCES:
-        from fdvv.library.page import counted_in, difference_sentences
+        from fdvv.button.page import counted_in, difference_sentences
 
         for sentence in (*difference_sentences(models, jnds), counted_in(jnds)):
             ui.print_wrapped(sentence)
@@ -102,7 +102,7 @@ def _draw(models: Sequence[FDVVModel], velocity_mm_s: float | None) -> None:
 def _write_page(
     path: Path, models: Sequence[FDVVModel], velocity_mm_s: float | None, jnds: Jnds = LITERATURE
 ) -> None:
-    from fdvv.library.page import buttons_page
+    from fdvv.button.page import buttons_page
     from fdvv.report.report import write_report
 
     write_report(path, buttons_page(models, velocity_mm_s, jnds))

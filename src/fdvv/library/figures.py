@@ -6,7 +6,6 @@ Measured curves are not fitted for this: they are averaged over 20 um and joined
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
@@ -14,11 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from fdvv.button.fit import MeasuredParts, measured_parts, one_line, refuse_implausible
+from fdvv.button.kind import ButtonKind, bump_of, kind_of
+from fdvv.button.like import sketch_of
 from fdvv.errors import FdvvError, InputError
 from fdvv.formats.force.read import read_force_file
 from fdvv.io.documents import MODEL, own_kind
-from fdvv.library.kind import bump_of, kind_of
-from fdvv.library.row import NUMBERS, SKETCH_POINTS, ButtonRow, Origin, Sketch
+from fdvv.library.row import NUMBERS, ButtonRow, Origin
 from fdvv.library.stated import Stated, stated_type
 from fdvv.model.bump import running_mean
 from fdvv.model.curve import ForceCurve, MeasuredCurve, Stroke
@@ -81,20 +81,6 @@ def reasons_of(model: FDVVModel, figures: dict[str, float | None]) -> tuple[str,
     if not model.of(Stroke.PRESS):
         reasons |= {"bump": "the source holds no press", "press": "the source holds no press"}
     return tuple(f"{subject}: {reason}" for subject, reason in reasons.items() if reason)
-
-
-def sketch_of(model: FDVVModel) -> Sketch:
-    """Draw the slowest press and its release with 64 points each, contact to end of travel."""
-    return Sketch(*(_sketch(model, stroke) for stroke in (Stroke.PRESS, Stroke.RELEASE)))
-
-
-def _sketch(model: FDVVModel, stroke: Stroke) -> tuple[int, ...]:
-    curve = model.nearest(stroke)
-    if curve is None:
-        return ()
-    x = np.linspace(0.0, model.travel_mm, SKETCH_POINTS)
-    tenths: Sequence[int] = np.rint(10 * np.clip(curve.force_cN(x), -3000, 3000)).astype(int).tolist()
-    return tuple(tenths)
 
 
 STATED = re.compile(
@@ -179,7 +165,7 @@ def row_of_model(
         collection=collection,
         stated=tuple(dict.fromkeys(words)),
         kind=kind.kind,
-        kind_reason=kind.reason(stated),
+        kind_reason=_kind_reason(kind, stated),
         **{name: None if value is None else round(value, 4) for name, value in figures.items()},  # type: ignore[arg-type]
         speeds_mm_s=tuple(round(v, 3) for v in model.velocities_mm_s(Stroke.PRESS)),
         cycles=parts.cycles if parts else None,
@@ -191,3 +177,10 @@ def row_of_model(
         why=reasons_of(model, figures),
         sketch=sketch_of(model),
     )
+
+
+def _kind_reason(kind: ButtonKind, stated: Stated | None) -> str:
+    """Say what is stated first, then what the curve suggests, how surely, and by which fact."""
+    first = f"stated {stated}; the curve suggests {str(kind.kind).rstrip('?')}, " if stated else ""
+    sure = "" if kind.sure_ratio is None else f"right for {100 * kind.sure_ratio:.0f} % of such curves: "
+    return f"{first}{sure}{kind.fact}"

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import msgspec
 import numpy as np
 
+from fdvv.button.kind import ButtonType
+from fdvv.button.like import distances
 from fdvv.errors import InputError, did_you_mean
 from fdvv.force_text import force_of
 from fdvv.io.documents import MODEL, own_kind
@@ -22,8 +24,7 @@ from fdvv.io.files import write_atomic
 from fdvv.io.part_store import need_parquet, read_groups
 from fdvv.library.build import BUTTONS, REMEDY, LibraryManifest, read_manifest
 from fdvv.library.figures import row_of_file, row_of_model
-from fdvv.library.like import distances
-from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, CacheLine, Origin
+from fdvv.library.row import NUMBERS, ButtonRow, CacheLine, Origin
 from fdvv.library.search import LABELS, CatalogSearch, SearchQuery
 from fdvv.library.table import READ_NAMES, curves_of, rows_of
 from fdvv.model.file import builtin_names, load_builtin

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Protocol
 
 from fdvv.button.fit import FitSettings, fit_file
+from fdvv.button.kind import kind_sentence
 from fdvv.force_text import force_text
 from fdvv.formats.force.read import stroke_of
 from fdvv.io.documents import MODEL, own_kind
-from fdvv.library.kind import kind_sentence
 from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.model.file import load_model
 from fdvv.model.fit import CurveFit

@@ -12,10 +12,9 @@ from pathlib import Path
 
 import msgspec
 
+from fdvv.button.kind import ButtonType
+from fdvv.button.like import Sketch
 from fdvv.io.files import write_atomic
-
-SKETCH_POINTS = 64
-"""Per stroke, evenly from contact to the end of the travel."""
 
 
 class Origin(StrEnum):
@@ -24,23 +23,6 @@ class Origin(StrEnum):
     BUILTIN = "builtin"
     OWN = "own"
     MEASURED = "measured"
-
-
-class ButtonType(StrEnum):
-    """What the force of a button does; a question mark belongs to what force alone can only suggest."""
-
-    LINEAR = "linear"
-    TACTILE = "tactile"
-    CLICKY = "clicky?"
-    DOME = "dome?"
-    UNCLEAR = "unclear"
-
-
-class Sketch(msgspec.Struct, frozen=True):
-    """The slowest press and its release in tenths of a centinewton, 64 points each; empty if not there."""
-
-    press_dcN: tuple[int, ...] = ()
-    release_dcN: tuple[int, ...] = ()
 
 
 class ButtonRow(msgspec.Struct, frozen=True, kw_only=True):

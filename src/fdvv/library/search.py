@@ -9,9 +9,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from fdvv.button.kind import ButtonType
+from fdvv.button.like import LikeTable, distances
 from fdvv.errors import InputError
-from fdvv.library.like import LikeTable, distances
-from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, Origin
+from fdvv.library.row import NUMBERS, ButtonRow, Origin
 from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.units import FloatArray
 

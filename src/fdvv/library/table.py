@@ -12,7 +12,9 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from fdvv.library.row import ButtonRow, ButtonType, CACHE_version, Origin, Sketch
+from fdvv.button.kind import ButtonType
+from fdvv.button.like import Sketch
+from fdvv.library.row import ButtonRow, CACHE_version, Origin
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
 

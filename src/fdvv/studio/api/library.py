@@ -10,8 +10,9 @@ from typing import Annotated
 import numpy as np
 from msgspec import Meta, Struct, field, structs
 
+from fdvv.button.kind import ButtonType
 from fdvv.library.index import CatalogIndex, IndexStatus, RefusedFile, builtin_rows
-from fdvv.library.row import NUMBERS, ButtonRow, ButtonType, Origin
+from fdvv.library.row import NUMBERS, ButtonRow, Origin
 from fdvv.library.search import CatalogSearch, SearchQuery, SearchResult
 from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.studio.contract import Empty, Message, Watchers, call, message_of, watch_channel

@@ -7,10 +7,11 @@ from typing import Annotated
 import numpy as np
 from msgspec import Meta
 
+from fdvv.button.kind import ButtonType
+from fdvv.button.page import MOST_BUTTONS, buttons_page
 from fdvv.errors import FdvvError
 from fdvv.library.figures import row_of_model
-from fdvv.library.page import MOST_BUTTONS, buttons_page
-from fdvv.library.row import NUMBERS, ButtonType, Origin
+from fdvv.library.row import NUMBERS, Origin
 from fdvv.library.search import SearchQuery
 from fdvv.model.model import FDVVModel
 from fdvv.studio.api.library import Library, Number
