@@ -1,4 +1,4 @@
-"""Optional parts of the laboratory: packages of their own, found by their entry points."""
+"""Parts of the laboratory that come as packages of their own, found by their entry points."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 Kind = Literal[
     "commands",
+    "command_help",
     "device_commands",
     "engines",
     "pair_engines",
@@ -20,10 +21,13 @@ Kind = Literal[
     "rigs",
     "presenters",
     "exchange_formats",
+    "kinds",
+    "pages",
 ]
-"""What an extra can add: a click command of ``fdvv`` or of ``fdvv device``, an engine of ``fdvv optimize``, a
-board in lockstep or a device, the physics of a rig of one's own, what presents the rounds of ``fdvv
-optimize`` to a person, a format of ``fdvv export``."""
+"""What a package can add: a click command of ``fdvv`` or of ``fdvv device``, the first lines of its commands'
+help by their names, an engine of ``fdvv optimize``, a board in lockstep or a device, the physics of a rig of
+one's own, what presents the rounds of ``fdvv optimize`` to a person, a format of ``fdvv export``, a kind of
+journal that ``fdvv check`` knows, a module with calls and channels of the studio."""
 
 KNOWN = MappingProxyType(
     {

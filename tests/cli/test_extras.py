@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -18,11 +19,19 @@ from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.registry import engine_names, engine_of, pair_engine_of
 from tests.cli.conftest import Run
 
+OWN = ("fdvv",)
+"""Packages that are no extras."""
+
 
 @pytest.fixture
 def bare(monkeypatch: pytest.MonkeyPatch) -> None:
     """No extra is installed."""
-    monkeypatch.setattr(extras, "installed", lambda _kind: MappingProxyType({}))
+    every = extras.installed
+
+    def own(kind: extras.Kind) -> MappingProxyType[str, Any]:
+        return MappingProxyType({n: e for n, e in every(kind).items() if e.module.partition(".")[0] in OWN})
+
+    monkeypatch.setattr(extras, "installed", own)
 
 
 @pytest.mark.usefixtures("bare")
@@ -90,21 +99,26 @@ def test_a_format_of_another_package_is_listed_and_written(
 
     own = ButtonFormat("own", ".own", "the name", "button", write=written)
     entry = SimpleNamespace(load=lambda: own)
-    monkeypatch.setattr(extras, "installed", lambda _kind: MappingProxyType({"own": entry}))
+    every = extras.installed
+
+    def with_own(kind: extras.Kind) -> MappingProxyType[str, Any]:
+        return MappingProxyType({"own": entry}) if kind == "exchange_formats" else every(kind)
+
+    monkeypatch.setattr(extras, "installed", with_own)
     assert "own" in fdvv("export", "--list").out
     assert fdvv("export", "mx-red", "-o", "a.own").status == 0
     assert (tmp_path / "a.own").read_bytes() == b"mx-red"
 
 
-def test_help_imports_no_extra() -> None:
+def test_help_imports_no_command_of_another_package() -> None:
     code = (
         "import sys\nfrom fdvv.cli.main import cli\n"
         "cli(['--help'], standalone_mode=False)\n"
-        "print([m for m in sys.modules if m.startswith('fdvv_')])"
+        "print(*sorted(m for m in sys.modules if m.startswith('fdvv_')))"
     )
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "mechanism" in ran.stdout
-    assert ran.stdout.splitlines()[-1] == "[]"
+    assert ran.stdout.splitlines()[-1].split() == ["fdvv_rig", "fdvv_switch"]
 
 
 def test_an_engine_is_loaded_without_torch() -> None:

@@ -45,7 +45,7 @@ def call(name: str) -> Call:
 @pytest.fixture
 def _own_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, *calls in (("first", call("a.a")), ("second", call("b.b")), ("third", call("a.a"))):
-        module = types.ModuleType(f"fdvv.studio.api.{name}")
+        module = types.ModuleType(name)
         module.__dict__.update({one.name: one for one in calls})
         monkeypatch.setitem(sys.modules, module.__name__, module)
 

@@ -2,31 +2,27 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 
+from fdvv import extras
 from fdvv.compensation.identification.rig_file import load_rig
 from fdvv.errors import BuildError, FdvvError, InputError
 from fdvv.formats.force.read import read_force_file
 from fdvv.io.files import open_plain
 from fdvv.model.file import load_model
 from fdvv.model.jnd_file import load_jnds
-from fdvv.optimize.run.ledger import KIND as LEDGER
-from fdvv.optimize.run.ledger import read_ledger
 from fdvv.program.check import check_program
 from fdvv.program.describe import describe
 from fdvv.program.file import load_program
-from fdvv.recording.check import FileCheck, FileProblem, check_recording, facts_of, unusable
+from fdvv.recording.check import CheckedJournal, FileCheck, FileProblem, check_recording, facts_of, unusable
 from fdvv.recording.read import read_log
 from fdvv.rendering.actuation_file import load_actuation
 from fdvv.rendering.press_check import A_SESSION, check_device_recording, check_session
 from fdvv.rendering.session import MANIFEST
 from fdvv.rendering.session_log import PRESSES
-from fdvv.study.files.chained_log import REMEDY as CHAIN_REMEDY
-from fdvv.study.files.chained_log import read_chained
 
 HEAD_bytes = 400
 IMAGE = b"FDVP"
@@ -37,8 +33,8 @@ def check_file(path: Path | str, rate_Hz: float | None = None) -> FileCheck:
     """Check what a file is by its content, and whether it is whole.
 
     Models, programs and their images, rigs, JNDs, actuations, recordings, folders of sessions and what they
-    hold, recordings of devices, trials of optimisations, logs of studies. Anything else may be a log that
-    read_log reads, or a file of force curves. Never raises for what stands in a file. Raises InputError where
+    hold, recordings of devices, and the journals of other packages. Anything else may be a log that read_log
+    reads, or a file of force curves. Never raises for what stands in a file. Raises InputError where
     there is none, or what it holds is not known. rate_Hz : of a log of bare numbers.
     """
     path = Path(path)
@@ -132,24 +128,6 @@ def _actuation(path: Path, kind: str) -> FileCheck:
     return FileCheck(path, kind, facts)
 
 
-def _chained(path: Path, kind: str) -> FileCheck:
-    found = read_chained(path)
-    about = {name: value for name, value in found.about.items() if isinstance(value, str | int)}
-    facts = {"records": len(found.records), "size_bytes": path.stat().st_size, **about}
-    problems = tuple(FileProblem("log", one, CHAIN_REMEDY) for one in found.problems)
-    notes = ("marks need the study's key; fdvv study verify checks the whole folder",)
-    return FileCheck(path, kind, facts, problems, notes)
-
-
-def _trials(path: Path, kind: str) -> FileCheck:
-    found = read_ledger(path)
-    states = Counter(str(trial.state) for trial in found.trials)
-    facts = {"trials": len(found.trials), **states, "comparisons": len(found.comparisons)}
-    if found.lines:
-        facts["lines"] = len(found.lines)
-    return FileCheck(path, kind, {**facts, "size_bytes": path.stat().st_size})
-
-
 def _curves(path: Path) -> FileCheck:
     """Check a file of force curves. InputError on one that is none."""
     found = read_force_file(path)
@@ -168,11 +146,11 @@ def _curves(path: Path) -> FileCheck:
 def _journal(path: Path, _kind: str) -> FileCheck:
     if path.name == PRESSES and (path.parent / MANIFEST).is_file():
         return check_session(path.parent)
-    head = _head(path)
-    if b'"record": {"begin": ' in head[:80]:
-        return _guarded(path, "a chained log of a study", _chained)
-    if any(f'"record": {{"{name}": '.encode() in head[:80] for name in LEDGER.types):
-        return _guarded(path, "the trials of an optimisation", _trials)
+    head = _head(path)[:80]
+    for name in extras.installed("kinds"):
+        journal: CheckedJournal = extras.load("kinds", name)
+        if any(f'"record": {{"{key}": '.encode() in head for key in journal.first):
+            return _guarded(path, journal.kind, journal.check)
     return check_recording(path)
 
 

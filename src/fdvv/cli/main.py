@@ -18,40 +18,42 @@ from fdvv.errors import BuildError, DeviceError, FdvvError, InputError, WorkerEr
 from fdvv.force_text import UNITS, shown_in
 
 COMMANDS = {
-    "assign": ("models", "Assign a curve, or a segment of one, to press or release of a model."),
-    "capture": ("bench.capture", "Record a button: a guided session of presses at several paces."),
-    "check": ("check", "Check files: what each is, whether it is whole, and what it holds."),
-    "compare": ("show", "Compare buttons: landmarks side by side and force differences."),
-    "compensate": ("rendering.compensate", "Learn the actuation that makes a rig feel like a model."),
-    "demo": ("demo", "Run the whole chain on the simulated rig and write a report."),
+    "assign": ("fdvv.cli.models", "Assign a curve, or a segment of one, to press or release of a model."),
+    "capture": ("fdvv.cli.bench.capture", "Record a button: a guided session of presses at several paces."),
+    "check": ("fdvv.cli.check", "Check files: what each is, whether it is whole, and what it holds."),
+    "compare": ("fdvv.cli.show", "Compare buttons: landmarks side by side and force differences."),
+    "compensate": (
+        "fdvv.cli.rendering.compensate",
+        "Learn the actuation that makes a rig feel like a model.",
+    ),
+    "demo": ("fdvv.cli.demo", "Run the whole chain on the simulated rig and write a report."),
     "device": (
-        "device.device",
+        "fdvv.cli.device.device",
         "Work with a device: look at it, press it, set it, check it, or make one of your own.",
     ),
-    "export": ("exchange", "Write a button, its vibration or a recording for another program."),
+    "export": ("fdvv.cli.exchange", "Write a button, its vibration or a recording for another program."),
     "feasible": (
-        "rendering.feasible",
+        "fdvv.cli.rendering.feasible",
         "Check whether a rig can render a button, and why not, before any upload.",
     ),
-    "fit": ("fit", "Fit measured force curves: one file, or every file of a folder."),
-    "import": ("exchange", "Read a file of another program into a model."),
-    "join": ("bench.join", "Join logs of instruments that ran at once into a recording."),
-    "library": ("library", "List the built-in buttons; build and search libraries of measured ones."),
-    "merge": ("models", "Merge force curves at several velocities into one FDVV model."),
-    "optimize": ("optimize.optimize", "Find the button that makes a person perform best."),
-    "press": ("press", "Press a real button; simulated."),
-    "probe": ("rendering.compensate", "Measure on fresh presses how well a rig renders a model."),
-    "process": ("bench.process", "Turn recorded presses into a model, with its spread over presses."),
-    "program": ("program", "Work with programs: list, show, make, check, compile, render."),
-    "serve": ("serve", "Let another program optimise, and drive a rig, over a WebSocket of this machine."),
-    "show": ("show", "Show landmarks and curves of a button."),
-    "studio": ("studio", "See, edit, press and tune buttons in the browser."),
-    "study": ("study.study", "Compare buttons blind, with people, and analyse what they said."),
-    "sweep": ("sweep", "Try every combination of rigs, fingers, buttons and methods; simulated."),
-    "tune": ("rendering.tune", "Tune the vibration of a button's press with a person."),
-    "vibration": ("vibration", "Show a button's vibrations, or the modes in the sound of a key press."),
+    "fit": ("fdvv.cli.fit", "Fit measured force curves: one file, or every file of a folder."),
+    "import": ("fdvv.cli.exchange", "Read a file of another program into a model."),
+    "join": ("fdvv.cli.bench.join", "Join logs of instruments that ran at once into a recording."),
+    "merge": ("fdvv.cli.models", "Merge force curves at several velocities into one FDVV model."),
+    "probe": ("fdvv.cli.rendering.compensate", "Measure on fresh presses how well a rig renders a model."),
+    "process": (
+        "fdvv.cli.bench.process",
+        "Turn recorded presses into a model, with its spread over presses.",
+    ),
+    "program": ("fdvv.cli.program", "Work with programs: list, show, make, check, compile, render."),
+    "show": ("fdvv.cli.show", "Show landmarks and curves of a button."),
+    "tune": ("fdvv.cli.rendering.tune", "Tune the vibration of a button's press with a person."),
+    "vibration": (
+        "fdvv.cli.vibration",
+        "Show a button's vibrations, or the modes in the sound of a key press.",
+    ),
 }
-"""By name: the module below fdvv.cli that defines a command, and the first line of its help."""
+"""By name: the module that defines a command, and the first line of its help."""
 
 GROUPS = {
     "Every day": (
@@ -72,36 +74,30 @@ GROUPS = {
     "Other programs": ("serve",),
     "Many at once": ("sweep",),
 }
-"""The commands as help lists them; those of extras come last."""
-
-EXTRA_HELP = {
-    "hardware": "Build a rig: what to print and to buy, how to wire it, and which part is wrong.",
-    "mechanism": "Design a real switch that follows a model's curves.",
-}
-"""Short help of the extras' commands, which are not imported to list them."""
+"""The commands as help lists them, where they are installed; those of other packages come last."""
 
 
 class MainGroup(click.Group):
     """A group that knows the names and short helps of its commands without importing them."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return sorted(_short_helps())
+        return sorted(command_helps())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import a command; BuildError if it comes with an extra that is not installed."""
+        """Import a command; BuildError if it comes with a package that is not installed."""
         if cmd_name in COMMANDS:
             return ui.imported(COMMANDS[cmd_name][0], cmd_name)
-        # lists every installed distribution: not worth its time for a command of ours
+        # lists every installed distribution: not worth its time for a command of the core
         return ui.extra_command("commands", cmd_name)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        helps = _short_helps()
+        helps = command_helps()
         listed = {name for names in GROUPS.values() for name in names}
         width = max(map(len, helps))
         for title, names in {**GROUPS, "Extras": tuple(sorted(helps.keys() - listed))}.items():
-            if names:
+            if rows := [(name.ljust(width), helps[name]) for name in names if name in helps]:
                 with formatter.section(title):
-                    formatter.write_dl([(name.ljust(width), helps[name]) for name in names])
+                    formatter.write_dl(rows)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; click would turn Ctrl-C into an empty line of its own."""
@@ -111,11 +107,12 @@ class MainGroup(click.Group):
             raise Interrupted(*stop.args) from None
 
 
-def _short_helps() -> dict[str, str]:
-    helps = {name: text for name, (_, text) in COMMANDS.items()}
-    for name, entry in extras.installed("commands").items():
-        helps[name] = EXTRA_HELP.get(name) or f"from {entry.dist.name if entry.dist else entry.module}"
-    return helps
+def command_helps() -> dict[str, str]:
+    """Return the first line of the help of every command that is installed; imports none of them."""
+    lines = {name: line for name, (_, line) in COMMANDS.items()}
+    for package in extras.installed("command_help"):
+        lines |= extras.load("command_help", package)
+    return lines
 
 
 class Interrupted(Exception):  # noqa: N818 - nothing failed

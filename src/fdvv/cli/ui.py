@@ -48,10 +48,10 @@ def options(*several: Callable[[Command], Command]) -> Callable[[Command], Comma
 
 
 def imported(module: str, name: str) -> click.Command:
-    """Import a command: a function of the command's name, in a module below fdvv.cli."""
+    """Import a command: a function of the command's name, in a module."""
     # a function cannot be called import
     function = f"{name}_" if keyword.iskeyword(name) else name
-    found = getattr(importlib.import_module(f"fdvv.cli.{module}"), function)
+    found = getattr(importlib.import_module(module), function)
     assert isinstance(found, click.Command)
     return found
 

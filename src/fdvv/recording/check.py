@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -62,6 +62,20 @@ class FileCheck:
             "problems": [vars(problem) for problem in self.problems],
             "notes": list(self.notes),
         }
+
+
+class CheckedJournal(NamedTuple):
+    """A kind of journal (fdvv.eventlog) that another package writes and checks.
+
+    Attributes
+    ----------
+    first : keys of its first record. kind : what it holds, with its article.
+    check : called with path and kind; may raise what stands in a file as InputError.
+    """
+
+    first: tuple[str, ...]
+    kind: str
+    check: Callable[[Path, str], FileCheck]
 
 
 def unusable(path: Path, kind: str, error: InputError) -> FileCheck:

@@ -12,15 +12,27 @@ from typing import Any
 
 import msgspec
 
+from fdvv import extras
 from fdvv.studio.contract import Call, ChannelKind
 
 PARTS = (
-    *("about", "library", "library_buttons", "documents", "files", "editor", "press", "programs"),
-    *("jobs", "device"),
-    *("optimize", "optimize_setup", "optimize_trials", "optimize_group", "play"),
-    *("studies", "study_plans", "study_people", "study_seal", "study", "timing"),
+    "fdvv.studio.api.about",
+    "fdvv.studio.api.library",
+    "fdvv.studio.api.library_buttons",
+    "fdvv.studio.api.documents",
+    "fdvv.studio.api.files",
+    "fdvv.studio.api.editor",
+    "fdvv.studio.api.press",
+    "fdvv.studio.api.programs",
+    "fdvv.studio.api.jobs",
+    "fdvv.studio.api.device",
 )
-"""In the order in which a person may want them: the first page is the library's."""
+"""Modules, in the order in which a person may want them: the first page is the library's."""
+
+
+def part_modules() -> tuple[str, ...]:
+    """Return the studio's own parts, then those that other packages add."""
+    return (*PARTS, *(entry.value for entry in extras.installed("pages").values()))
 
 
 @dataclass(frozen=True)
@@ -37,8 +49,8 @@ class PartLoader:
     Names are unique, else this installation is wrong (ValueError, of all that waits).
     """
 
-    def __init__(self, names: tuple[str, ...] = PARTS) -> None:
-        self._names = names
+    def __init__(self, modules: tuple[str, ...] | None = None) -> None:
+        self._modules = modules
         self._parts = Parts({}, {})
         self._changed = Condition()
         self._ended = False
@@ -48,8 +60,8 @@ class PartLoader:
         """Import all parts, in one thread: see prepare_records."""
         prepared: set[type[msgspec.Struct]] = set()
         try:
-            for name in self._names:
-                module = importlib.import_module(f"fdvv.studio.api.{name}")
+            for name in part_modules() if self._modules is None else self._modules:
+                module = importlib.import_module(name)
                 prepare_records(prepared)
                 getattr(module, "prepare", lambda: None)()
                 self._take(module)

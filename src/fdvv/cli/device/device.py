@@ -78,9 +78,9 @@ def writer(stream: IO[str], output: Path) -> Callable[[TickColumns], None]:
 
 
 MODULES = {
-    **dict.fromkeys(("exciter", "press", "upload"), "device.press"),
-    **dict.fromkeys(("new", "serve", "conform"), "device.own"),
-    "settings": "device.settings",
+    **dict.fromkeys(("exciter", "press", "upload"), "fdvv.cli.device.press"),
+    **dict.fromkeys(("new", "serve", "conform"), "fdvv.cli.device.own"),
+    "settings": "fdvv.cli.device.settings",
 }
 
 

@@ -38,9 +38,9 @@ folder_argument = click.argument("folder", type=ui.FOLDER)
 
 
 MODULES = {
-    "experiment": "optimize.experiment",
-    "group": "optimize.group",
-    "population": "optimize.population",
+    "experiment": "fdvv.cli.optimize.experiment",
+    "group": "fdvv.cli.optimize.group",
+    "population": "fdvv.cli.optimize.population",
 }
 
 

@@ -13,7 +13,7 @@ MODULES = {
     "analyse": ("analyse", "export", "jnds"),
 }
 """Commands by the module below fdvv.cli.study that holds them."""
-COMMANDS = {name: f"study.{module}" for module, names in MODULES.items() for name in names}
+COMMANDS = {name: f"fdvv.cli.study.{module}" for module, names in MODULES.items() for name in names}
 
 
 class StudyGroup(ui.LazyGroup):
