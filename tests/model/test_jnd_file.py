@@ -16,7 +16,7 @@ from fdvv.errors import InputError
 from fdvv.model.jnd_file import FILE_NAME, jnds_of, load_jnds, project_jnds, save_jnds
 from fdvv.model.noticeable import DIMENSIONS, LITERATURE, Dimension
 from tests.support.jnds import as_literature, measured, record_of
-from tests.support.studies import Killed, kill_at
+from tests.support.kill import Killed, kill_at
 
 
 def test_people_who_notice_as_the_literature_says_change_no_figure() -> None:

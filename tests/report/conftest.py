@@ -1,3 +1,4 @@
+import functools
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -10,12 +11,10 @@ from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.model.file import load_builtin
 from fdvv.model.fit import CurveFit, fit_curve
 from fdvv.model.model import FDVVModel, Provenance
-from fdvv.optimize.run.report import DesignPanel, plot_designs
 from fdvv.rendering.figures import plot_convergence, plot_rendering
 from fdvv.report.model_figures import plot_comparison, plot_model, plot_surface, plot_vibration
 from fdvv.report.records import ErrorHistory, RenderedBand, RenderedCurve
-from fdvv.report.score_figures import ScoreBars, TrainingScores, plot_score_bars, plot_training
-from fdvv.report.svg import figure_of, figure_svg
+from tests.support.gallery import Gallery
 
 Draw = Callable[[FDVVModel, MeasuredCurve, list[CurveFit], bool], Any]
 _SCORES = {"uniform": {5: 40.0, 6: 20.0, 7: 30.0}, "adaptive": {5: 30.0, 6: 12.0, 7: 11.0}}
@@ -43,22 +42,6 @@ def _histories(simulated: bool = False) -> list[ErrorHistory]:
     ]
 
 
-def _study_scores(shape: tuple[int, int]) -> Any:
-    return np.random.default_rng(5).normal(90.0, 8.0, shape)
-
-
-def _bars() -> list[ScoreBars]:
-    names, marks = ("optimal", "clear", "random"), ("", "*", "***")
-    return [
-        ScoreBars(level, names, _study_scores((10, 3)), np.array([6.0, 7, 8]), marks)
-        for level in ("easy", "hard")
-    ]
-
-
-def _trainings() -> list[TrainingScores]:
-    return [TrainingScores(level, _study_scores((4, 9))) for level in ("easy", "hard")]
-
-
 FIGURES: dict[str, Draw] = {
     "model": lambda model, measured, fits, said: plot_model(model, simulated=said),
     "surface": lambda model, measured, fits, said: plot_surface(model, "release", simulated=said),
@@ -69,47 +52,13 @@ FIGURES: dict[str, Draw] = {
     "fit": lambda model, measured, fits, said: plot_fit(measured, fits, simulated=said),
     "scan": lambda model, measured, fits, said: plot_scan(_SCORES, simulated=said),
     "rendering": lambda model, measured, fits, said: plot_rendering(_rendered(model)[::2], simulated=said),
-    "score bars": lambda model, measured, fits, said: plot_score_bars(_bars(), "score (ms)", simulated=said),
-    "training": lambda model, measured, fits, said: plot_training(_trainings(), "score (ms)", simulated=said),
-    "designs": lambda model, measured, fits, said: plot_designs(
-        [DesignPanel(f"person {i}", model) for i in range(3)], simulated=said
-    ),
     "convergence": lambda model, measured, fits, said: plot_convergence(_histories(), simulated=said),
 }
 
 
-class Gallery:
-    """One of every figure, for what holds for all of them; drawn once where that is enough."""
-
-    def __init__(self, model: FDVVModel, measured: MeasuredCurve, fits: list[CurveFit]) -> None:
-        self.parts = (model, measured, fits)
-        self.figures: dict[str, Any] = {}
-        self.svgs: dict[str, str] = {}
-
-    def draw(self, name: str, said: bool = False) -> Any:
-        return figure_of(FIGURES[name](*self.parts, said))
-
-    def figure(self, name: str) -> Any:
-        if name not in self.figures:
-            self.figures[name] = self.draw(name)
-        return self.figures[name]
-
-    def svg(self, name: str) -> str:
-        if name not in self.svgs:
-            self.svgs[name] = figure_svg(self.figure(name))
-        return self.svgs[name]
-
-    @staticmethod
-    def texts(drawn: Any) -> str:
-        """Join everything that a figure writes."""
-        from matplotlib.text import Text
-
-        return "\n".join(text.get_text() for text in figure_of(drawn).findobj(Text))
-
-
 @pytest.fixture(scope="session")
 def gallery(model: FDVVModel, measured: MeasuredCurve, fits: list[CurveFit]) -> Gallery:
-    return Gallery(model, measured, fits)
+    return Gallery({name: functools.partial(draw, model, measured, fits) for name, draw in FIGURES.items()})
 
 
 @pytest.fixture(params=FIGURES)

@@ -5,12 +5,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 from fdvv.errors import ModelError
-from fdvv.model.model import FDVVModel
+from fdvv.model.file import load_builtin
 from fdvv.optimize.run.report import DesignPanel, plot_designs
 from fdvv.report.score_figures import ScoreBars, TrainingScores, plot_score_bars, plot_training
 from fdvv.report.svg import figure_of
 from fdvv.units import FloatArray
+from tests.support.gallery import FigureRules, Gallery
 
+MODEL = load_builtin("mx-clear")
 NAMES = ("optimal", "clear", "random")
 
 
@@ -60,9 +62,9 @@ def test_the_best_so_far_never_rises_and_passes_over_a_trial_without_a_score() -
     assert_allclose(best.get_ydata(), [8.5, 7.5, 6.5, 6.5, 5.5])
 
 
-def test_designs_show_their_points_and_marks_in_a_grid(model: FDVVModel) -> None:
+def test_designs_show_their_points_and_marks_in_a_grid() -> None:
     points = np.array([[0.5, 40.0], [2.0, 60.0], [3.5, 50.0]])
-    axes = plot_designs([DesignPanel(f"person {i}", model, points) for i in range(3)])
+    axes = plot_designs([DesignPanel(f"person {i}", MODEL, points) for i in range(3)])
     assert [[ax.get_visible() for ax in row] for row in axes] == [[True, True], [True, False]]
     drawn = next(line for line in axes[0, 0].get_lines() if line.get_marker() == "o")
     assert_allclose(np.column_stack([drawn.get_xdata(), drawn.get_ydata()]), points)
@@ -94,3 +96,24 @@ def test_a_score_beyond_the_scale_is_marked_at_its_edge() -> None:
     (mark,) = [line for line in ax.get_lines() if line.get_marker() == "^"]
     assert_allclose([mark.get_xdata(), mark.get_ydata()], [[2], [ax.get_ylim()[1]]])
     assert ax.get_ylim()[1] < 900.0
+
+
+class TestEveryFigureOfPeople(FigureRules):
+    """The figures of scores and designs."""
+
+    @pytest.fixture(scope="class")
+    def gallery(self) -> Gallery:
+        panels = [DesignPanel(f"person {i}", MODEL) for i in range(3)]
+        levels = [bars(level, scores(), ("", "*", "***")) for level in ("easy", "hard")]
+        trainings = [TrainingScores(level, scores((4, 9))) for level in ("easy", "hard")]
+        return Gallery(
+            {
+                "score bars": lambda said: plot_score_bars(levels, "score (ms)", simulated=said),
+                "training": lambda said: plot_training(trainings, "score (ms)", simulated=said),
+                "designs": lambda said: plot_designs(panels, simulated=said),
+            }
+        )
+
+    @pytest.fixture(params=["score bars", "training", "designs"])
+    def name(self, request: pytest.FixtureRequest) -> str:
+        return str(request.param)

@@ -4,7 +4,6 @@ import sys
 from typing import Any
 
 import matplotlib
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
@@ -13,28 +12,11 @@ from fdvv.model.model import FDVVModel
 from fdvv.report import style
 from fdvv.report.model_figures import plot_comparison
 from fdvv.report.svg import figure_svg
-
-UNITS = ("(mm)", "(cN)", "(mm/s)", "(s)", "(ms)", "(m/s²)", "(count)", "(no unit, lower is better)")
-
-
-def test_every_axis_of_every_figure_names_its_unit(gallery: Any, name: str) -> None:
-    labels = []
-    for ax in gallery.figure(name).axes:
-        labels += [ax.get_xlabel(), ax.get_ylabel(), getattr(ax, "get_zlabel", str)()]
-    written = [label for label in labels if label]
-    assert len(written) >= 2
-    assert all(label.endswith(UNITS) for label in written), written
+from tests.support.gallery import FigureRules
 
 
-def test_a_figure_of_simulated_data_says_so_and_one_of_measured_data_does_not(
-    gallery: Any, name: str
-) -> None:
-    assert "simulated" in gallery.texts(gallery.draw(name, said=True)).splitlines()
-    assert "simulated" not in gallery.texts(gallery.figure(name))
-
-
-def test_the_same_data_gives_the_same_bytes(gallery: Any, name: str) -> None:
-    assert figure_svg(gallery.draw(name)) == gallery.svg(name)
+class TestEveryFigure(FigureRules):
+    """The figures of buttons and renderings."""
 
 
 def test_another_process_with_other_hashes_gives_the_same_bytes(gallery: Any) -> None:
@@ -53,27 +35,9 @@ def test_another_process_with_other_hashes_gives_the_same_bytes(gallery: Any) ->
     assert other.stdout.decode() == gallery.svg("vibration")
 
 
-def test_drawing_leaves_no_open_figure_and_no_changed_setting(gallery: Any, name: str) -> None:
-    before = dict(matplotlib.rcParams)
-    gallery.draw(name)
-    gallery.svg(name)
-    assert plt.get_fignums() == []
-    assert dict(matplotlib.rcParams) == before
-
-
 def test_a_users_own_settings_do_not_reach_the_figures(gallery: Any) -> None:
     with matplotlib.rc_context({"font.size": 30.0, "axes.grid": False, "lines.linestyle": ":"}):
         assert figure_svg(gallery.draw("vibration")) == gallery.svg("vibration")
-
-
-def test_nothing_is_cut_off_at_the_edges(gallery: Any, name: str) -> None:
-    gallery.svg(name)
-    figure = gallery.figure(name)
-    box, page = figure.get_tightbbox(), figure.bbox_inches
-    assert box.x0 >= page.x0 - 0.03
-    assert box.y0 >= page.y0 - 0.03
-    assert box.x1 <= page.x1 + 0.03
-    assert box.y1 <= page.y1 + 0.03
 
 
 def test_faster_is_darker_in_steps_an_eye_can_tell() -> None:

@@ -17,7 +17,7 @@ from fdvv.errors import InputError
 from fdvv.eventlog import line_of
 from fdvv.study.files.chained_log import ChainedLog, next_chain, read_chained
 from fdvv.study.files.log_head import LogHead, head_path
-from tests.support.studies import Killed, kill_at
+from tests.support.kill import Killed, kill_at
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 

@@ -10,17 +10,8 @@ import pytest
 
 from fdvv.errors import InputError
 from fdvv.study.admin.study import Study
-from tests.support.studies import (
-    CHEAP,
-    PASSPHRASE,
-    Killed,
-    all_files,
-    answered,
-    chosen,
-    in_haste,
-    kill_at,
-    small_study,
-)
+from tests.support.kill import Killed, kill_at
+from tests.support.studies import CHEAP, PASSPHRASE, all_files, answered, chosen, in_haste, small_study
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 

@@ -10,7 +10,8 @@ import pytest
 from fdvv.errors import InputError
 from fdvv.study.admin.study import Study
 from fdvv.study.files.people import EVERYBODY
-from tests.support.studies import CHEAP, Killed, in_haste, kill_at, small_study
+from tests.support.kill import Killed, kill_at
+from tests.support.studies import CHEAP, in_haste, small_study
 
 
 @pytest.fixture

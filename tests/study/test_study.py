@@ -19,16 +19,8 @@ from fdvv.study.files.people import Schedule, lock_schedule, room_bytes
 from fdvv.study.files.run_key import RunKey
 from fdvv.study.files.seal import KeyHolder, new_key_holder
 from fdvv.study.stimulus.renderer import stimulus_model
-from tests.support.studies import (
-    CHEAP,
-    PASSPHRASE,
-    Killed,
-    all_files,
-    in_haste,
-    kill_at,
-    plan_file,
-    small_study,
-)
+from tests.support.kill import Killed, kill_at
+from tests.support.studies import CHEAP, PASSPHRASE, all_files, in_haste, plan_file, small_study
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 

@@ -15,15 +15,14 @@ from fdvv.study.analysis.unseal import exclude_people, trial_reason
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.plan import Exclusion
 from fdvv.study.plan.trial import EQUAL, Rendered, StudyTrial, TrialAnswer
+from tests.support.kill import Killed, kill_at
 from tests.support.studies import (
     CHEAP,
     PASSPHRASE,
-    Killed,
     all_files,
     answered,
     chosen,
     in_haste,
-    kill_at,
     rendered,
     small_study,
 )

@@ -139,25 +139,6 @@ def answered(
         study.finished(person)
 
 
-class Killed(BaseException):
-    """Raised in the place of a kill."""
-
-
-@contextmanager
-def kill_at(step: int, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Stop whatever runs within when it forces something to the disk for that time, counted from 0."""
-    steps, real = iter(range(10_000)), os.fsync
-
-    def fsync(file: int) -> None:
-        if next(steps) == step:
-            raise Killed
-        real(file)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(os, "fsync", fsync)
-        yield
-
-
 @contextmanager
 def in_haste() -> Iterator[None]:
     """Have nobody wait until something is on the disk: for studies that several tests look at."""
