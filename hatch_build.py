@@ -25,6 +25,7 @@ CORE = ROOT / "firmware" / "core"
 FORCE_LOOP = ROOT / "firmware" / "force_loop"
 HOST = ROOT / "firmware" / "boards" / "host"
 PROTOCOL = ROOT / "tools" / "make_protocol.py"
+TABLES = ROOT / "src" / "fdvv" / "protocol" / "tables.py"
 # -ffp-contract=off and no -march=native: the same bits on every x86-64 machine.
 FLAGS = [
     "-std=c99",
@@ -161,7 +162,7 @@ def write_protocol_tables() -> Path:
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module  # dataclasses look their module up
     spec.loader.exec_module(module)
-    path: Path = module.write_tables()
+    path: Path = module.write_tables(TABLES)
     return path
 
 

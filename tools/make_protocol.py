@@ -378,10 +378,10 @@ def _py_field(field: Field, defaults: dict[str, int]) -> str:
     return f"    {field.name}: {kind}" + (" = 0" if field.name.startswith("spare") else "")
 
 
-def write_tables() -> Path:
-    """Write the Python tables that the build makes; return their path."""
-    _write(TABLES, tables(extended(_load(SOURCE), _load(LOOP_SOURCE))))
-    return TABLES
+def write_tables(path: Path = TABLES) -> Path:
+    """Write the Python tables that the build makes to a path; return it."""
+    _write(path, tables(extended(_load(SOURCE), _load(LOOP_SOURCE))))
+    return path
 
 
 def write_committed() -> list[Path]:
