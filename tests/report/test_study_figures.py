@@ -98,22 +98,24 @@ def test_a_score_beyond_the_scale_is_marked_at_its_edge() -> None:
     assert ax.get_ylim()[1] < 900.0
 
 
+@pytest.fixture(scope="module")
+def gallery() -> Gallery:
+    panels = [DesignPanel(f"person {i}", MODEL) for i in range(3)]
+    levels = [bars(level, scores(), ("", "*", "***")) for level in ("easy", "hard")]
+    trainings = [TrainingScores(level, scores((4, 9))) for level in ("easy", "hard")]
+    return Gallery(
+        {
+            "score bars": lambda said: plot_score_bars(levels, "score (ms)", simulated=said),
+            "training": lambda said: plot_training(trainings, "score (ms)", simulated=said),
+            "designs": lambda said: plot_designs(panels, simulated=said),
+        }
+    )
+
+
+@pytest.fixture(params=["score bars", "training", "designs"])
+def name(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
 class TestEveryFigureOfPeople(FigureRules):
     """The figures of scores and designs."""
-
-    @pytest.fixture(scope="class")
-    def gallery(self) -> Gallery:
-        panels = [DesignPanel(f"person {i}", MODEL) for i in range(3)]
-        levels = [bars(level, scores(), ("", "*", "***")) for level in ("easy", "hard")]
-        trainings = [TrainingScores(level, scores((4, 9))) for level in ("easy", "hard")]
-        return Gallery(
-            {
-                "score bars": lambda said: plot_score_bars(levels, "score (ms)", simulated=said),
-                "training": lambda said: plot_training(trainings, "score (ms)", simulated=said),
-                "designs": lambda said: plot_designs(panels, simulated=said),
-            }
-        )
-
-    @pytest.fixture(params=["score bars", "training", "designs"])
-    def name(self, request: pytest.FixtureRequest) -> str:
-        return str(request.param)
