@@ -12,8 +12,7 @@ from fdvv.report.svg import figure_of
 from fdvv.stats.effect_size import Estimate
 from fdvv.stats.share import share, sign_test
 from fdvv.study.analysis.answer_figures import ForestRow, plot_choices, plot_forest, plot_rating_bars
-from fdvv.study.analysis.figures import plot_specifications, plot_tracks
-from fdvv.study.analysis.multiverse import Multiverse, Specification
+from fdvv.study.analysis.figures import plot_tracks
 from fdvv.study.analysis.records import ChoiceResult, ThresholdResult
 from fdvv.units import FloatArray
 
@@ -35,20 +34,6 @@ def bars(people: FloatArray, marks: dict[str, str], simulated: bool = False) -> 
 def above(drawn: Any) -> str:
     """Return the title of a whole figure."""
     return str(figure_of(drawn).get_suptitle())
-
-
-def multiverse(count: int = 6) -> Multiverse:
-    shares = np.linspace(0.6, 0.8, count).tolist()
-    ties = ("split", "dropped") * (count // 2)
-    return Multiverse(
-        tuple(
-            Specification(
-                "all", "choice", "person", ties[i], "t", s, s - 0.05, s + 0.05, 9, 0.65 - s, i == 2, i == 2
-            )
-            for i, s in enumerate(shares)
-        ),
-        0.0,
-    )
 
 
 def choice(
@@ -115,24 +100,14 @@ def test_staircases_have_a_panel_each_and_a_line_where_a_threshold_is() -> None:
     assert dashed == [1, 0]
 
 
-def test_a_specification_curve_marks_the_registered_one_in_both_panels() -> None:
-    top, below = plot_specifications(multiverse(), "share (%)", "as registered")
-    diamond = next(line for line in top.get_lines() if line.get_marker() == "D")
-    assert_allclose([diamond.get_xdata()[0], diamond.get_ydata()[0]], [3, 68.0])
-    labels = [label.get_text() for label in below.get_yticklabels()]
-    assert labels[:4] == ["left out", "all", "measure", "choice"]
-    assert labels[-5:] == ["ties", "split", "dropped", "test", "t"]
-
-
 def test_every_figure_of_simulated_answers_says_that_they_are_no_evidence() -> None:
     drawn = [
         bars(ratings(), MARKS, True),
         plot_choices([choice("", 4, 1, 5)], True),
         plot_forest([ForestRow("P1", 1.0, 0.2, 2.0)], "d′", "distance", simulated=True),
         plot_tracks([track("P1", [0.3, 0.2], [1.0, 1.0], 0.2)], True),
-        plot_specifications(multiverse(), "share (%)", "as registered", True),
     ]
-    assert [above(one) for one in drawn] == [PROXY] * 5
+    assert [above(one) for one in drawn] == [PROXY] * 4
     assert above(bars(ratings(), MARKS)) == ""
 
 

@@ -7,33 +7,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from scipy import stats
-from scipy.optimize import brentq
 from scipy.special import loggamma
 
 Array = npt.NDArray[np.float64]
-Z = float(stats.norm.ppf(0.975))
-
-
-def score_interval(successes: float, n: float) -> tuple[float, float]:
-    """Return the shares whose score test is not significant: where z of the observed share is ± 1.96."""
-    share = successes / n
-
-    def ends(p: float) -> float:
-        return (share - p) ** 2 - Z**2 * p * (1 - p) / n
-
-    low = 0.0 if share == 0 else float(brentq(ends, 0.0, share - 1e-12, xtol=1e-15))
-    high = 1.0 if share == 1 else float(brentq(ends, share + 1e-12, 1.0, xtol=1e-15))
-    return low, high
-
-
-def t_interval(values: list[float]) -> tuple[float, float]:
-    """Return the interval of a mean over people, cut at 0 and 1."""
-    if len(values) < 2:
-        return 0.0, 1.0
-    if np.ptp(values) == 0:
-        return values[0], values[0]
-    low, high = stats.t.interval(0.95, len(values) - 1, np.mean(values), stats.sem(values))
-    return max(0.0, float(low)), min(1.0, float(high))
 
 
 def mauchly(values: Array) -> tuple[float, float]:

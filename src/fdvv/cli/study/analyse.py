@@ -70,8 +70,8 @@ def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool,
 
     SOURCE is the folder of an unsealed study, an answers.csv, or any CSV whose columns are mapped.
     Shares with intervals that count people, signed-rank tests by button with their exact p, distances felt,
-    thresholds, and the main claim under every reasonable analysis; with --report as a page with figures. Of a
-    timing study: the paper's analysis of variance and pairs, a mixed model with intervals, and the claim.
+    thresholds, and the test of the main claim; with --report as a page with figures. Of a timing study: the
+    paper's analysis of variance and pairs, a mixed model with intervals, and the claim.
     """
     ui.check_output(report, ".html")
     if source.is_dir() and is_timing(source):

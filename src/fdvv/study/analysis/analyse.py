@@ -14,7 +14,6 @@ from fdvv.study.analysis.choices import choice_results
 from fdvv.study.analysis.columns import TIMING
 from fdvv.study.analysis.jnds import jnd_results, jnds_over_people
 from fdvv.study.analysis.levels import threshold_over_people, threshold_results, timing_results
-from fdvv.study.analysis.multiverse import Multiverse, multiverse
 from fdvv.study.analysis.ratings import button_tests, names_of, rated_results, scale_results
 from fdvv.study.analysis.records import ChoiceResult, ClaimResult, PersonResult, StudyAnalysis
 from fdvv.study.plan.answers import Answers, Screening, is_answered, screen
@@ -76,7 +75,6 @@ def analyse(
         jnd=jnds_over_people(jnds),
         standards=standards,
         timing=timing_results(found, notes) if found.kind == TIMING else None,
-        multiverse=_multiverse(found, claim, registered, notes) if screening.people_counted > 1 else None,
         notes=(*_warnings(screening), *dict.fromkeys(notes)),
     )
 
@@ -106,22 +104,6 @@ def _claim(answers: Answers, claim: Claim | None, registered: bool, notes: list[
         notes.append(f"The main claim cannot be tested: {error}.")
         return None
     return ClaimResult(claim, registered, measure_of(answers, claim), test)
-
-
-def _multiverse(
-    answers: Answers, claim: Claim | None, registered: bool, notes: list[str]
-) -> Multiverse | None:
-    if claim is None:
-        return None
-    try:
-        found = multiverse(answers, claim, registered)
-    except ModelError:
-        # the claim's own test has noted why
-        return None
-    if not any(one.reported for one in found.specifications):
-        notes.append("The main claim has no other specifications: nothing is left to test.")
-        return None
-    return found
 
 
 def _people(screening: Screening, claim: Claim | None) -> tuple[PersonResult, ...]:

@@ -15,7 +15,6 @@ from fdvv.io.files import write_atomic
 from fdvv.study.analysis.code_book import cell_text, csv_text
 from fdvv.study.analysis.columns import TIMING
 from fdvv.study.analysis.jnds import UNITS
-from fdvv.study.analysis.multiverse import Multiverse
 from fdvv.study.analysis.ratings import complete_rows, names_of, people_means
 from fdvv.study.analysis.records import (
     ClaimResult,
@@ -60,7 +59,6 @@ def analysis_dict(found: StudyAnalysis) -> dict[str, Any]:
         "jnds": [_jnd(one) for one in found.jnds],
         "standards": {button: dict(sizes) for button, sizes in found.standards.items()},
         "timing": found.timing and _timing(found.timing),
-        "multiverse": found.multiverse and _multiverse(found.multiverse),
         "people": [asdict(one) for one in found.people],
         "notes": list(found.notes),
     }
@@ -135,16 +133,6 @@ def _timing(found: TimingResult) -> dict[str, Any]:
         },
         "anova": found.anova and [asdict(one) for one in found.anova.effects],
         "pairs": {level: [asdict(one) for one in pairs] for level, pairs in found.pairs.items()},
-    }
-
-
-def _multiverse(found: Multiverse) -> dict[str, Any]:
-    return {
-        "ways": len(found.specifications),
-        "agreeing": found.agreeing,
-        "significant": found.significant,
-        "alpha": found.alpha,
-        "specifications": [asdict(one) for one in found.specifications],
     }
 
 

@@ -1,9 +1,9 @@
-"""Figures of an analysis: ratings, choices, distances, staircases, timing and the multiverse."""
+"""Figures of an analysis: ratings, choices, distances, staircases and timing."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +14,6 @@ from fdvv.report import style
 from fdvv.report.prose import stars
 from fdvv.report.score_figures import ScoreBars, plot_score_bars
 from fdvv.study.analysis.answer_figures import PALE, ForestRow, plot_forest, plot_rating_bars, say_proxy
-from fdvv.study.analysis.multiverse import Multiverse
 from fdvv.study.analysis.ratings import people_means
 from fdvv.study.analysis.records import JndResult, StudyAnalysis, ThresholdResult, TimingResult
 from fdvv.study.analysis.sentences import name_rows
@@ -27,15 +26,6 @@ if TYPE_CHECKING:
 
 MOST_TRACKS = 12
 """Staircases that are drawn; more would be too small to read."""
-
-CHOICES = {
-    "left out": "exclusions",
-    "measure": "measure",
-    "counted as one": "unit",
-    "ties": "ties",
-    "test": "test",
-}
-"""Fields of a specification, by what the figure calls them."""
 
 
 def draw_ratings(found: StudyAnalysis, rating: str, scale: tuple[float, float]) -> Any:
@@ -203,66 +193,3 @@ def _label_ratios(ax: Axes, ratios: FloatArray) -> None:
     ax.yaxis.set_major_locator(FixedLocator([one for one in steps if low <= one <= high]))
     ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
     ax.yaxis.set_minor_locator(NullLocator())
-
-
-@style.in_house_style
-def plot_specifications(found: Multiverse, axis: str, marked: str, simulated: bool = False) -> Any:
-    """Draw the share of every specification above and, below each, what was chosen for it.
-
-    axis : name of the share. marked : what the registered specification is called. Returns both axes.
-    """
-    choices = {name: [getattr(one, field) for one in found.specifications] for name, field in CHOICES.items()}
-    rows = len(choices) + sum(len(set(values)) for values in choices.values())
-    fig = style.new_figure(8.6, 3.0 + 0.23 * rows)
-    top, below = fig.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": [2.6, 0.23 * rows + 0.1]})
-    _draw_shares(top, found, marked)
-    top.set_ylabel(axis)
-    style.set_titles(top, f"{len(found.specifications)} specifications of the main claim", False)
-    say_proxy(top, simulated)
-    _draw_specifications(below, choices, found.specifications.index(found.reported))
-    fig.legend(loc="outside lower center", ncols=3)
-    return np.array([top, below])
-
-
-def _draw_shares(ax: Axes, found: Multiverse, marked: str) -> None:
-    places = np.arange(1, len(found.specifications) + 1)
-    share, low, high = (
-        100 * np.array([getattr(one, field) for one in found.specifications])
-        for field in ("share", "low", "high")
-    )
-    significant = np.array([one.p < found.alpha for one in found.specifications])
-    ax.axhline(50.0, color=style.QUIET, linestyle=":", linewidth=1.2)
-    for yes, colour, label in (
-        (True, style.PALETTE[0], "significant"),
-        (False, style.QUIET, "not significant"),
-    ):
-        some = significant == yes
-        if some.any():
-            ax.vlines(places[some], low[some], high[some], color=colour, linewidth=1.2, alpha=0.5)
-            ax.plot(places[some], share[some], "o", color=colour, markersize=3.6, label=label)
-    at = found.specifications.index(found.reported)
-    look: Any = {"color": style.PALETTE[1], "markersize": 9.0, "zorder": 4.0, "label": marked}
-    ax.plot(places[at : at + 1], share[at : at + 1], "D", **look)
-    ax.margins(x=0.02)
-
-
-def _draw_specifications(ax: Axes, choices: Mapping[str, Sequence[str]], registered: int) -> None:
-    ticks, labels, place = [], [], 0
-    for name, values in choices.items():
-        ticks.append(place)
-        labels.append(name)
-        for value in dict.fromkeys(values):
-            place += 1
-            some = 1 + np.flatnonzero(np.array(values) == value)
-            ax.plot(some, np.full(some.size, place), "|", color=style.INK, markersize=7.0)
-            ticks.append(place)
-            labels.append(style.name_text(value))
-        place += 1
-    ax.axvline(registered + 1, color=style.PALETTE[1], linewidth=1.0, alpha=0.6, zorder=0.5)
-    ax.set_ylim(place - 0.3, -0.7)
-    ax.set_yticks(ticks, labels, fontsize=8.5)
-    for label in ax.get_yticklabels():
-        label.set_fontweight("bold" if label.get_text() in choices else "normal")
-    ax.set_xlabel("specification (by rising estimate)")
-    ax.grid(visible=False)
-    ax.tick_params(axis="y", length=0)

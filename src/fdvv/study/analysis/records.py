@@ -14,7 +14,6 @@ from fdvv.stats.post_hoc import PairedTest
 from fdvv.stats.rank_tests import Friedman, RankPair, SignedRank
 from fdvv.stats.share import Share, SignTest
 from fdvv.stats.thurstone import DPrime
-from fdvv.study.analysis.multiverse import Multiverse
 from fdvv.study.plan.answers import Screening
 from fdvv.study.plan.plan import Claim
 from fdvv.thresholds.estimate import JndEstimate
@@ -293,5 +292,4 @@ class StudyAnalysis:
     jnds: tuple[JndResult, ...] = ()
     jnd: Mapping[Dimension, Spread] = field(default_factory=dict)
     standards: Mapping[str, Mapping[Dimension, float]] = field(default_factory=dict)
-    multiverse: Multiverse | None = None
     notes: tuple[str, ...] = ()

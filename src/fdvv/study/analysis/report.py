@@ -89,7 +89,6 @@ def method_paragraphs(found: StudyAnalysis) -> tuple[str, ...]:
         "thresholds": found.thresholds,
         "jnds": found.jnds,
         "timing": found.timing,
-        "multiverse": found.multiverse,
     }
     return tuple(report_texts()["method"][name] for name, results in there.items() if results)
 
@@ -114,7 +113,6 @@ def study_html(found: StudyAnalysis, plan: StudyPlan | None = None, footer: str 
         *_jnds(found),
         *_timing(found),
         *_people(found),
-        *_multiverse(found),
         Section("How this was computed", method_paragraphs(found)),
     ]
     title = f"{found.title} ({PROXY})" if found.simulated else found.title
@@ -139,7 +137,6 @@ def study_summary(found: StudyAnalysis) -> str:
     texts += sentences.threshold_sentences(found)[:1]
     texts += sentences.jnd_sentences(found)
     texts += sentences.timing_sentences(found.timing)[:1] if found.timing else []
-    texts += [sentences.multiverse_sentences(found.multiverse)[0]] if found.multiverse else []
     proxy = [f"{PROXY.capitalize()}."] if found.simulated and texts else []
     return " ".join([*proxy, *texts, *found.notes[:1]])
 
@@ -228,14 +225,3 @@ def _people(found: StudyAnalysis) -> list[Section]:
     svgs = (figure_svg(figures.draw_people(found), "Every person's share"),) if several else ()
     texts = ("How each leans, and what each did; the diamond counts all who count.",) if several else ()
     return [Section("Person by person", texts, svgs, (tables.people_table(found),))]
-
-
-def _multiverse(found: StudyAnalysis) -> list[Section]:
-    if found.multiverse is None or found.claim is None:
-        return []
-    claim = "right answers" if found.claim.measure == "correct" else f"share for {found.claim.claim.more}"
-    marked = "as registered" if found.claim.registered else "main analysis (not registered)"
-    figure = figures.plot_specifications(found.multiverse, f"{claim} (%)", marked, found.simulated)
-    svg = figure_svg(figure, "The main claim under every reasonable analysis")
-    texts = sentences.multiverse_sentences(found.multiverse)
-    return [Section("Does it depend on the analysis?", texts, (svg,))]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from fdvv.report.prose import effect_text, listed, sphericity_text
-from fdvv.study.analysis.multiverse import Multiverse
 from fdvv.study.analysis.records import (
     ButtonTest,
     ChoiceResult,
@@ -33,8 +32,6 @@ from fdvv.study.analysis.words import (
 
 ALPHA = 0.05
 """Level of everything but the main claim, which has its own."""
-
-HALF = 0.5
 
 WIDE = 4.0
 """Ends of an interval over each other beyond which a JND is hardly known: a factor of two either way."""
@@ -240,30 +237,6 @@ def _next_of(found: StudyAnalysis) -> str:
     most = max(sd, key=lambda name: sd[name])
     differ = f"people differ most in {most} (SD {fixed(sd[most])} of its logarithm)"
     return f"Next: let a project judge by these figures (fdvv study jnds); {differ}."
-
-
-def multiverse_sentences(found: Multiverse) -> tuple[str, ...]:
-    """Return how far the main claim depends on how it is analysed."""
-    shares = [one.share for one in found.specifications]
-    main, count = found.reported, len(found.specifications)
-    ends = [percent(min(shares), 1), percent(max(shares), 1)]
-    ranges = f"is {ends[0]} in each" if ends[0] == ends[1] else f"ranges from {ends[0]} to {ends[1]}"
-    said = _agreement(found) if main.share != HALF else "the main analysis finds no difference"
-    return (
-        f"{many(count, 'specification')} of the main claim: the share for it {ranges}; {said}.",
-        "Specifications differ in who and what is left out, in the measure, in what is counted as one "
-        "(people, people and buttons, trials), in ties split or dropped, and in the test. Those that count "
-        "trials treat one person's answers as independent, which they are not; they are shown because they "
-        "are often used.",
-    )
-
-
-def _agreement(found: Multiverse) -> str:
-    main, count = found.reported, len(found.specifications)
-    every = "all" if found.agreeing == count else str(found.agreeing)
-    significant = "all" if found.significant == count else f"{found.significant} of them"
-    same = f"{every} agree in direction with the main analysis"
-    return f"{same} ({percent(main.share, 1)}, {exact_p(main.p)}), {significant} with p < {found.alpha:g}"
 
 
 def timing_sentences(found: TimingResult) -> tuple[str, ...]:
