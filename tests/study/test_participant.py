@@ -197,7 +197,7 @@ def test_a_device_that_goes_away_costs_the_trial_and_not_the_answer(tmp_path: Pa
     while (step := one.step()).kind != "done":
         try:
             one.show_trial(step.number)
-            for label in step.labels:
+            for label in step.trial.labels:
                 one.go_to(label)
             one.answer(step.number, answer_of(one.state.started.trials[step.number]))
         except DeviceError as error:
@@ -278,7 +278,7 @@ def test_a_staircase_comes_nearer_with_right_answers_and_ends_by_its_rule(tmp_pa
     assert ratios == pytest.approx([0.4, 0.2, 0.1, 0.2, 0.1])
     # three turns: the other trials of this staircase are not met
     assert one.step().number == 12
-    assert one.step().item != one.state.started.trials[0].item
+    assert one.step().trial.item != one.state.started.trials[0].item
     one.close()
 
 

@@ -66,7 +66,7 @@ def run_with_kills(folder: Path, kills: int, seed: int, rounds: int) -> Particip
         try:
             one.show_trial(step.number)
             assert labels.setdefault(step.number, now.prepared[-1]) == now.prepared[-1]
-            for label in step.labels:
+            for label in step.trial.labels:
                 one.go_to(label)
             answer = answer_of(one.state.started.trials[step.number], one.state.attempts[step.number])
             one.answer(step.number, answer)

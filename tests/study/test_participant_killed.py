@@ -16,8 +16,9 @@ import pytest
 
 from fdvv.errors import DeviceError
 from fdvv.study.admin.study import Study
+from fdvv.study.plan.events import TrialFace
 from fdvv.study.plan.plan import Stimulus
-from fdvv.study.plan.session import ENDS, Step
+from fdvv.study.plan.sitting import ENDS, Step
 from fdvv.study.plan.trial import TrialAnswer
 from fdvv.study.session.participant import Participant
 from tests.support.studies import attended
@@ -111,7 +112,7 @@ def live(study: Study, person: str, code: str, into: int) -> None:
         code = ""
 
 
-def step_name(step: Step) -> tuple[str, str]:
+def step_name(step: Step[TrialFace]) -> tuple[str, str]:
     return step.kind, step.page or str(step.number)
 
 
@@ -199,7 +200,7 @@ def run_with_a_failing_device(study: Study, seed: int, share: float) -> tuple[Pa
     while (step := one.step()).kind != "done":
         try:
             one.show_trial(step.number)
-            for label in step.labels:
+            for label in step.trial.labels:
                 one.go_to(label)
             answer = answer_of(one.state.started.trials[step.number], one.state.attempts[step.number])
             one.answer(step.number, answer)

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from fdvv.errors import InputError, ModelError
 from fdvv.study.plan.events import (
     BreakEnded,
-    Event,
     PageAnswered,
     ParticipantWithdrew,
     SessionClosed,
+    SessionEvent,
     SessionResumed,
     SessionStarted,
     StaircaseConverged,
@@ -27,12 +27,12 @@ from fdvv.study.plan.events import (
     check_answer,
     checked_page,
     choices_of,
-    event_of,
     face_of,
     record_of,
 )
 from fdvv.study.plan.plan import Item, Page, Question, Rating, Stimulus, StudyPlan
-from fdvv.study.plan.session import SessionState, Step, next_step, state_of
+from fdvv.study.plan.session import SessionState
+from fdvv.study.plan.sitting import Step
 from fdvv.study.plan.trial import EQUAL, StudyTrial, TrialAnswer
 
 STIMULI = (
@@ -64,13 +64,13 @@ def faces(count: int = 4, practice: int = 1) -> tuple[TrialFace, ...]:
 
 
 def started_session(plan: StudyPlan, trials: tuple[TrialFace, ...] | None = None) -> SessionState:
-    return state_of(plan, [SessionStarted(0.0, "P01", "en", faces() if trials is None else trials)])
+    return SessionState.of(plan, [SessionStarted(0.0, "P01", "en", faces() if trials is None else trials)])
 
 
-def run(state: SessionState, now_s: float, work_s: float = 1.0) -> tuple[list[Step], SessionState]:
+def run(state: SessionState, now_s: float, work_s: float = 1.0) -> tuple[list[Step[TrialFace]], SessionState]:
     """Do every requested step until the session is over, each taking a while; return the steps."""
     steps = []
-    while (step := next_step(state, now_s)).kind not in ("done", "declined", "withdrawn"):
+    while (step := state.step(now_s)).kind not in ("done", "declined", "withdrawn"):
         steps.append(step)
         if step.kind == "break":
             now_s += step.left_s
@@ -96,8 +96,8 @@ def test_pages_come_before_and_after_and_practice_comes_first() -> None:
         ("trial", 3),
         ("page", "end"),
     ]
-    assert next_step(state, 9.0).kind == "done"
-    assert next_step(state, 9.0).progress == 1.0
+    assert state.step(9.0).kind == "done"
+    assert state.step(9.0).progress == 1.0
     assert [step.progress for step in steps] == sorted(step.progress for step in steps)
     assert [(step.at, step.of) for step in steps[2:6]] == [(1, 1), (1, 3), (2, 3), (3, 3)]
 
@@ -136,21 +136,18 @@ def test_a_break_cannot_be_skipped() -> None:
     for skipping in (BreakEnded(179.0), TrialShown(100.0, 1, 1)):
         with pytest.raises(ModelError):
             state.after(skipping)
-    assert next_step(state.after(BreakEnded(180.0)), 180.0).number == 1
+    assert state.after(BreakEnded(180.0)).step(180.0).number == 1
 
 
 def test_a_break_goes_on_while_nobody_runs_the_session() -> None:
     state = resting().after(SessionResumed(100.0, "code"))
-    assert next_step(state, 100.0).left_s == 80.0
-    assert (
-        next_step(state.after(SessionClosed(101.0)).after(SessionResumed(1000.0, "code")), 1000.0).left_s
-        == 0.0
-    )
+    assert state.step(100.0).left_s == 80.0
+    assert state.after(SessionClosed(101.0)).after(SessionResumed(1000.0, "code")).step(1000.0).left_s == 0.0
     # a clock that was set back by a day does not make it last a day
-    assert next_step(state, -86_400.0).left_s == 120.0
+    assert state.step(-86_400.0).left_s == 120.0
 
 
-def worked(*events: Event) -> SessionState:
+def worked(*events: SessionEvent) -> SessionState:
     """Work 50 s, let something happen, and work until 10 s after."""
     plan = plan_of(break_every_min=1.0, break_min=2.0, pages=())
     state = (
@@ -175,15 +172,15 @@ def test_time_after_a_crash_counts_as_work_for_nobody_knows_better() -> None:
 
 def test_a_trial_that_was_shown_and_not_answered_is_met_again() -> None:
     state = started_session(plan_of(pages=())).after(TrialShown(1.0, 0, 1))
-    assert not next_step(state, 1.0).again
+    assert not state.step(1.0).again
     for back in (SessionResumed(2.0, "keeper"), TrialInterrupted(2.0, 0)):
         after = state.after(back)
-        step = next_step(after, 2.0)
+        step = after.step(2.0)
         assert (step.number, step.again) == (0, True)
         with pytest.raises(ModelError):
             after.after(TrialAnswered(3.0, 0, 1, TrialAnswer("A")))
         again = after.after(TrialShown(3.0, 0, 2)).after(TrialAnswered(4.0, 0, 2, TrialAnswer("A")))
-        assert next_step(again, 4.0).number == 1
+        assert again.step(4.0).number == 1
 
 
 def test_a_trial_is_given_up_only_after_the_device_went_away_in_it_three_times() -> None:
@@ -193,8 +190,8 @@ def test_a_trial_is_given_up_only_after_the_device_went_away_in_it_three_times()
             state.after(TrialSkipped(1.0, 0))
         state = state.after(TrialShown(1.0, 0, attempt)).after(TrialInterrupted(1.0, 0, felt=True))
     after = state.after(TrialSkipped(1.0, 0))
-    assert (next_step(after, 1.0).number, after.trials_left) == (1, state.trials_left - 1)
-    assert next_step(state.after(TrialInterrupted(1.0, 0)), 1.0).number == 0
+    assert (after.step(1.0).number, after.trials_left) == (1, state.trials_left - 1)
+    assert state.after(TrialInterrupted(1.0, 0)).step(1.0).number == 0
 
 
 @settings(deadline=None, max_examples=50)
@@ -204,8 +201,8 @@ def test_whatever_happens_every_trial_is_answered_once_and_in_order(happens: lis
     state, now_s, order = started_session(plan, faces(6, 2)), 0.0, list[int]()
     for what in [*happens, *["go"] * 60]:
         now_s += 3.0
-        step = next_step(state, now_s)
-        events: list[Event] = []
+        step = state.step(now_s)
+        events: list[SessionEvent] = []
         if what == "crash":
             events = [SessionResumed(now_s, "code")]
         elif what == "leave":
@@ -223,10 +220,10 @@ def test_whatever_happens_every_trial_is_answered_once_and_in_order(happens: lis
             events = [TrialAnswered(now_s, state.open, state.attempts[state.open], TrialAnswer("A"))]
         for event in events:
             # what is read back from the journal is what was written
-            state = state.after(event_of(json.loads(json.dumps(record_of(event)))))
+            state = state.after(SessionState.event_of(json.loads(json.dumps(record_of(event)))))
         assert state.open is None or state.open not in state.answers
     assert order == [0, 1, 2, 3, 4, 5]
-    assert next_step(state, now_s).kind == "done"
+    assert state.step(now_s).kind == "done"
 
 
 @pytest.mark.parametrize(
@@ -241,14 +238,14 @@ def test_whatever_happens_every_trial_is_answered_once_and_in_order(happens: lis
         TrialInterrupted(1.0, 3),
     ],
 )
-def test_what_cannot_come_now_is_refused(event: Event) -> None:
+def test_what_cannot_come_now_is_refused(event: SessionEvent) -> None:
     with pytest.raises(ModelError):
         started_session(plan_of()).after(event)
 
 
 def test_a_session_begins_with_its_trials() -> None:
     with pytest.raises(ModelError):
-        state_of(plan_of(), [SessionClosed(1.0)])
+        SessionState.of(plan_of(), [SessionClosed(1.0)])
 
 
 def test_a_trial_of_a_staircase_that_has_ended_is_not_met() -> None:
@@ -259,21 +256,21 @@ def test_a_trial_of_a_staircase_that_has_ended_is_not_met() -> None:
         .after(TrialShown(0.0, 0, 1))
         .after(TrialAnswered(90.0, 0, 1, TrialAnswer("A")))
     )
-    assert next_step(state, 90.0).kind == "break"
+    assert state.step(90.0).kind == "break"
     state = state.after(StaircaseConverged(90.0, "Clear", 0))
-    assert next_step(state, 150.0).kind == "break"
-    assert next_step(state.after(BreakEnded(150.0)), 150.0).number == 3
-    assert next_step(state.after(BreakEnded(150.0)), 150.0).of == 0
+    assert state.step(150.0).kind == "break"
+    assert state.after(BreakEnded(150.0)).step(150.0).number == 3
+    assert state.after(BreakEnded(150.0)).step(150.0).of == 0
     # with nothing left to do there is nothing to rest for
-    assert next_step(state.after(StaircaseConverged(90.0, "Clear", 1)), 90.0).kind == "done"
+    assert state.after(StaircaseConverged(90.0, "Clear", 1)).step(90.0).kind == "done"
 
 
 def test_who_does_not_consent_is_out_and_so_is_who_withdraws() -> None:
     state = started_session(plan_of())
     declined = state.after(PageAnswered(1.0, "consent", agreed=False))
     withdrawn = state.after(ParticipantWithdrew(1.0))
-    assert next_step(declined, 1.0).kind == "declined"
-    assert next_step(withdrawn, 1.0).kind == "withdrawn"
+    assert declined.step(1.0).kind == "declined"
+    assert withdrawn.step(1.0).kind == "withdrawn"
     for over in (declined, withdrawn):
         with pytest.raises(ModelError, match="over"):
             over.after(PageAnswered(2.0, "consent"))
@@ -283,7 +280,7 @@ def test_a_record_of_no_event_is_refused() -> None:
     records: list[dict[str, Any]] = [{"peeked": {}}, {"left": {}}, {"left": {"at_s": 1.0, "label": "A"}}]
     for record in records:
         with pytest.raises(ModelError):
-            event_of(record)
+            SessionState.event_of(record)
 
 
 def test_the_face_of_a_trial_tells_its_labels_and_not_what_they_hide() -> None:

@@ -13,6 +13,7 @@ from fdvv.study.admin.study import Study
 from fdvv.study.files.people import SealedTrial
 from fdvv.study.files.seal import Cost
 from fdvv.study.plan.events import PageAnswered, TrialAnswered, TrialShown
+from fdvv.study.plan.session import SessionState
 from fdvv.study.plan.trial import Rendered, StudyTrial, TrialAnswer
 from fdvv.study.session.log import OpenedSession
 
@@ -127,10 +128,10 @@ def answered(
     age: float = 33.0,
 ) -> None:
     """Answer pages and so many trials, practice included, and close."""
-    opened = OpenedSession(study, person, code, 0.0)
+    opened = OpenedSession(study, person, code, 0.0, SessionState)
     opened.add(PageAnswered(1.0, "consent"))
     opened.add(PageAnswered(2.0, "about", {"age": age}))
-    for trial in opened.trials[:trials]:
+    for trial in opened.schedule.trials[:trials]:
         opened.add(TrialShown(10.0 * trial.number, trial.number, 1))
         opened.seal(SealedTrial(trial.number, trial.ratio, render(trial)))
         opened.add(TrialAnswered(10.0 * trial.number + 5.0, trial.number, 1, judge(trial)))

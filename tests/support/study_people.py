@@ -11,7 +11,7 @@ from fdvv.study.admin.study import Study
 from fdvv.study.files.seal import Cost
 from fdvv.study.plan.events import TrialFace, rated_labels
 from fdvv.study.plan.plan import Stimulus
-from fdvv.study.plan.session import Step
+from fdvv.study.plan.sitting import Step
 from fdvv.study.plan.trial import Rendered, TrialAnswer
 from fdvv.study.session.participant import Participant
 from fdvv.study.stimulus.renderer import StimulusRenderer
@@ -143,7 +143,7 @@ def answer_of(trial: TrialFace, attempt: int = 1) -> TrialAnswer:
     return TrialAnswer(drawn.choice(["A", "B", "equal"]), {"realism": ratings})
 
 
-def do_step(one: Participant, step: Step) -> None:
+def do_step(one: Participant, step: Step[TrialFace]) -> None:
     """Do what a step asks, having felt every label."""
     if step.kind == "page":
         one.answer_page(step.page, {"hand": "right"} if step.page == "you" else {})
@@ -151,7 +151,7 @@ def do_step(one: Participant, step: Step) -> None:
         one.end_break()
     else:
         one.show_trial(step.number)
-        for label in step.labels:
+        for label in step.trial.labels:
             one.go_to(label)
         assert one.trial is not None
         one.answer(step.number, answer_of(one.trial, one.state.attempts[step.number]))

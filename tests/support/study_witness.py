@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fdvv.study.admin.study import Study
 from fdvv.study.files.folder import study_problems
+from fdvv.study.plan.session import SessionState
 from fdvv.study.session.log import read_session
 
 
@@ -45,7 +46,9 @@ class Witness:
     def _unheard(self, person: str) -> int:
         """Look at one person; count, and note, what is kept of them that was not acknowledged."""
         assert study_problems(self.study.folder, people=(person,)) == ()
-        state = read_session(self.study.person_folder(person) / "session.jsonl", self.study.plan)
+        state = read_session(
+            self.study.person_folder(person) / "session.jsonl", self.study.plan, SessionState
+        )
         kept = {} if state is None else {str(n): one.answer.choice for n, one in state.answers.items()}
         said = {n: choice for (who, n), choice in self.answers.items() if who == person}
         assert said.items() <= kept.items()

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from fdvv.study.plan.sitting import ENDS, Step
 from fdvv.task.rounds import ClockSource, RoundTiming
 from fdvv.timing.files.study import TimingStudy
 from fdvv.timing.plan.plan import DAY_s
-from fdvv.timing.plan.session import ENDS, TimingStep
+from fdvv.timing.plan.schedule import TimingFace
 from fdvv.timing.session.participant import TimingParticipant
 from tests.support.studies import CHEAP, PASSPHRASE
 
@@ -90,7 +91,7 @@ def press(participant: TimingParticipant, number: int, round_: int) -> None:
     participant.keep(number, target_s, (target_s + late_s(number, round_),), TIMING)
 
 
-def do_step(participant: TimingParticipant, step: TimingStep, clock: Clock) -> None:
+def do_step(participant: TimingParticipant, step: Step[TimingFace], clock: Clock) -> None:
     """Do what a step asks for; a trial is played to its end."""
     if step.kind == "page":
         participant.answer_page(step.page, {})
@@ -107,7 +108,7 @@ def do_step(participant: TimingParticipant, step: TimingStep, clock: Clock) -> N
             press(participant, step.number, round_)
 
 
-def do_all(participant: TimingParticipant, clock: Clock, until: str = "") -> Iterator[TimingStep]:
+def do_all(participant: TimingParticipant, clock: Clock, until: str = "") -> Iterator[Step[TimingFace]]:
     """Yield every step before it is done, to the end or to one of a kind."""
     while (step := participant.step()).kind not in (*ENDS, until):
         yield step

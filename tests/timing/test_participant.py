@@ -9,8 +9,9 @@ import pytest
 from fdvv.errors import InputError, ModelError
 from fdvv.model.model import FDVVModel
 from fdvv.study.files.chained_log import read_chained
-from fdvv.timing.plan.events import RoundKept, timing_event
+from fdvv.timing.plan.events import RoundKept
 from fdvv.timing.plan.plan import DAY_s
+from fdvv.timing.plan.session import TimingState
 from fdvv.timing.session.participant import TimingParticipant
 from tests.support.studies import PASSPHRASE
 from tests.support.timing import (
@@ -53,7 +54,7 @@ def test_a_whole_session_trains_waits_a_week_and_validates(tmp_path: Path) -> No
     with one:
         steps = list(do_all(one, clock, until="wait"))
         assert [step.kind for step in steps] == ["page", *["trial"] * 4]
-        assert [step.level for step in steps[1:]] == ["easy", "easy", "hard", "hard"]
+        assert [step.trial.level for step in steps[1:]] == ["easy", "easy", "hard", "hard"]
         wait = one.step()
         assert wait.kind == "wait"
         assert wait.due_at.startswith("2026-")
@@ -131,7 +132,7 @@ def test_every_press_is_in_the_log_with_its_latencies(tmp_path: Path) -> None:
     one.begin(0, "page")
     press(one, 0, 1)
     path = one.study.folder / "people" / one.person / "session.jsonl"
-    kept = timing_event(read_chained(path).records[-1])
+    kept = TimingState.event_of(read_chained(path).records[-1])
     assert isinstance(kept, RoundKept)
     assert kept.timing == TIMING
     assert kept.activations_s == (10.0 + late_s(0, 1),)

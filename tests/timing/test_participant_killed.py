@@ -13,9 +13,10 @@ from pathlib import Path
 import pytest
 
 from fdvv.study.files.chained_log import read_chained
-from fdvv.timing.plan.events import RoundKept, timing_event
+from fdvv.study.plan.sitting import ENDS
+from fdvv.timing.plan.events import RoundKept
 from fdvv.timing.plan.plan import DAY_s
-from fdvv.timing.plan.session import ENDS
+from fdvv.timing.plan.session import TimingState
 from fdvv.timing.session.participant import TimingParticipant
 from tests.support.studies import PASSPHRASE
 from tests.support.timing import SMALL, TIMING, Clock, attended, do_step, frozen, late_s
@@ -118,7 +119,7 @@ class Hatchery:
 def kept_rounds(folder: Path, person: str) -> dict[tuple[int, int], float]:
     """Return when the key went down in every round that is on the disk."""
     records = read_chained(folder / "people" / person / "session.jsonl").records
-    events = [timing_event(record) for record in records]
+    events = [TimingState.event_of(record) for record in records]
     found = [one for one in events if isinstance(one, RoundKept)]
     assert len({(one.number, one.round) for one in found}) == len(found), "a round was met twice"
     return {(one.number, one.round): one.activations_s[0] for one in found}

@@ -19,7 +19,8 @@ from fdvv.studio.contract import ChannelKind, Here, Message, Tell
 from fdvv.studio.participant.messages import SEATED, SEATING, Short
 from fdvv.studio.participant.seated import SeatedScreen
 from fdvv.studio.studio import Studio
-from fdvv.study.plan.session import Step
+from fdvv.study.plan.events import TrialFace
+from fdvv.study.plan.sitting import Step
 from fdvv.study.plan.trial import TrialAnswer
 from fdvv.study.session.participant import Participant
 from fdvv.study.stimulus.open import ScreenRenderer
@@ -107,9 +108,9 @@ class StudyScreen(SeatedScreen[Participant]):
         self._stage = stage
         return participant
 
-    def message(self, participant: Participant, step: Step) -> StudyStep:
+    def message(self, participant: Participant, step: Step[TrialFace]) -> StudyStep:
         """Return a step as the page gets it."""
-        return step_message(participant.study.plan, participant.state, participant.language, step)
+        return step_message(participant.study.plan, participant.language, step)
 
     def put_away(self) -> None:
         """Let go of the stage; the participant closes it."""

@@ -18,7 +18,7 @@ from fdvv.study.admin.study import Study
 from fdvv.study.plan.events import TrialFace, choices_of, rated_labels
 from fdvv.study.plan.plan import Page, Question, Rating, StudyPlan
 from fdvv.study.plan.plan_words import equal_text, question_text
-from fdvv.study.plan.session import SessionState, Step
+from fdvv.study.plan.sitting import Step
 from fdvv.study.plan.trial import EQUAL
 from fdvv.study.stimulus.open import ScreenRenderer, open_screen_renderer
 from fdvv.study.stimulus.twin import PersonClick, PersonFrame
@@ -26,15 +26,16 @@ from fdvv.study.stimulus.twin import PersonClick, PersonFrame
 PARTED = re.compile(r"\n\s*\n")
 
 
-def step_message(plan: StudyPlan, state: SessionState, language: str, step: Step) -> StudyStep:
+def step_message(plan: StudyPlan, language: str, step: Step[TrialFace]) -> StudyStep:
     form = task = None
     if step.kind == "page":
         (page,) = (one for one in plan.pages if one.name == step.page)
         form = form_message(page, language)
     elif step.kind in ("practice", "trial"):
-        task = task_message(plan, language, state.started.trials[step.number], step)
+        task = task_message(plan, language, step)
     left_s = step.left_s if step.kind == "break" else None
-    return StudyStep(step.kind, round(step.progress, 4), form, task, left_s)
+    progress_ratio = round(step.progress, 4)
+    return message_of(StudyStep, step, progress_ratio=progress_ratio, form=form, task=task, left_s=left_s)
 
 
 def form_message(page: Page, language: str) -> StudyForm:
@@ -49,7 +50,8 @@ def form_message(page: Page, language: str) -> StudyForm:
     )
 
 
-def task_message(plan: StudyPlan, language: str, face: TrialFace, step: Step) -> StudyTask:
+def task_message(plan: StudyPlan, language: str, step: Step[TrialFace]) -> StudyTask:
+    face = step.trial
     return StudyTask(
         step.number,
         step.at,

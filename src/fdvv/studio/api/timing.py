@@ -19,8 +19,8 @@ from fdvv.studio.participant.steps import (
 )
 from fdvv.studio.play_trials import PlayClick
 from fdvv.studio.studies import Studies
+from fdvv.study.plan.sitting import utc_text
 from fdvv.timing.files.progress import PersonPhase, timing_progress
-from fdvv.timing.plan.session import utc_text
 
 
 class TimingPerson(Message):

@@ -25,8 +25,9 @@ from fdvv.studio.play_trials import CLOCK, LiveTrial, Table
 from fdvv.studio.played_trial import PlayDelay
 from fdvv.studio.studies import TWIN
 from fdvv.studio.studio import Studio
+from fdvv.study.plan.sitting import Step
 from fdvv.timing.plan.events import Surface
-from fdvv.timing.plan.session import TimingStep
+from fdvv.timing.plan.schedule import TimingFace
 from fdvv.timing.session.participant import BegunTrial, TimingParticipant
 
 
@@ -67,7 +68,7 @@ class TimingScreen(SeatedScreen[TimingParticipant]):
         """Resume the session of a person. InputError, OSError."""
         return TimingParticipant.resume(self._studies.timing(name), person, code)
 
-    def message(self, participant: TimingParticipant, step: TimingStep) -> TimingStepMessage:
+    def message(self, participant: TimingParticipant, step: Step[TimingFace]) -> TimingStepMessage:
         """Return a step as the page gets it."""
         return timing_step_message(participant.study.plan, participant.language, step)
 
@@ -158,8 +159,8 @@ class TimingScreen(SeatedScreen[TimingParticipant]):
             participant.interrupt(line)
 
 
-def _surface(step: TimingStep, device: str) -> Surface:
-    if step.hand != "button":
+def _surface(step: Step[TimingFace], device: str) -> Surface:
+    if step.trial.hand != "button":
         return "table"
     return "page" if device == TWIN else "device"
 

@@ -26,7 +26,7 @@ from fdvv.studio.participant.messages import (
 from fdvv.studio.seats import Invitation
 from fdvv.studio.studies import Studies
 from fdvv.studio.studio import Studio
-from fdvv.study.plan.session import ENDS
+from fdvv.study.plan.sitting import ENDS
 
 
 class SeatedStep(Protocol):

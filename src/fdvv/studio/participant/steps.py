@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from fdvv.studio.api.press_frames import ShakeSignal
 from fdvv.studio.api.study_steps import StudyForm, form_message
-from fdvv.studio.contract import Message
+from fdvv.studio.contract import Message, message_of
 from fdvv.studio.played_trial import Count, PlayStrip, RoundOver, Time, strip_of
+from fdvv.study.plan.sitting import Step
 from fdvv.timing.plan.events import Surface
 from fdvv.timing.plan.plan import TimingPlan
-from fdvv.timing.plan.schedule import Hand, Phase
-from fdvv.timing.plan.session import TimingStep, TimingStepKind
+from fdvv.timing.plan.schedule import Hand, Phase, TimingFace
+
+TimingStepKind = Literal["page", "place", "trial", "break", "wait", "done", "declined", "withdrawn"]
 
 
 class TimingTrial(Message):
@@ -95,7 +99,7 @@ class TimingKept(Message, tag="kept"):
     finished: bool
 
 
-def timing_step_message(plan: TimingPlan, language: str, step: TimingStep) -> TimingStepMessage:
+def timing_step_message(plan: TimingPlan, language: str, step: Step[TimingFace]) -> TimingStepMessage:
     """Return a step in a person's language."""
     form = None
     if step.kind == "page":
@@ -103,24 +107,15 @@ def timing_step_message(plan: TimingPlan, language: str, step: TimingStep) -> Ti
         form = form_message(page, language)
     trial = _trial(plan, step) if step.kind in ("trial", "place") else None
     left_s = step.left_s if step.kind == "break" else None
-    return TimingStepMessage(step.kind, round(step.progress, 4), form, trial, left_s, step.due_at)
-
-
-def _trial(plan: TimingPlan, step: TimingStep) -> TimingTrial:
-    assert step.phase  # of a trial
-    strip = None if plan.tapping else strip_of(plan.pointing(step.level))
-    return TimingTrial(
-        step.number,
-        step.phase,
-        step.level,
-        step.code,
-        step.hand,
-        step.switch,
-        step.key,
-        step.rounds,
-        step.kept,
-        step.at,
-        step.of,
-        strip,
-        plan.tap_s if plan.tapping else 0,
+    progress_ratio = round(step.progress, 4)
+    return message_of(
+        TimingStepMessage, step, progress_ratio=progress_ratio, form=form, trial=trial, left_s=left_s
     )
+
+
+def _trial(plan: TimingPlan, step: Step[TimingFace]) -> TimingTrial:
+    face = step.trial
+    strip = None if plan.tapping else strip_of(plan.pointing(face.level))
+    tap_s = plan.tap_s if plan.tapping else 0
+    of_step = {"rounds": step.rounds, "kept": step.kept, "at": step.at, "of": step.of}
+    return message_of(TimingTrial, face, **of_step, strip=strip, tap_s=tap_s)

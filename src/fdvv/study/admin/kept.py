@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from fdvv.study.files.folder import study_problems
 from fdvv.study.files.layout import LOG_FILE, PEOPLE, SESSION_FILE, digest
 from fdvv.study.files.people import (
     EVERYBODY,
+    Person,
     Schedule,
     free_place,
     lock_schedule,
@@ -30,6 +32,7 @@ from fdvv.study.files.people import (
 from fdvv.study.files.person_folder import keep_person, wipe
 from fdvv.study.files.run_key import CLOSED, OPEN_FIRST, RunKey
 from fdvv.study.files.seal import CODE_COST, Cost, KeyHolder, new_code
+from fdvv.study.plan.events import SessionEvent
 from fdvv.study.plan.trial import StudyTrial
 
 
@@ -109,6 +112,10 @@ class KeptStudy(PlannedStudy):
         if any(person.simulated != simulated for person in people_of(log.records)):
             reason = "has people and cannot have simulated ones" if simulated else "has simulated people only"
             raise InputError(self.folder, "study", reason, "declare another study for them")
+
+    @abstractmethod
+    def start(self, person: Person, schedule: Schedule, at_s: float) -> SessionEvent:
+        """Return the event with which a person's session begins, with all of the trials that may be seen."""
 
     def schedule(self, person: str, key: str | KeyHolder) -> Schedule:
         """Open a schedule with its person's code in open sessions, or the key holder's key. **Secret.**

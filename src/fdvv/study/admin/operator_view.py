@@ -11,7 +11,8 @@ from fdvv.errors import InputError
 from fdvv.study.files.folder import StudyFolder
 from fdvv.study.files.layout import PEOPLE, SESSION_FILE
 from fdvv.study.files.people import Person, PersonState
-from fdvv.study.plan.session import StepKind, next_step
+from fdvv.study.plan.session import SessionState
+from fdvv.study.plan.sitting import StepKind
 from fdvv.study.session.log import read_session
 
 
@@ -65,12 +66,12 @@ def _person_view(study: StudyFolder, person: Person, now_s: float) -> PersonView
     if person.state == "deleted":
         return about
     try:
-        state = read_session(study.folder / PEOPLE / person.name / SESSION_FILE, study.plan)
+        state = read_session(study.folder / PEOPLE / person.name / SESSION_FILE, study.plan, SessionState)
     except (InputError, OSError) as error:
         return structs.replace(about, problem=str(error))
     if state is None:
         return about
-    step = next_step(state, now_s)
+    step = state.step(now_s)
     counted = [trial.number for trial in state.started.trials if not trial.practice]
     return structs.replace(
         about,

@@ -13,8 +13,10 @@ from fdvv.study.admin.review import review_plan, twin_problems
 from fdvv.study.analysis.unseal import unseal_folder
 from fdvv.study.files import layout
 from fdvv.study.files.folder import StudyFolder
+from fdvv.study.files.people import Person, Schedule
 from fdvv.study.files.seal import CODE_COST, PASSPHRASE_COST, Cost
 from fdvv.study.plan.answers import Answers
+from fdvv.study.plan.events import SessionStarted, face_of
 from fdvv.study.plan.plan_file import STUDY_FILE, check_plan, read_plan_text
 from fdvv.study.plan.schedule import draw_schedule
 from fdvv.study.plan.trial import StudyTrial
@@ -60,6 +62,11 @@ class Study(KeptStudy, StudyFolder):
             return draw_schedule(self.plan, place, np.random.default_rng())
 
         return self.enrol_person(draw, self.plan.languages, language, consent, simulated, cost)
+
+    def start(self, person: Person, schedule: Schedule, at_s: float) -> SessionStarted:
+        """Return the event with which a person's session begins: what may be seen of their trials."""
+        faces = tuple(face_of(self.plan, trial) for trial in schedule.trials)
+        return SessionStarted(at_s, person.name, person.language, faces, person.simulated)
 
     def unseal(
         self, passphrase: str, who: str, why: str, keeper: Path | None = None, despite: bool = False

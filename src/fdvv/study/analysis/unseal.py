@@ -21,8 +21,9 @@ from fdvv.study.files.layout import COUNTS_FILE, PEOPLE, SCHEDULE_FILE, SEALED_F
 from fdvv.study.files.people import Person, SealedTrial, open_schedule, people_of
 from fdvv.study.files.seal import KeyHolder
 from fdvv.study.plan.answers import Answers, screen
-from fdvv.study.plan.events import PageAnswered, StaircaseConverged, TrialAnswered, Value, event_of
+from fdvv.study.plan.events import PageAnswered, StaircaseConverged, TrialAnswered, Value
 from fdvv.study.plan.plan import Exclusion, StudyPlan
+from fdvv.study.plan.session import SessionState
 from fdvv.study.plan.trial import EQUAL, Rendered, StudyTrial, TrialAnswer
 
 RENDERED_FILE, PAGES_FILE = "rendered.csv", "pages.csv"
@@ -131,7 +132,7 @@ def _person(
     rendered = [msgspec.json.decode(box, type=SealedTrial) for box in boxes]
     found = {one.number: one for one in rendered}  # of those of one number the last one counts
     try:
-        events = [event_of(record) for record in session.records]
+        events = [SessionState.event_of(record) for record in session.records]
     except ModelError as error:
         raise InputError(person.name, "session", str(error), "install the fdvv that ran the study") from error
     answers = {event.number: event.answer for event in events if isinstance(event, TrialAnswered)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
@@ -35,6 +36,11 @@ class KeptFolder:
     def __init__(self, folder: Path) -> None:
         self.folder = Path(folder)
         self.run_key: RunKey | None = None
+
+    @property
+    @abstractmethod
+    def plan(self) -> Any:
+        """The plan. InputError where it cannot be read, or is not what was frozen."""
 
     @property
     def plan_text(self) -> bytes:

@@ -14,7 +14,8 @@ from fdvv.study.files.counts import Counts
 from fdvv.study.files.layout import PEOPLE, SCHEDULE_FILE
 from fdvv.study.files.people import Person, open_schedule, read_locked
 from fdvv.study.files.seal import KeyHolder
-from fdvv.study.plan.events import SessionStarted, StaircaseConverged, TrialAnswered, TrialSkipped, event_of
+from fdvv.study.plan.events import SessionStarted, StaircaseConverged, TrialAnswered, TrialSkipped
+from fdvv.study.plan.session import SessionState
 
 Records = Sequence[dict[str, Any]]
 
@@ -106,7 +107,7 @@ def _answered(records: Records) -> int:
 def _left(records: Records) -> Iterator[str]:
     """Return what a session that is done lacks: trials without an answer that were not passed over."""
     try:
-        events = [event_of(record) for record in records]
+        events = [SessionState.event_of(record) for record in records]
     except ModelError as error:
         yield str(error)
         return

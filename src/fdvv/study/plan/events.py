@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar, Literal, get_args
+from typing import Any, ClassVar, Literal
 
 import msgspec
 from msgspec import Struct
 
-from fdvv.errors import InputError, ModelError
+from fdvv.errors import InputError
 from fdvv.study.plan.plan import Page, Question, Rating, StudyPlan
 from fdvv.study.plan.plan_words import asks_choice, offers_equal
 from fdvv.study.plan.trial import EQUAL, StudyTrial, TrialAnswer
@@ -88,7 +88,7 @@ class TrialAnswered(SessionEvent, frozen=True):
 
 
 class TrialInterrupted(SessionEvent, frozen=True):
-    """The device went away in a trial, which is shown again. The reason could reveal a label, and is sealed.
+    """The device went away in a trial, which is taken up again. Why could reveal a label, and is sealed.
 
     felt : a label had been felt by then.
     """
@@ -99,7 +99,7 @@ class TrialInterrupted(SessionEvent, frozen=True):
 
 
 class TrialSkipped(SessionEvent, frozen=True):
-    """The device went away in a trial again and again: it is given up, and missing in the analysis."""
+    """A trial is given up, and missing in the analysis. Why could reveal a label, and is sealed."""
 
     word: ClassVar[str] = "skipped"
     number: int
@@ -138,35 +138,8 @@ class ParticipantWithdrew(SessionEvent, frozen=True):
     word: ClassVar[str] = "withdrawn"
 
 
-Event = (
-    SessionStarted
-    | PageAnswered
-    | TrialShown
-    | TrialAnswered
-    | TrialInterrupted
-    | TrialSkipped
-    | StaircaseConverged
-    | BreakEnded
-    | SessionClosed
-    | SessionResumed
-    | ParticipantWithdrew
-)
-"""What can happen in a session, as its journal keeps it."""
-
-EVENTS: dict[str, type[Event]] = {kind.word: kind for kind in get_args(Event)}
-
-
 def record_of(event: SessionEvent) -> dict[str, Any]:
     return {event.word: msgspec.to_builtins(event)}
-
-
-def event_of(record: dict[str, Any]) -> Event:
-    """Read a journal's record. ModelError where it is none."""
-    ((word, body),) = record.items()
-    try:
-        return msgspec.convert(body, EVENTS[word])
-    except (KeyError, msgspec.ValidationError) as error:
-        raise ModelError(f"no event of a session: {error}") from error
 
 
 def face_of(plan: StudyPlan, trial: StudyTrial) -> TrialFace:

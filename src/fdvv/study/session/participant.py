@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
-from typing import Self
+from collections.abc import Callable
 
 from fdvv.errors import DeviceError, ModelError
 from fdvv.study.admin.study import Study
 from fdvv.study.files.seal import KeyHolder
 from fdvv.study.plan import events
-from fdvv.study.plan.events import Event, TrialFace, Value, check_answer, checked_page
-from fdvv.study.plan.session import ENDS, MOST_FALLS, Step, next_step
+from fdvv.study.plan.events import TrialFace, check_answer
+from fdvv.study.plan.session import SessionState
+from fdvv.study.plan.sitting import MOST_FALLS, Step
 from fdvv.study.plan.trial import StudyTrial, TrialAnswer
 from fdvv.study.session.log import OpenedSession
+from fdvv.study.session.sitting import Sitting
 from fdvv.study.session.trial import (
     GONE,
     ReconnectableRenderer,
@@ -25,27 +26,21 @@ from fdvv.study.session.trial import (
 from fdvv.study.stimulus.renderer import StimulusRenderer
 
 
-class Participant:
-    """A person, or a simulated one, in a study; made by `enrol` or `resume`, for one process at a time.
-
-    The schedule is in memory only. A context manager; not to be used from two threads at once.
-
-    Attributes
-    ----------
-    study, person, language : who takes part in what. state : of the session; nothing in it is secret.
-    """
+class Participant(Sitting[Study, SessionState]):
+    """Who feels labels and answers, made by `enrol` or `resume`; see `Sitting`."""
 
     def __init__(
-        self, study: Study, session: OpenedSession, renderer: StimulusRenderer, clock: Callable[[], float]
+        self,
+        study: Study,
+        session: OpenedSession[SessionState],
+        renderer: StimulusRenderer,
+        clock: Callable[[], float],
     ) -> None:
-        self.study, self._plan = study, study.plan
-        self._session, self.state = session, session.state
-        self.person, self.language = self.state.started.person, self.state.started.language
+        super().__init__(study, session, clock)
+        self._trials = session.schedule.trials
         self._renderer = ReconnectableRenderer(self._plan, renderer)
-        self._clock = clock
         self._trial: StudyTrial | None = None
         self._watch = TrialWatch(clock)
-        self._closed = False
         self._advance()
 
     @classmethod
@@ -81,16 +76,13 @@ class Participant:
         InputError on a wrong code, on a person who withdrew, where the session runs elsewhere or where the
         study was changed. OSError.
         """
-        return cls(study, OpenedSession(study, person, code, round(clock(), 1)), renderer, clock)
+        opened = OpenedSession(study, person, code, round(clock(), 1), SessionState)
+        return cls(study, opened, renderer, clock)
 
     @property
     def trial(self) -> TrialFace | None:
         """What may be seen of the trial that is shown, or None."""
         return None if self.state.open is None else self.state.started.trials[self.state.open]
-
-    def step(self, now_s: float | None = None) -> Step:
-        """Return the step that is due. now_s : wall time; the session's clock if None."""
-        return next_step(self.state, self._clock() if now_s is None else now_s)
 
     def show_trial(self, number: int) -> None:
         """Log that a trial is shown, and prepare its renderings; no label is rendered yet.
@@ -105,7 +97,7 @@ class Participant:
         self._watch.begin()
         # before it is prepared: how long that takes could reveal what is rendered
         self._add(events.TrialShown(self._now(), number, attempt, simulated))
-        trial = trial_due(self._plan, self._session.trials, self.state, number)
+        trial = trial_due(self._plan, self._trials, self.state, number)
         if trial is None:
             raise ModelError(f"the staircase of trial {number} has ended")
         self._use(trial, lambda: self._renderer.prepare(trial))
@@ -118,7 +110,7 @@ class Participant:
         self._watch.gone_to(label)
         self._use(trial, lambda: self._renderer.show(label))
 
-    def answer(self, number: int, answer: TrialAnswer) -> Step:
+    def answer(self, number: int, answer: TrialAnswer) -> Step[TrialFace]:
         """Log an answer and what was rendered; return the step after it.
 
         Switches, presses and time that the answer lacks are those observed here. The first answer to a trial
@@ -136,78 +128,20 @@ class Participant:
         self._trial = None
         return self._advance()
 
-    def answer_page(self, name: str, values: Mapping[str, Value], agreed: bool = True) -> Step:
-        """Log a page's answers; return the step after it.
-
-        A person who does not agree on a consent page is out: only the enrolment stays on record.
-        InputError, ModelError, OSError.
-        """
-        if name in self.state.pages:
-            return self.step()
-        page = next((page for page in self._plan.pages if page.name == name), None)
-        if page is None:
-            raise ModelError(f"the study has no page {name}")
-        if page.when == "consent" and not agreed:
-            return self._leave(events.PageAnswered(self._now(), name, agreed=False))
-        self._add(events.PageAnswered(self._now(), name, checked_page(self._plan.languages, page, values)))
-        return self._advance()
-
-    def end_break(self) -> Step:
-        """End a break, which began by itself; ModelError while it lasts."""
-        self._add(events.BreakEnded(self._now()))
-        return self.step()
-
     def reconnect(self, renderer: StimulusRenderer) -> None:
         """Continue with another renderer; the trial that was shown is shown again."""
         if self.state.open is not None:
-            self._interrupt(self._session.trials[self.state.open], "another stage was taken")
+            self._interrupt(self._trials[self.state.open], "another stage was taken")
         self._renderer.replace(renderer)
 
-    def withdraw(self, delete: bool = True) -> Step:
-        """Leave the study for good. delete : all data of the person; only the enrolment stays on record."""
-        return self._leave(events.ParticipantWithdrew(self._now()), delete)
-
-    def close(self) -> None:
-        """Close the session in order: until it is resumed, time does not count as work. Idempotent."""
-        if self._closed:
-            return
-        if self.step().kind not in ENDS:
-            self._add(events.SessionClosed(self._now()))
-        self._release()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def _now(self) -> float:
-        # a finer time could reveal what was rendered
-        return round(self._clock(), 1)
-
-    def _add(self, event: Event) -> None:
-        self.state = self._session.add(event)
-
-    def _advance(self) -> Step:
-        """Pass over the trials of staircases that have converged, and log where all is done."""
+    def _pass_over(self) -> None:
+        """Pass over the trials of staircases that have converged."""
         while trial := self.state.next_trial:
-            if not has_ended(self._plan, self._session.trials, self.state, trial.number):
-                break
+            if not has_ended(self._plan, self._trials, self.state, trial.number):
+                return
             self._add(events.StaircaseConverged(self._now(), trial.item, trial.round))
-        step = self.step()
-        if step.kind == "done" and self.study.person(self.person).state == "enrolled":
-            self.study.finished(self.person)
-        return step
 
-    def _leave(self, event: events.PageAnswered | events.ParticipantWithdrew, delete: bool = True) -> Step:
-        self.state = self.state.after(event)
-        self._release()
-        self.study.withdraw(self.person, delete=delete)
-        return self.step()
-
-    def _release(self) -> None:
-        self._closed = True
-        self._session.close()
+    def _put_away(self) -> None:
         self._renderer.drop()
 
     def _open(self, number: int | None = None) -> StudyTrial:

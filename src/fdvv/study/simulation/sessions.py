@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from fdvv.errors import InputError, ModelError
 from fdvv.study.admin.study import Study
-from fdvv.study.plan.session import ENDS, Step
+from fdvv.study.plan.events import TrialFace
+from fdvv.study.plan.sitting import ENDS, Step
 from fdvv.study.session.participant import Participant
 from fdvv.study.simulation.participant import NullRenderer, SimulatedParticipant
 from fdvv.study.simulation.people import ProxySettings
@@ -122,7 +123,7 @@ def _session(
 
 
 def do_step(
-    participant: Participant, simulated: SimulatedParticipant, step: Step, clock: SimulatedClock
+    participant: Participant, simulated: SimulatedParticipant, step: Step[TrialFace], clock: SimulatedClock
 ) -> None:
     """Do what a step asks for: answer a page or a trial, or wait until a break ends."""
     if step.kind == "page":
@@ -134,10 +135,10 @@ def do_step(
         participant.end_break()
     else:
         participant.show_trial(step.number)
-        order = simulated.order(step.labels)
+        order = simulated.order(step.trial.labels)
         piece_s = simulated.takes_s() / (len(order) + 1)
         for label in order:
             participant.go_to(label)
             clock.skip(piece_s)
         clock.skip(piece_s)
-        participant.answer(step.number, simulated.answer(step.item))
+        participant.answer(step.number, simulated.answer(step.trial.item))

@@ -19,10 +19,10 @@ from fdvv.study.files.seal import KeyHolder
 from fdvv.task.tapping import strokes_Hz
 from fdvv.timing.analysis.scores import SCORES_FILE, ScoreRow, TimingScores, scores_text
 from fdvv.timing.files.study import TimingStudy
-from fdvv.timing.plan.events import RoundKept, TimedBegun, timing_event
+from fdvv.timing.plan.events import RoundKept, TimedBegun
 from fdvv.timing.plan.plan import DAY_s
 from fdvv.timing.plan.schedule import TimingFace
-from fdvv.timing.plan.session import TimingState, timing_state
+from fdvv.timing.plan.session import TimingState
 
 ROUNDS_FILE, TRAINING_FILE = "rounds.csv", "training.csv"
 ROUNDS = (
@@ -82,8 +82,8 @@ def _session(study: TimingStudy, person: Person, holder: KeyHolder, suspect: boo
         return None  # reported by verify, and on record
     read = read_chained(own / SESSION_FILE, bytes.fromhex(schedule.key))
     try:
-        events = [timing_event(record) for record in read.records]
-        state = timing_state(study.plan, events) if events else None
+        events = [TimingState.event_of(record) for record in read.records]
+        state = TimingState.of(study.plan, events) if events else None
     except ModelError as error:
         raise InputError(person.name, "session", str(error), "install the fdvv that ran the study") from error
     if state is None:

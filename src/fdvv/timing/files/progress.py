@@ -12,10 +12,11 @@ from msgspec import Struct, structs
 from fdvv.errors import InputError
 from fdvv.study.files.layout import PEOPLE, SESSION_FILE
 from fdvv.study.files.people import Person, PersonState
+from fdvv.study.plan.sitting import utc_text
+from fdvv.study.session.log import read_session
 from fdvv.timing.files.study import TimingStudy
 from fdvv.timing.plan.plan import DAY_s, TimingPlan
-from fdvv.timing.plan.session import TimingState, next_timing_step, utc_text
-from fdvv.timing.session.log import read_timing
+from fdvv.timing.plan.session import TimingState
 
 PersonPhase = Literal["enrolled", "training", "waiting", "due", "overdue", "validation", "done", "out"]
 """Where a person is: due and overdue have finished the gap and not come back; out: declined or withdrew."""
@@ -80,7 +81,7 @@ def _progress(study: TimingStudy, person: Person, now_s: float) -> PersonProgres
     if person.state == "deleted":
         return about
     try:
-        state = read_timing(study.folder / PEOPLE / person.name / SESSION_FILE, study.plan)
+        state = read_session(study.folder / PEOPLE / person.name / SESSION_FILE, study.plan, TimingState)
     except (InputError, OSError) as error:
         return structs.replace(about, problem=str(error))
     return about if state is None else _known(about, study.plan, state, now_s)
@@ -95,7 +96,7 @@ def _known(about: PersonProgress, plan: TimingPlan, state: TimingState, now_s: f
         phase=phase,
         done=state.trials_over,
         trials=len(state.started.trials),
-        rounds=sum(map(len, state.rounds.values())),
+        rounds=state.count,
         due_at="" if due_s is None else utc_text(due_s),
         overdue_at="" if overdue_s is None else utc_text(overdue_s),
         reminder=reminder_of(plan, state) if phase in ("waiting", *DUE) else "",
@@ -106,7 +107,7 @@ def _known(about: PersonProgress, plan: TimingPlan, state: TimingState, now_s: f
 
 def standing_of(state: TimingState, now_s: float) -> PersonPhase:
     """Return where a person is at a wall time."""
-    step, trial = next_timing_step(state, now_s), state.next_trial
+    step, trial = state.step(now_s), state.next_trial
     if step.kind in ("declined", "withdrawn"):
         return "out"
     if step.kind == "wait":

@@ -7,7 +7,8 @@ from typing import Any
 
 from fdvv.errors import ModelError
 from fdvv.study.files.person_check import SessionReading
-from fdvv.timing.plan.events import RoundKept, timing_event
+from fdvv.timing.plan.events import RoundKept
+from fdvv.timing.plan.session import TimingState
 
 
 def _rounds(records: Sequence[dict[str, Any]]) -> int:
@@ -17,7 +18,7 @@ def _rounds(records: Sequence[dict[str, Any]]) -> int:
 def _lacks(records: Sequence[dict[str, Any]]) -> Iterator[str]:
     """Return what a session that is done lacks: trials that were neither scored nor given up."""
     try:
-        happened = [timing_event(record) for record in records]
+        happened = [TimingState.event_of(record) for record in records]
     except ModelError as error:
         yield str(error)
         return

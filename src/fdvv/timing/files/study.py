@@ -11,15 +11,17 @@ from fdvv.model.file import builtin_names
 from fdvv.program.library import names_program
 from fdvv.study.admin.kept import KeptStudy
 from fdvv.study.admin.study import Study
+from fdvv.study.files.people import Person, Schedule
 from fdvv.study.files.person_check import SessionReading
 from fdvv.study.files.seal import CODE_COST, PASSPHRASE_COST, Cost
 from fdvv.study.plan.plan_file import STUDY_FILE
 from fdvv.study.plan.trial import StudyTrial
 from fdvv.timing.files.buttons import opened_button
 from fdvv.timing.files.reading import READING
+from fdvv.timing.plan.events import TimingStarted
 from fdvv.timing.plan.plan import TimingPlan
 from fdvv.timing.plan.plan_file import check_timing_plan, is_timing, read_timing_plan
-from fdvv.timing.plan.schedule import draw_validation
+from fdvv.timing.plan.schedule import SEED, draw_validation, drawn_seed, faces_of
 
 
 class TimingStudy(KeptStudy):
@@ -71,6 +73,11 @@ class TimingStudy(KeptStudy):
             return draw_validation(self.plan, place, self._secret(simulated))
 
         return self.enrol_person(draw, self.plan.languages, language, consent, simulated, cost)
+
+    def start(self, person: Person, schedule: Schedule, at_s: float) -> TimingStarted:
+        """Return the event with which a person's session begins: what may be seen of their trials."""
+        faces, seed = faces_of(self.plan, person.place, schedule.trials), drawn_seed(schedule.key, SEED)
+        return TimingStarted(at_s, person.name, person.language, seed, faces, person.simulated)
 
     def _secret(self, simulated: bool) -> str:
         """Return what orders are drawn with. Simulated people have nothing to be blind to."""

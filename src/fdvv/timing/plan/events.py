@@ -5,19 +5,9 @@ With the plan these records determine the state of the session. They do not tell
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal, get_args
+from typing import ClassVar, Literal
 
-import msgspec
-
-from fdvv.errors import ModelError
-from fdvv.study.plan.events import (
-    BreakEnded,
-    PageAnswered,
-    ParticipantWithdrew,
-    SessionClosed,
-    SessionEvent,
-    SessionResumed,
-)
+from fdvv.study.plan.events import SessionEvent
 from fdvv.task.rounds import RoundTiming
 from fdvv.task.score import Score
 from fdvv.task.task import TaskPress
@@ -104,52 +94,7 @@ class DesignFailed(SessionEvent, frozen=True):
     reason: str
 
 
-class TimedInterrupted(SessionEvent, frozen=True):
-    """The device went away in a trial. The reason could reveal a code, and is sealed."""
-
-    word: ClassVar[str] = "interrupted"
-    number: int
-
-
-class TimedSkipped(SessionEvent, frozen=True):
-    """A trial of the validation was given up: its button cannot be rendered. Why is sealed."""
-
-    word: ClassVar[str] = "skipped"
-    number: int
-
-
 class TrainingEnded(SessionEvent, frozen=True):
     """The training is over, and the gap begins."""
 
     word: ClassVar[str] = "trained"
-
-
-TimingEvent = (
-    TimingStarted
-    | PageAnswered
-    | ButtonDesigned
-    | SwitchPlaced
-    | TimedBegun
-    | RoundKept
-    | TimedScored
-    | DesignFailed
-    | TimedInterrupted
-    | TimedSkipped
-    | TrainingEnded
-    | BreakEnded
-    | SessionClosed
-    | SessionResumed
-    | ParticipantWithdrew
-)
-"""What can happen in a timing session, as its journal keeps it."""
-
-EVENTS: dict[str, type[TimingEvent]] = {kind.word: kind for kind in get_args(TimingEvent)}
-
-
-def timing_event(record: dict[str, Any]) -> TimingEvent:
-    """Read a journal's record. ModelError where it is none."""
-    ((word, body),) = record.items()
-    try:
-        return msgspec.convert(body, EVENTS[word])
-    except (KeyError, msgspec.ValidationError) as error:
-        raise ModelError(f"no event of a timing session: {error}") from error

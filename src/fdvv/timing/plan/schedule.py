@@ -14,6 +14,8 @@ from fdvv.timing.plan.plan import TimingPlan
 
 Phase = Literal["training", "validation"]
 Hand = Literal["button", "switch", "key"]
+SEED, RANDOM = 0, 1
+"""What is drawn of a person's key: the engine's seed, which is no secret, and that of the random design."""
 LETTERS, DIGITS = "ABCDEFGHJKLMNPQRSTUVWXYZ", "23456789"
 """Of codes: none is taken for another."""
 
@@ -36,6 +38,11 @@ class TimingFace(Struct, frozen=True, forbid_unknown_fields=True):
     hand: Hand = "button"
     switch: str = ""
     key: str = ""
+
+
+def drawn_seed(key: str, stream: int) -> int:
+    """Return a seed that follows from a person's key, a hexadecimal number, one way."""
+    return int(np.random.SeedSequence([int(key, 16), stream]).generate_state(1)[0])
 
 
 def level_order(plan: TimingPlan, place: int) -> tuple[str, ...]:

@@ -3,34 +3,27 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Self
 
 from fdvv.errors import ModelError
 from fdvv.optimize.paper_space import paper_model
 from fdvv.study.files.people import SealedTrial
 from fdvv.study.files.seal import KeyHolder
-from fdvv.study.plan.events import (
-    BreakEnded,
-    PageAnswered,
-    ParticipantWithdrew,
-    SessionClosed,
-    Value,
-    checked_page,
-)
-from fdvv.study.plan.session import MOST_FALLS
+from fdvv.study.plan.events import TrialInterrupted, TrialSkipped
+from fdvv.study.plan.sitting import MOST_FALLS, Step
 from fdvv.study.plan.trial import Rendered
+from fdvv.study.session.log import OpenedSession
+from fdvv.study.session.sitting import Sitting
 from fdvv.task.pointing import TemporalPointing
 from fdvv.task.rounds import RoundTiming
 from fdvv.task.tapping import RapidTapping
 from fdvv.timing.files.buttons import Button, opened_button
 from fdvv.timing.files.study import TimingStudy
 from fdvv.timing.plan import events
-from fdvv.timing.plan.events import Surface, TimingEvent
-from fdvv.timing.plan.schedule import TimingFace
-from fdvv.timing.plan.session import ENDS, TimingState, TimingStep, next_timing_step
-from fdvv.timing.session.log import OpenedTiming
+from fdvv.timing.plan.events import Surface
+from fdvv.timing.plan.schedule import RANDOM, TimingFace, drawn_seed
+from fdvv.timing.plan.session import TimingState
 from fdvv.timing.session.training import own_button, random_button, suggested
 
 
@@ -68,21 +61,16 @@ class KeptRound:
     finished: bool
 
 
-class TimingParticipant:
-    """A person, or a simulated one, in a timing study; made by `enrol` or `resume`, for one process.
+class TimingParticipant(Sitting[TimingStudy, TimingState]):
+    """Who presses in time, made by `enrol` or `resume`; see `Sitting`."""
 
-    What is behind the codes is in memory only. A context manager; not to be used from two threads at once.
-
-    Attributes
-    ----------
-    study, person, language : who takes part in what.
-    """
-
-    def __init__(self, study: TimingStudy, session: OpenedTiming, clock: Callable[[], float]) -> None:
-        self.study, self._plan, self._session, self._clock = study, study.plan, session, clock
-        self.person, self.language = self.state.started.person, self.state.started.language
+    def __init__(
+        self, study: TimingStudy, session: OpenedSession[TimingState], clock: Callable[[], float]
+    ) -> None:
+        super().__init__(study, session, clock)
+        self._conditions = {one.number: next(iter(one.labels.values())) for one in session.schedule.trials}
+        self._random_seed = drawn_seed(session.schedule.key, RANDOM)
         self._own: dict[str, Button] = {}
-        self._closed = False
         self._advance()
 
     @classmethod
@@ -115,35 +103,9 @@ class TimingParticipant:
         InputError on a wrong code, on a person who withdrew, where the session runs elsewhere or where the
         study was changed. OSError.
         """
-        return cls(study, OpenedTiming(study, person, code, round(clock(), 1)), clock)
+        return cls(study, OpenedSession(study, person, code, round(clock(), 1), TimingState), clock)
 
-    @property
-    def state(self) -> TimingState:
-        """The state of the session; nothing in it is secret."""
-        return self._session.state
-
-    def step(self, now_s: float | None = None) -> TimingStep:
-        """Return the step that is due. now_s : wall time; the session's clock if None."""
-        return next_timing_step(self.state, self._clock() if now_s is None else now_s)
-
-    def answer_page(self, name: str, values: Mapping[str, Value], agreed: bool = True) -> TimingStep:
-        """Log a page's answers; return the step after it.
-
-        A person who does not agree on a consent page is out: only the enrolment stays on record.
-        InputError, ModelError, OSError.
-        """
-        if name in self.state.pages:
-            return self.step()
-        page = next((page for page in self._plan.pages if page.name == name), None)
-        if page is None:
-            raise ModelError(f"the study has no page {name}")
-        if page.when == "consent" and not agreed:
-            return self._leave(PageAnswered(self._now(), name, agreed=False))
-        checked = checked_page(self._plan.languages, page, values)
-        self._add(PageAnswered(self._now(), name, checked))
-        return self._advance()
-
-    def place(self, number: int) -> TimingStep:
+    def place(self, number: int) -> Step[TimingFace]:
         """Log that the switch or key of a trial is under the hand. ModelError where it is not its turn."""
         self._add(events.SwitchPlaced(self._now(), number))
         return self.step()
@@ -154,7 +116,7 @@ class TimingParticipant:
         The design of a training trial is on the disk before it is returned. on : what is pressed.
         ModelError where it is not the next one, InputError, BuildError, OSError.
         """
-        face = self._due(number)
+        face = self.state.require_due(number)
         if face.phase == "training" and number not in self.state.designs:
             design = suggested(self.state, face.level)
             name = self._plan.training.engine if self._plan.training else ""
@@ -185,79 +147,43 @@ class TimingParticipant:
             self._advance()
         return KeptRound(round_, late_ms, finished)
 
-    def fail(self, number: int, reason: str) -> TimingStep:
+    def fail(self, number: int, reason: str) -> Step[TimingFace]:
         """Log that the button of a trial cannot be rendered at all; return the step after it.
 
         In training the engine avoids what is near; a trial of the validation is missing in the analysis.
         """
-        self._give_up(self._due(number), reason)
+        self._give_up(self.state.require_due(number), reason)
         return self._advance()
 
-    def interrupt(self, reason: str) -> TimingStep:
+    def interrupt(self, reason: str) -> Step[TimingFace]:
         """Log that the device went away in the trial under way, which goes on later.
 
         A trial that brings the device down every time is given up.
         """
         if self.state.open is not None:
-            face = self._due(self.state.open)
+            face = self.state.require_due(self.state.open)
             self._seal(face, reason)
-            self._add(events.TimedInterrupted(self._now(), face.number))
+            self._add(TrialInterrupted(self._now(), face.number, felt=True))
             if self.state.falls[face.number] >= MOST_FALLS:
                 self._give_up(face, reason)
         return self._advance()
-
-    def end_break(self) -> TimingStep:
-        """End a break, which began by itself; ModelError while it lasts."""
-        self._add(BreakEnded(self._now()))
-        return self.step()
-
-    def withdraw(self, delete: bool = True) -> TimingStep:
-        """Leave the study for good. delete : all data of the person; only the enrolment stays on record."""
-        return self._leave(ParticipantWithdrew(self._now()), delete)
-
-    def close(self) -> None:
-        """Close the session in order: until it is resumed, time does not count as work. Idempotent."""
-        if self._closed:
-            return
-        if self.step().kind not in ENDS:
-            self._add(SessionClosed(self._now()))
-        self._release()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def _now(self) -> float:
-        # a finer time could reveal what was rendered
-        return round(self._clock(), 1)
-
-    def _add(self, event: TimingEvent) -> None:
-        self._session.add(event)
-
-    def _due(self, number: int) -> TimingFace:
-        face = self.state.next_trial
-        if face is None or face.number != number:
-            raise ModelError(f"trial {number} is not the next one")
-        return face
 
     def _button(self, face: TimingFace) -> Button | None:
         """Return what a trial renders; None of what lies on the table. **Secret.**"""
         if face.phase == "training":
             return paper_model(self.state.designs[face.number].design, f"trial {face.number + 1}")
-        condition = self._plan.condition(self._session.conditions[face.number])
+        condition = self._plan.condition(self._conditions[face.number])
         if condition.kind == "optimised":
             # what the engine believes no longer changes
             own = self._own.get(face.level) or own_button(self.state, face.level)
             return self._own.setdefault(face.level, own)
         if condition.kind == "random":
-            return random_button(self._session.random_seed)
+            return random_button(self._random_seed)
         return None if condition.on_the_table else opened_button(self.study.folder, condition)
 
     def _score(self, number: int) -> None:
         """Score a trial whose rounds are all there."""
-        face, counting = self._due(number), self.state.counting(number)
+        face, counting = self.state.require_due(number), self.state.counting(number)
         try:
             scores = self._plan.task_of(face.level).scores([one.press for one in counting])
         except ModelError as error:
@@ -271,36 +197,22 @@ class TimingParticipant:
             self._add(events.DesignFailed(self._now(), face.number, reason))
         else:
             self._seal(face, reason)
-            self._add(events.TimedSkipped(self._now(), face.number))
+            self._add(TrialSkipped(self._now(), face.number))
 
     def _seal(self, face: TimingFace, fault: str = "") -> None:
         """Log, for the key holder, what was behind the code of a trial. Training has none."""
         if face.phase == "validation":
             presses = sum(len(one.activations_s) for one in self.state.counting(face.number))
-            condition, faults = self._session.conditions[face.number], (fault,) if fault else ()
+            condition, faults = self._conditions[face.number], (fault,) if fault else ()
             rendered = Rendered(face.code, condition, presses, faults=faults)
             self._session.seal(SealedTrial(face.number, 0.0, (rendered,)))
 
-    def _advance(self) -> TimingStep:
-        """Score what a killed process left unscored, and log where training or all is done."""
+    def _pass_over(self) -> None:
+        """Score what a killed process left unscored, and log where training is done."""
         while (due := self.state.next_trial) and self._whole(due):
             self._score(due.number)
         if self.state.training_left and due and due.phase == "validation":
             self._add(events.TrainingEnded(self._now()))
-        step = self.step()
-        if step.kind == "done" and self.study.person(self.person).state == "enrolled":
-            self.study.finished(self.person)
-        return step
 
     def _whole(self, face: TimingFace) -> bool:
         return len(self.state.counting(face.number)) >= self._plan.trial_rounds
-
-    def _leave(self, event: PageAnswered | ParticipantWithdrew, delete: bool = True) -> TimingStep:
-        after = self.state.after(event)
-        self._release()
-        self.study.withdraw(self.person, delete=delete)
-        return next_timing_step(after, self._clock())
-
-    def _release(self) -> None:
-        self._closed = True
-        self._session.close()

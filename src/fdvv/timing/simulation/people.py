@@ -13,12 +13,13 @@ from fdvv.optimize.people.press_simulator import refusal_of
 from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.people.user import SimulatedUser
 from fdvv.optimize.run.player import play_seed
+from fdvv.study.plan.sitting import Step
 from fdvv.study.simulation.participant import filled_page
 from fdvv.task.rounds import ClockSource, RoundTiming
 from fdvv.task.tapping import RapidTapping
 from fdvv.task.task import TaskPress
 from fdvv.timing.files.buttons import Button, opened_button
-from fdvv.timing.plan.session import TimingStep
+from fdvv.timing.plan.schedule import TimingFace
 from fdvv.timing.session.participant import BegunTrial, TimingParticipant
 
 TIMING = RoundTiming(ClockSource.DEVICE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, "button")
@@ -43,7 +44,7 @@ class SimulatedTimer:
     rig: str = "ideal"
     gap: WeekGap = field(default_factory=WeekGap)
 
-    def fill_in(self, participant: TimingParticipant, name: str) -> TimingStep:
+    def fill_in(self, participant: TimingParticipant, name: str) -> Step[TimingFace]:
         """Answer a page, in a way that anybody could."""
         page = next(page for page in participant.study.plan.pages if page.name == name)
         random = np.random.default_rng([self.seed, self.user.number])

@@ -10,10 +10,11 @@ from datetime import datetime
 from fdvv.errors import InputError, ModelError
 from fdvv.optimize.people.groups import TAPPERS
 from fdvv.optimize.people.user import SimulatedUser, UserSettings, draw_user
+from fdvv.study.plan.sitting import ENDS, Step
 from fdvv.study.simulation.sessions import PAGE_s, SimulatedClock
 from fdvv.timing.files.study import TimingStudy
 from fdvv.timing.plan.plan import DAY_s
-from fdvv.timing.plan.session import ENDS, TimingStep
+from fdvv.timing.plan.schedule import TimingFace
 from fdvv.timing.session.participant import TimingParticipant
 from fdvv.timing.simulation.people import SimulatedTimer
 
@@ -112,17 +113,16 @@ def _session(study: TimingStudy, timer: SimulatedTimer, report: Callable[[float]
     finally:
         participant.close()
     state = participant.state
-    rounds = sum(map(len, state.rounds.values()))
-    return SimulatedTiming(person, state.trials_over, rounds, breaks, (clock() - start_s) / DAY_s)
+    return SimulatedTiming(person, state.trials_over, state.count, breaks, (clock() - start_s) / DAY_s)
 
 
-def until_s(step: TimingStep) -> float:
+def until_s(step: Step[TimingFace]) -> float:
     """Return the wall time at which a gap is over."""
     return datetime.fromisoformat(step.due_at).timestamp() + 1.0
 
 
 def do_timing_step(
-    participant: TimingParticipant, timer: SimulatedTimer, step: TimingStep, clock: SimulatedClock
+    participant: TimingParticipant, timer: SimulatedTimer, step: Step[TimingFace], clock: SimulatedClock
 ) -> None:
     """Do what a step asks for: answer a page, place a switch, play a trial, or wait until a break ends."""
     if step.kind == "page":
@@ -137,4 +137,4 @@ def do_timing_step(
     else:
         clock.skip(BETWEEN_s)
         begun = timer.play(participant, step.number)
-        clock.skip(begun.rounds * participant.study.plan.round_s(step.level))
+        clock.skip(begun.rounds * participant.study.plan.round_s(step.trial.level))
