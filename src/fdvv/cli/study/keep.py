@@ -10,14 +10,15 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.study.timing import timing_status, timing_unseal
+from fdvv.cli.study.people_table import PeopleTable
+from fdvv.cli.study.timing import timed_people
 from fdvv.io.files import read_limited
 from fdvv.study.admin.kept import KeptStudy
-from fdvv.study.admin.operator_view import OperatorView, operator_view
+from fdvv.study.admin.operator_view import operator_view
 from fdvv.study.admin.study import Study
-from fdvv.study.plan.answers import Answers
+from fdvv.study.files.layout import UNSEALED
 from fdvv.timing.analysis.unseal import unseal_timing
-from fdvv.timing.files.study import TimingStudy, open_study
+from fdvv.timing.files.study import AnyStudy, TimingStudy, open_study
 
 folder_argument = click.argument("folder", type=ui.FOLDER)
 passphrase_option = ui.option(
@@ -92,10 +93,8 @@ def verify(folder: Path, marks: bool, passphrase_file: Path | None, as_json: boo
 def status(folder: Path, as_json: bool) -> None:
     """Show how far the study in FOLDER is and what was done with it, but not what labels hide."""
     study = open_study(folder)
-    if isinstance(study, TimingStudy):
-        timing_status(study, as_json)
-        return
-    document = _status(study, operator_view(study, time.time()))
+    table = timed_people(study) if isinstance(study, TimingStudy) else _people(study)
+    document = _status(study, table.people)
     if as_json:
         ui.print_json(document)
         return
@@ -105,16 +104,15 @@ def status(folder: Path, as_json: bool) -> None:
         click.echo(f"the record ends in: {document['record']}")
     for act in document["unsealed"]:
         click.echo(f"unsealed {act['when']} by {act['who']}: {act['why']}")
-    rows = [
-        [p["person"], p["language"], p["state"], f"{p['answered']} of {p['trials']}", p["resumed"]]
-        for p in document["people"]
-    ]
-    if rows:
-        ui.print_table(["person", "language", "state", "answered", "resumed"], rows, left=3)
+    if table.rows:
+        ui.print_table(table.columns, table.rows, left=table.left)
+    for line in table.lines:
+        ui.print_wrapped(line)
     if document["paused"]:
         click.echo(f"paused: {', '.join(document['paused'])}")
-    click.echo(f"people: {len(rows)} of {document['planned']} planned{_simulated(document['simulated'])}")
-    ui.print_warnings([p["problem"] for p in document["people"] if p["problem"]])
+    count = f"{len(table.rows)} of {document['planned']} planned"
+    click.echo(f"people: {count}{_simulated(document['simulated'])}")
+    ui.print_warnings([p["problem"] for p in table.people if p["problem"]])
 
 
 @click.command()
@@ -137,18 +135,23 @@ def unseal(
     """
     study, passphrase = open_study(folder), _passphrase(passphrase_file)
     if isinstance(study, TimingStudy):
-        timing_unseal(study, unseal_timing(study, passphrase, who, why, keeper, despite), as_json)
-        return
-    answers = study.unseal(passphrase, who, why, keeper, despite)
-    document = _unsealed(folder, answers)
+        scores = unseal_timing(study, passphrase, who, why, keeper, despite)
+        phase, simulated = " of validation", scores.simulated
+        reasons = [row.excluded for row in scores.rows]
+    else:
+        answers = study.unseal(passphrase, who, why, keeper, despite)
+        assert answers.excluded is not None
+        phase, simulated, reasons = "", answers.simulated, answers.excluded.tolist()
+    excluded, counted = Counter(filter(None, reasons)), reasons.count("")
     if as_json:
-        ui.print_json(document)
+        kept = {"simulated": simulated, "unsealed": str(folder / UNSEALED)}
+        ui.print_json({"rows": len(reasons), "counted": counted, "excluded": dict(excluded), **kept})
         return
-    trials = ui.counted(document["rows"], "trial")
-    click.echo(f"{trials}{ui.simulated(answers.simulated)}, {document['counted']} count")
-    for reason, rows in document["excluded"].items():
+    trials = ui.counted(len(reasons), "trial")
+    click.echo(f"{trials}{phase}{ui.simulated(simulated)}, {counted} count")
+    for reason, rows in excluded.items():
         click.echo(f"  {rows} left out: {reason}")
-    ui.print_written(folder / "unsealed")
+    ui.print_written(folder / UNSEALED)
 
 
 @click.command()
@@ -183,7 +186,7 @@ def _passphrase(file: Path | None, new: bool = False) -> str:
     return answer
 
 
-def _scheme(study: KeptStudy) -> str:
+def _scheme(study: KeptStudy[Any]) -> str:
     alone = ", ".join(study.code_alone)
     if alone:
         return f"the code alone of {alone} opens it, for an earlier fdvv enrolled them; keep their cards away"
@@ -194,28 +197,28 @@ def _simulated(simulated: bool) -> str:
     return ", all simulated: a proxy, no evidence" if simulated else ""
 
 
-def _status(study: Study, view: OperatorView) -> dict[str, Any]:
+def _status(study: AnyStudy, people: list[dict[str, Any]]) -> dict[str, Any]:
     acts = [record["unsealed"] for record in study.history() if "unsealed" in record]
     state = "unsealed" if acts else "frozen" if study.frozen else "not frozen"
     return {
         "name": study.plan.name, "kind": study.plan.kind, "state": state, "fingerprint": study.fingerprint,
-        "record": study.record_end, "planned": view.planned, "simulated": study.simulated,
-        "paused": sorted(one or "everybody" for one in study.paused), "unsealed": acts,
-        "people": [
-            {
-                "person": one.person, "language": one.language, "state": one.state,
-                "simulated": one.simulated, "answered": one.answered, "trials": one.trials,
-                "resumed": one.resumptions, "interrupted": one.interruptions, "problem": one.problem,
-            }
-            for one in view.people
-        ],
+        "record": study.record_end, "planned": study.plan.people, "simulated": study.simulated,
+        "paused": sorted(one or "everybody" for one in study.paused), "unsealed": acts, "people": people,
     }  # fmt: skip
 
 
-def _unsealed(folder: Path, answers: Answers) -> dict[str, Any]:
-    assert answers.excluded is not None
-    reasons = Counter(str(reason) for reason in answers.excluded if reason)
-    return {
-        "rows": len(answers.person), "counted": int(answers.counts.sum()), "excluded": dict(reasons),
-        "simulated": answers.simulated, "unsealed": str(folder / "unsealed"),
-    }  # fmt: skip
+def _people(study: Study) -> PeopleTable:
+    people = operator_view(study, time.time()).people
+    rows = [
+        [one.person, one.language, one.state, f"{one.answered} of {one.trials}", one.resumptions]
+        for one in people
+    ]
+    documents = [
+        {
+            "person": one.person, "language": one.language, "state": one.state, "simulated": one.simulated,
+            "answered": one.answered, "trials": one.trials, "resumed": one.resumptions,
+            "interrupted": one.interruptions, "problem": one.problem,
+        }
+        for one in people
+    ]  # fmt: skip
+    return PeopleTable(documents, ["person", "language", "state", "answered", "resumed"], rows, 3)

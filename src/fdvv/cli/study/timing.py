@@ -11,6 +11,7 @@ import msgspec
 
 from fdvv.cli import ui
 from fdvv.cli.options import kept_on_interrupt
+from fdvv.cli.study.people_table import PeopleTable
 from fdvv.errors import InputError
 from fdvv.io.files import read_limited, write_atomic
 from fdvv.report.prose import interval_text
@@ -22,7 +23,7 @@ from fdvv.timing.analysis.report import capitalised, timing_dict, timing_html
 from fdvv.timing.analysis.scores import SCORES_FILE, TimingScores, read_scores
 from fdvv.timing.analysis.sentences import measure_of, next_sentence, strokes_sentence, verdict_sentence
 from fdvv.timing.analysis.unseal import TRAINING_FILE
-from fdvv.timing.files.progress import DUE, TimingProgress, timing_progress
+from fdvv.timing.files.progress import DUE, PersonProgress, timing_progress
 from fdvv.timing.files.study import TimingStudy, button_problems
 from fdvv.timing.plan.plan import TimingPlan
 from fdvv.timing.plan.plan_file import plan_problems, read_timing_plan
@@ -71,67 +72,21 @@ def _minutes(plan: TimingPlan, trials: int) -> float:
     return minutes + breaks * plan.break_min
 
 
-def timing_status(study: TimingStudy, as_json: bool) -> None:
-    """Print how far a timing study is, who is due, and the words that call them back."""
-    progress = timing_progress(study, time.time())
-    acts = [record["unsealed"] for record in study.history() if "unsealed" in record]
-    state = "unsealed" if acts else "frozen" if study.frozen else "not frozen"
-    document = {
-        "name": study.plan.name, "kind": study.plan.kind, "state": state, "fingerprint": study.fingerprint,
-        "record": study.record_end, "planned": progress.planned, "simulated": study.simulated,
-        "paused": sorted(one or "everybody" for one in study.paused), "unsealed": acts,
-        "people": msgspec.to_builtins(progress.people),
-    }  # fmt: skip
-    if as_json:
-        ui.print_json(document)
-        return
-    click.echo(f"{document['name']} ({document['kind']}), {state}")
-    if study.fingerprint:
-        click.echo(f"fingerprint: {study.fingerprint}")
-        click.echo(f"the record ends in: {study.record_end}")
-    for act in acts:
-        click.echo(f"unsealed {act['when']} by {act['who']}: {act['why']}")
-    _print_people(progress)
-    if study.paused:
-        click.echo(f"paused: {', '.join(sorted(one or 'everybody' for one in study.paused))}")
-    simulated = ", all simulated: a proxy, no evidence" if study.simulated else ""
-    click.echo(f"people: {len(progress.people)} of {progress.planned} planned{simulated}")
-    ui.print_warnings([one.problem for one in progress.people if one.problem])
-
-
-def _print_people(progress: TimingProgress) -> None:
+def timed_people(study: TimingStudy) -> PeopleTable:
+    """Return how far the people of a timing study are, who is due, and the words that call them back."""
+    people = timing_progress(study, time.time()).people
     rows = [
         [one.person, one.language, one.phase, f"{one.done} of {one.trials}", one.rounds, one.due_at[:10]]
-        for one in progress.people
+        for one in people
     ]
-    if rows:
-        ui.print_table(["person", "language", "phase", "trials", "rounds", "not before"], rows, left=4)
-    for one in progress.people:
-        if one.phase in DUE:
-            late = f", overdue since {one.overdue_at[:10]}" if one.phase == "overdue" else ""
-            ui.print_wrapped(f"due: {one.person}{late}: {one.reminder}")
+    columns = ["person", "language", "phase", "trials", "rounds", "not before"]
+    lines = [_due_line(one) for one in people if one.phase in DUE]
+    return PeopleTable(msgspec.to_builtins(people), columns, rows, 4, lines)
 
 
-def timing_unseal(study: TimingStudy, scores: TimingScores, as_json: bool) -> None:
-    """Print what was unsealed of a timing study."""
-    counted = sum(row.counts for row in scores.rows)
-    reasons: dict[str, int] = {}
-    for row in scores.rows:
-        if row.excluded:
-            reasons[row.excluded] = reasons.get(row.excluded, 0) + 1
-    if as_json:
-        ui.print_json(
-            {
-                "rows": len(scores.rows), "counted": counted, "excluded": reasons,
-                "simulated": scores.simulated, "unsealed": str(study.folder / UNSEALED),
-            }
-        )  # fmt: skip
-        return
-    trials = ui.counted(len(scores.rows), "trial")
-    click.echo(f"{trials} of validation{ui.simulated(scores.simulated)}, {counted} count")
-    for reason, rows in reasons.items():
-        click.echo(f"  {rows} left out: {reason}")
-    ui.print_written(study.folder / UNSEALED)
+def _due_line(one: PersonProgress) -> str:
+    late = f", overdue since {one.overdue_at[:10]}" if one.phase == "overdue" else ""
+    return f"due: {one.person}{late}: {one.reminder}"
 
 
 def timing_simulate(folder: Path, people: int | None, seed: int, as_json: bool) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import secrets
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from fdvv.errors import InputError
@@ -15,7 +14,7 @@ from fdvv.study.admin.planned import PlannedStudy
 from fdvv.study.files import layout
 from fdvv.study.files.chained_log import ChainedLog, open_when_free, read_chained
 from fdvv.study.files.counts import Counter, read_counts
-from fdvv.study.files.folder import study_problems
+from fdvv.study.files.folder import P, study_problems
 from fdvv.study.files.layout import LOG_FILE, PEOPLE, SESSION_FILE, digest
 from fdvv.study.files.people import (
     EVERYBODY,
@@ -36,7 +35,7 @@ from fdvv.study.plan.events import SessionEvent
 from fdvv.study.plan.trial import StudyTrial
 
 
-class KeptStudy(PlannedStudy):
+class KeptStudy(PlannedStudy[P]):
     """What every kind of study does with its folder; no file is held open between two calls."""
 
     @property
@@ -62,24 +61,22 @@ class KeptStudy(PlannedStudy):
             self.run_key.counted = found.written
         make_private(self.folder / PEOPLE)  # an earlier fdvv let others of this machine read it
 
-    def enrol_person(
-        self,
-        draw: Callable[[int], tuple[StudyTrial, ...]],
-        languages: Sequence[str],
-        language: str = "",
-        consent: str = "",
-        simulated: bool = False,
-        cost: Cost = CODE_COST,
+    @abstractmethod
+    def draw(self, place: int, simulated: bool) -> tuple[StudyTrial, ...]:
+        """Draw the trials of a person at a place in the study, 0, 1, ... **Secret.**"""
+
+    def enrol(
+        self, language: str = "", consent: str = "", simulated: bool = False, cost: Cost = CODE_COST
     ) -> tuple[str, str]:
         """Enrol a person: draw their whole schedule and lock it. Return their name and their code.
 
-        draw : the trials of a place. languages : of the study, the first by default.
+        language : of the study, its first by default.
         The code is shown to that person alone and not stored. consent : how it was given, if not on a page.
         InputError where the study is not frozen, was changed or was unsealed, where sessions are not open.
         OSError.
         """
         self.require_whole()
-        run_key = self._run_key(simulated)
+        run_key, languages = self._run_key(simulated), self.plan.languages
         language = language or languages[0]
         if language not in languages:
             known = ", ".join(languages)
@@ -88,8 +85,8 @@ class KeptStudy(PlannedStudy):
             self._check_enrolment(log, simulated)
             people = people_of(log.records)
             person, place = f"P{len(people) + 1:02d}", free_place(people)
-            trials = draw(place)
-            schedule, code = Schedule(log.about["study"], person, secrets.token_hex(32), trials), new_code()
+            trials, code = self.draw(place, simulated), new_code()
+            schedule = Schedule(log.about["study"], person, secrets.token_hex(32), trials)
             text = lock_schedule(schedule, self.seal, code, cost, run_key)
             heads = keep_person(self.folder / PEOPLE / person, schedule, text, consent)
             if run_key:

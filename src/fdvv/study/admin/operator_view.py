@@ -11,6 +11,7 @@ from fdvv.errors import InputError
 from fdvv.study.files.folder import StudyFolder
 from fdvv.study.files.layout import PEOPLE, SESSION_FILE
 from fdvv.study.files.people import Person, PersonState
+from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.session import SessionState
 from fdvv.study.plan.sitting import StepKind
 from fdvv.study.session.log import read_session
@@ -50,7 +51,7 @@ class OperatorView(Struct, frozen=True, forbid_unknown_fields=True):
     people: tuple[PersonView, ...]
 
 
-def operator_view(study: StudyFolder, now_s: float) -> OperatorView:
+def operator_view(study: StudyFolder[StudyPlan], now_s: float) -> OperatorView:
     """Return the progress of everybody, in the order of their enrolment. now_s : wall time.
 
     InputError on a study that was changed, OSError.
@@ -59,7 +60,7 @@ def operator_view(study: StudyFolder, now_s: float) -> OperatorView:
     return OperatorView(study.plan.name, study.fingerprint, study.plan.people, people)
 
 
-def _person_view(study: StudyFolder, person: Person, now_s: float) -> PersonView:
+def _person_view(study: StudyFolder[StudyPlan], person: Person, now_s: float) -> PersonView:
     about = PersonView(
         person=person.name, language=person.language, simulated=person.simulated, state=person.state
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 from abc import abstractmethod
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Self
 
@@ -14,20 +14,21 @@ from fdvv.io.files import read_limited, sync_folder, write_atomic
 from fdvv.rendering.session import now
 from fdvv.study.files import layout
 from fdvv.study.files.chained_log import ChainedLog
-from fdvv.study.files.folder import KeptFolder
+from fdvv.study.files.folder import P, StudyFolder
 from fdvv.study.files.layout import LOG_FILE, PEOPLE, Frozen, digest
 from fdvv.study.files.log_head import head_path
-from fdvv.study.files.seal import Cost, new_key_holder
+from fdvv.study.files.seal import PASSPHRASE_COST, Cost, new_key_holder
 from fdvv.study.plan.plan_file import STUDY_FILE
 
+UNFIT = "change it: it could not be run as it says"
 
-class PlannedStudy(KeptFolder):
+
+class PlannedStudy(StudyFolder[P]):
     """A study up to its freezing; no file is held open between two calls."""
 
-    @classmethod
     @abstractmethod
-    def files_named(cls, text: str, source: object) -> Sequence[str]:
-        """Return the files that the text of a plan names, as it names them. InputError."""
+    def check(self) -> None:
+        """Raise InputError on a plan that could not be run or analysed as it says, buttons among it."""
 
     @classmethod
     def declare(cls, folder: Path, plan_file: Path) -> Self:
@@ -60,33 +61,33 @@ class PlannedStudy(KeptFolder):
     @classmethod
     def _put_plan(cls, folder: Path, text: str, beside: Path, source: object) -> None:
         """Write a plan, behind all files that it names. InputError where one is not there, OSError."""
-        layout.copy_files(cls.files_named(text, source), Path(beside), folder)
+        layout.copy_files(layout.named_files(cls.read_plan(text, source)), Path(beside), folder)
         write_atomic(folder / STUDY_FILE, text)
 
-    def freeze_files(self, names: Sequence[str], builtins: Iterable[str], passphrase: str, cost: Cost) -> str:
-        """Freeze a plan that was checked, the files that it names, and built-in buttons by name.
+    def freeze(self, passphrase: str, cost: Cost = PASSPHRASE_COST) -> str:
+        """Freeze the study, and return its fingerprint: from now on every change is noticed.
 
-        Files beside the plan are copied into the study first: what is frozen is rendered. Returns the
-        fingerprint. Sessions are open in this object from then on. InputError on a short passphrase.
-        BuildError: no PyNaCl. OSError.
+        passphrase : the key holder's; it is not stored. Sessions are open in this object from then on.
+        Files beside the plan that it names are copied into the study first: what is frozen is rendered.
+        InputError on a plan with problems, a study that was frozen before, a short passphrase. BuildError: no
+        PyNaCl. OSError.
         """
-        folder = self.folder
+        folder, plan = self.folder, self.plan
+        self.check()
+        if (folder / layout.FROZEN_FILE).exists() or (folder / PEOPLE).exists():
+            remedy = "declare a new study in another folder"
+            raise InputError(folder, "study", "was frozen before", remedy)
+        names = layout.named_files(plan)
         layout.keep_files(names, folder)
         paths = [folder / STUDY_FILE, *(layout.kept_path(folder, name) for name in names)]
         files = {path.relative_to(folder).as_posix(): digest(layout.content(path)) for path in paths}
         holder, keeper = new_key_holder(passphrase, cost)
         write_atomic(folder / layout.KEEPER_FILE, keeper, private=True)
         files[layout.KEEPER_FILE] = digest(keeper)
-        digests = {name: layout.builtin_digest(name) for name in builtins}
+        digests = {name: layout.builtin_digest(name) for name in layout.named_builtins(plan)}
         frozen = Frozen(files=files, builtins=digests, seal=holder.seal.text, fdvv=__version__, when=now())
         fingerprint, self.run_key = self._begin_log(frozen), holder.run_key
         return fingerprint
-
-    def require_unfrozen(self) -> None:
-        """Raise InputError if the study was frozen before."""
-        if (self.folder / layout.FROZEN_FILE).exists() or (self.folder / PEOPLE).exists():
-            remedy = "declare a new study in another folder"
-            raise InputError(self.folder, "study", "was frozen before", remedy)
 
     def _begin_log(self, frozen: Frozen) -> str:
         log_path, sha256 = self.folder / LOG_FILE, digest(frozen.text)

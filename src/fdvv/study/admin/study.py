@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from fdvv.errors import InputError
 from fdvv.study.admin.kept import KeptStudy
+from fdvv.study.admin.planned import UNFIT
 from fdvv.study.admin.review import review_plan, twin_problems
 from fdvv.study.analysis.unseal import unseal_folder
-from fdvv.study.files import layout
-from fdvv.study.files.folder import StudyFolder
 from fdvv.study.files.people import Person, Schedule
-from fdvv.study.files.seal import CODE_COST, PASSPHRASE_COST, Cost
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.events import SessionStarted, face_of
+from fdvv.study.plan.plan import StudyPlan
 from fdvv.study.plan.plan_file import STUDY_FILE, check_plan, read_plan_text
 from fdvv.study.plan.schedule import draw_schedule
 from fdvv.study.plan.trial import StudyTrial
 
 
-class Study(KeptStudy, StudyFolder):
+class Study(KeptStudy[StudyPlan]):
     """A study that lies in a folder; no file is held open between two calls. Made by `declare` or `open`.
 
     Attributes
@@ -30,38 +28,22 @@ class Study(KeptStudy, StudyFolder):
     folder : of the study. run_key : in memory while sessions are open, see `open_sessions`; else None.
     """
 
-    @classmethod
-    def files_named(cls, text: str, source: object) -> Sequence[str]:
-        return layout.named_files(read_plan_text(text, source))
+    @staticmethod
+    def read_plan(text: str | bytes, source: object) -> StudyPlan:
+        return read_plan_text(text, source)
 
-    def freeze(self, passphrase: str, cost: Cost = PASSPHRASE_COST) -> str:
-        """Freeze the study, and return its fingerprint: from now on every change is noticed.
-
-        passphrase : the key holder's; it is not stored. Sessions are open in this object from then on.
-        Files beside the plan that it names are copied into the study first: what is frozen is rendered.
-        InputError on a plan with problems, a study that was frozen before, a short passphrase. BuildError: no
-        PyNaCl. OSError.
-        """
+    def check(self) -> None:
+        """Raise InputError on a plan that could not be run or analysed as it says, its buttons among it."""
         folder, plan = self.folder, self.plan
         check_plan(plan, folder / STUDY_FILE)
         review = review_plan(plan, folder)
         for problem in (*review.problems, *twin_problems(plan, folder, opened=review.models)):
-            raise InputError(
-                folder / STUDY_FILE, "plan", problem, "change it: it could not be run as it says"
-            )
-        self.require_unfrozen()
-        return self.freeze_files(layout.named_files(plan), layout.named_builtins(plan), passphrase, cost)
+            raise InputError(folder / STUDY_FILE, "plan", problem, UNFIT)
 
-    def enrol(
-        self, language: str = "", consent: str = "", simulated: bool = False, cost: Cost = CODE_COST
-    ) -> tuple[str, str]:
-        """Enrol a person, see `enrol_person`. Return their name and their code. InputError, OSError."""
-
-        def draw(place: int) -> tuple[StudyTrial, ...]:
-            # seeded by the operating system, anew for everybody: one schedule must not predict the next
-            return draw_schedule(self.plan, place, np.random.default_rng())
-
-        return self.enrol_person(draw, self.plan.languages, language, consent, simulated, cost)
+    def draw(self, place: int, simulated: bool) -> tuple[StudyTrial, ...]:
+        """Draw the trials of a person. **Secret.** Simulated people's are drawn as those of people."""
+        # seeded by the operating system, anew for everybody: one schedule must not predict the next
+        return draw_schedule(self.plan, place, np.random.default_rng())
 
     def start(self, person: Person, schedule: Schedule, at_s: float) -> SessionStarted:
         """Return the event with which a person's session begins: what may be seen of their trials."""

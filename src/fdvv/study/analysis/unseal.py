@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -16,14 +17,15 @@ from fdvv.force_text import force_number, force_text
 from fdvv.io.files import make_private, private_folder, write_atomic
 from fdvv.rendering.session import now
 from fdvv.study.analysis.code_book import csv_text, write_answers
-from fdvv.study.files.chained_log import ChainedLog, read_chained
+from fdvv.study.files.chained_log import ChainedLog, ChainRead, read_chained
 from fdvv.study.files.layout import COUNTS_FILE, PEOPLE, SCHEDULE_FILE, SEALED_FILE, SESSION_FILE, UNSEALED
-from fdvv.study.files.people import Person, SealedTrial, open_schedule, people_of
+from fdvv.study.files.people import Person, Schedule, SealedTrial, open_schedule, people_of
 from fdvv.study.files.seal import KeyHolder
 from fdvv.study.plan.answers import Answers, screen
-from fdvv.study.plan.events import PageAnswered, StaircaseConverged, TrialAnswered, Value
+from fdvv.study.plan.events import PageAnswered, SessionEvent, StaircaseConverged, TrialAnswered
 from fdvv.study.plan.plan import Exclusion, StudyPlan
 from fdvv.study.plan.session import SessionState
+from fdvv.study.plan.sitting import SittingState
 from fdvv.study.plan.trial import EQUAL, Rendered, StudyTrial, TrialAnswer
 
 RENDERED_FILE, PAGES_FILE = "rendered.csv", "pages.csv"
@@ -101,12 +103,46 @@ class UnsealedTrial:
 
 @dataclass(frozen=True)
 class UnsealedPerson:
-    """What was unsealed of a person. pages : the answers on pages, by page and question."""
+    """What was unsealed of a person. pages : that were answered, by name."""
 
     person: Person
     rows: tuple[UnsealedTrial, ...]
     practice: tuple[UnsealedTrial, ...] = ()
-    pages: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
+    pages: Mapping[str, PageAnswered] = field(default_factory=dict)
+
+
+def open_person(folder: Path, person: Person, keeper: KeyHolder) -> tuple[Schedule, ChainRead] | None:
+    """Return a person's schedule and the log of their session, as far as it is whole.
+
+    None of whom nothing is kept, or whose schedule is not there to be read.
+    """
+    own = folder / PEOPLE / person.name
+    if person.state == "deleted":
+        return None
+    try:
+        schedule = open_schedule(own / SCHEDULE_FILE, keeper)
+    except InputError:
+        return None  # reported by verify, and on record
+    return schedule, read_chained(own / SESSION_FILE, bytes.fromhex(schedule.key))
+
+
+def events_of(person: Person, session: ChainRead, kind: type[SittingState[Any]]) -> list[SessionEvent]:
+    """Return the events of a person's session. InputError on a record that no fdvv of this kind wrote."""
+    try:
+        return [kind.event_of(record) for record in session.records]
+    except ModelError as error:
+        raise InputError(person.name, "session", str(error), "install the fdvv that ran the study") from error
+
+
+def pages_text(people: Iterable[tuple[Person, Mapping[str, PageAnswered]]]) -> str:
+    """Return what people answered on pages, a row for each question, as the text of pages.csv."""
+    rows = (
+        (person.name, page, question, "" if value is None else value)
+        for person, pages in people
+        for page, answered in pages.items()
+        for question, value in answered.values.items()
+    )
+    return csv_text(("person", "page", "question", "answer"), rows)
 
 
 def _person(
@@ -118,27 +154,20 @@ def _person(
     with their files. Where that is so, or the logs are not as they were written, nothing of them counts.
     InputError on a record that none of the study's programs wrote.
     """
-    own = folder / PEOPLE / person.name
-    if person.state == "deleted":
+    found = open_person(folder, person, keeper)
+    if found is None:
         return None
-    try:
-        schedule = open_schedule(own / SCHEDULE_FILE, keeper)
-    except InputError:
-        return None  # reported by verify, and on record
-    key = bytes.fromhex(schedule.key)
-    session, sealed = read_chained(own / SESSION_FILE, key), read_chained(own / SEALED_FILE, key)
+    schedule, session = found
+    sealed = read_chained(folder / PEOPLE / person.name / SEALED_FILE, bytes.fromhex(schedule.key))
     damaged = suspect or bool(session.problems or sealed.problems)
     boxes = [keeper.unlock(record["sealed"], f"{person.name}/{SEALED_FILE}") for record in sealed.records]
     rendered = [msgspec.json.decode(box, type=SealedTrial) for box in boxes]
-    found = {one.number: one for one in rendered}  # of those of one number the last one counts
-    try:
-        events = [SessionState.event_of(record) for record in session.records]
-    except ModelError as error:
-        raise InputError(person.name, "session", str(error), "install the fdvv that ran the study") from error
+    by_number = {one.number: one for one in rendered}  # of those of one number the last one counts
+    events = events_of(person, session, SessionState)
     answers = {event.number: event.answer for event in events if isinstance(event, TrialAnswered)}
     settled = {(event.item, event.round) for event in events if isinstance(event, StaircaseConverged)}
     rows = [
-        _row(plan, person.name, trial, answers.get(trial.number), found.get(trial.number), damaged)
+        _row(plan, person.name, trial, answers.get(trial.number), by_number.get(trial.number), damaged)
         for trial in schedule.trials
         if trial.number in answers or (trial.item, trial.round) not in settled
     ]
@@ -146,7 +175,7 @@ def _person(
         person,
         tuple(row for row in rows if not row.trial.practice),
         tuple(row for row in rows if row.trial.practice and row.answer),
-        {event.name: event.values for event in events if isinstance(event, PageAnswered)},
+        {event.name: event for event in events if isinstance(event, PageAnswered)},
     )
 
 
@@ -237,13 +266,7 @@ def unseal_folder(
     trials = [row for one in people for row in (*one.practice, *one.rows) if row.answer]
     labels = (label for row in trials for label in _labels(row))
     write_atomic(folder / UNSEALED / RENDERED_FILE, csv_text(RENDERED, labels))
-    pages = (
-        (one.person.name, page, question, "" if value is None else value)
-        for one in people
-        for page, values in one.pages.items()
-        for question, value in values.items()
-    )
-    write_atomic(folder / UNSEALED / PAGES_FILE, csv_text(("person", "page", "question", "answer"), pages))
+    write_atomic(folder / UNSEALED / PAGES_FILE, pages_text((one.person, one.pages) for one in people))
     make_private(folder / UNSEALED)
     return answers
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from fdvv.errors import InputError
 from fdvv.study.files import layout
@@ -16,11 +16,13 @@ from fdvv.study.files.people import Person, paused_of, people_of, person_of, rea
 from fdvv.study.files.person_check import TRIALS, PersonCheck, SessionReading
 from fdvv.study.files.run_key import RunKey
 from fdvv.study.files.seal import KeyHolder, SealingKey
-from fdvv.study.plan.plan import StudyPlan
-from fdvv.study.plan.plan_file import STUDY_FILE, read_plan_text
+from fdvv.study.plan.plan import DeclaredPlan
+from fdvv.study.plan.plan_file import STUDY_FILE
+
+P = TypeVar("P", bound=DeclaredPlan)
 
 
-class KeptFolder:
+class StudyFolder(ABC, Generic[P]):
     """A study that lies in a folder, whatever its plan declares, to be read.
 
     No file is held open between two calls.
@@ -36,11 +38,20 @@ class KeptFolder:
     def __init__(self, folder: Path) -> None:
         self.folder = Path(folder)
         self.run_key: RunKey | None = None
+        self._plan: tuple[bytes, P] | None = None
+
+    @staticmethod
+    @abstractmethod
+    def read_plan(text: str | bytes, source: object) -> P:
+        """Read the text of a plan, unchecked. InputError."""
 
     @property
-    @abstractmethod
-    def plan(self) -> Any:
+    def plan(self) -> P:
         """The plan. InputError where it cannot be read, or is not what was frozen."""
+        data = self.plan_text
+        if self._plan is None or self._plan[0] != data:
+            self._plan = data, self.read_plan(data, self.folder / STUDY_FILE)
+        return self._plan[1]
 
     @property
     def plan_text(self) -> bytes:
@@ -159,23 +170,6 @@ class KeptFolder:
             reason = "is the keeper's file of another study"
             raise InputError(path, "$.seal", reason, "name that of this study")
         return holder
-
-
-class StudyFolder(KeptFolder):
-    """A study about what is rendered that lies in a folder, to be read."""
-
-    def __init__(self, folder: Path) -> None:
-        super().__init__(folder)
-        self._plan: tuple[bytes, StudyPlan] | None = None
-
-    @property
-    def plan(self) -> StudyPlan:
-        """The plan. InputError where it cannot be read, or is not what was frozen."""
-        data = self.plan_text
-        if self._plan is None or self._plan[0] != data:
-            path = self.folder / STUDY_FILE
-            self._plan = data, read_plan_text(data.decode(errors="replace"), path)
-        return self._plan[1]
 
 
 def study_problems(

@@ -14,7 +14,7 @@ from fdvv.errors import InputError
 from fdvv.io.documents import Kind, pretty, read_document
 from fdvv.io.files import read_limited, write_atomic
 from fdvv.model.file import builtin_names, load_builtin, model_to_json
-from fdvv.study.plan.plan import StudyPlan
+from fdvv.study.plan.plan import DeclaredPlan
 
 FROZEN_FILE, KEEPER_FILE, LOG_FILE = "frozen.json", "keeper.json", "study.jsonl"
 COUNTS_FILE = "counts.json"
@@ -84,16 +84,14 @@ def builtin_digest(name: str) -> str:
     return digest(model_to_json(load_builtin(name))) if name in builtin_names() else ""
 
 
-def named_builtins(plan: StudyPlan) -> tuple[str, ...]:
+def named_builtins(plan: DeclaredPlan) -> tuple[str, ...]:
     """Return the built-in buttons that a plan names, sorted."""
-    return tuple(sorted({one.button for item in plan.items for one in item.rendered} & set(builtin_names())))
+    return tuple(sorted(plan.named & set(builtin_names())))
 
 
-def named_files(plan: StudyPlan) -> tuple[str, ...]:
+def named_files(plan: DeclaredPlan) -> tuple[str, ...]:
     """Return the files that a plan names, as it names them. InputError on one outside its folder."""
-    rendered = [one for item in plan.items for one in item.rendered]
-    names = {name for one in rendered for name in (one.button, one.actuation) if name}
-    found = tuple(sorted(names - set(builtin_names())))
+    found = tuple(sorted(plan.named - set(builtin_names())))
     for name in found:
         _require_inside(name)
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Protocol
 
 from msgspec import Meta, Struct, structs
 
@@ -216,6 +216,30 @@ class Claim(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     alpha: Annotated[float, Meta(gt=0, lt=1)] = 0.05
 
 
+class DeclaredPlan(Protocol):
+    """What plans of every kind of study have."""
+
+    @property
+    def name(self) -> str:
+        """Of the study."""
+
+    @property
+    def people(self) -> int:
+        """How many are planned."""
+
+    @property
+    def languages(self) -> tuple[str, ...]:
+        """The first is the default."""
+
+    @property
+    def pages(self) -> tuple[Page, ...]:
+        """Outside the trials, in order."""
+
+    @property
+    def named(self) -> frozenset[str]:
+        """Built-in buttons, and the files beside the study, that the plan names."""
+
+
 class StudyPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A study as it is declared; `plan_problems` lists what is wrong with it.
 
@@ -254,6 +278,12 @@ class StudyPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     thresholds: Thresholds | None = None
     exclusion: Exclusion = Exclusion()
     claim: Claim | None = None
+
+    @property
+    def named(self) -> frozenset[str]:
+        """Built-in buttons, and the files beside the study, that the plan names."""
+        rendered = [one for item in self.items for one in item.rendered]
+        return frozenset(name for one in rendered for name in (one.button, one.actuation) if name)
 
     @property
     def trials(self) -> int:

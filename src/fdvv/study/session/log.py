@@ -31,7 +31,7 @@ class OpenedSession(Generic[S]):
     """
 
     def __init__(
-        self, study: KeptStudy, name: str, code: str | KeyHolder, at_s: float, kind: type[S]
+        self, study: KeptStudy[Any], name: str, code: str | KeyHolder, at_s: float, kind: type[S]
     ) -> None:
         self.schedule = study.schedule(name, code)
         self._logs = SessionLogs(study, self.schedule, code)

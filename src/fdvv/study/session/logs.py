@@ -20,7 +20,7 @@ class SessionLogs:
     code : the person's, or the key holder in its place. InputError, OSError.
     """
 
-    def __init__(self, study: KeptStudy, schedule: Schedule, code: str | KeyHolder) -> None:
+    def __init__(self, study: KeptStudy[Any], schedule: Schedule, code: str | KeyHolder) -> None:
         self._seal, self._counter = study.seal, study.counter(schedule, code)
         self._sealed = study.sealed_log(schedule)
         try:

@@ -21,7 +21,7 @@ from fdvv.study.plan.sitting import ENDS, SittingState, Step
 from fdvv.study.session.log import OpenedSession
 
 S = TypeVar("S", bound=SittingState[Any])
-KeptT = TypeVar("KeptT", bound=KeptStudy)
+KeptT = TypeVar("KeptT", bound=KeptStudy[Any])
 
 
 class Sitting(ABC, Generic[KeptT, S]):

@@ -5,8 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 from fdvv.errors import InputError, ModelError
+from fdvv.study.admin.kept import KeptStudy
 from fdvv.study.admin.study import Study
 from fdvv.study.plan.events import TrialFace
 from fdvv.study.plan.sitting import ENDS, Step
@@ -16,6 +18,7 @@ from fdvv.study.simulation.people import ProxySettings
 from fdvv.study.stimulus.finger import SimulatedFingerRenderer
 
 Progress = Callable[[int, int], None]
+Done = TypeVar("Done")
 PAGE_s = 30.0
 """Time that a page takes."""
 
@@ -77,27 +80,46 @@ def simulate_study(
     InputError on a study that is not frozen or has people in it. On Ctrl-C who has not finished is withdrawn
     and deleted. OSError.
     """
+
+    def play(number: int, report: Callable[[float], None]) -> SimulatedSession:
+        renderer = SimulatedFingerRenderer(study.folder, seed=seed + number) if pressed else NullRenderer()
+        simulated = SimulatedParticipant(study.plan, study.folder, renderer, number, seed, settings)
+        return _session(study, simulated, report)
+
+    sessions = simulate_people(study, people, play, progress)
+    return SimulatedStudy(sessions, finished(study), pressed)
+
+
+def simulate_people(
+    study: KeptStudy[Any],
+    people: int | None,
+    play: Callable[[int, Callable[[float], None]], Done],
+    progress: Progress,
+) -> tuple[Done, ...]:
+    """Have simulated participants take part, one after the other, until so many are done.
+
+    people : as many as are planned if None. play : the whole session of one, by number; it reports the part
+    that is over. Returns what the sessions that were added came to. InputError on a study that has people.
+    """
     wanted = study.plan.people if people is None else people
     if wanted < 1:
         raise ModelError(f"a study needs at least 1 person, got {wanted}")
     if any(not person.simulated for person in study.people()):
         reason = "has people, and cannot have simulated ones beside them"
         raise InputError(study.folder, "study", reason, "declare another study for them")
-    sessions: list[SimulatedSession] = []
+    sessions: list[Done] = []
     total = wanted - len(finished(study))
     for done in range(total):
-        number = len(study.people())
-        renderer = SimulatedFingerRenderer(study.folder, seed=seed + number) if pressed else NullRenderer()
-        simulated = SimulatedParticipant(study.plan, study.folder, renderer, number, seed, settings)
 
         def report(part: float, done: int = done) -> None:
             progress(round(100 * (done + part)), 100 * total)
 
-        sessions.append(_session(study, simulated, report))
-    return SimulatedStudy(tuple(sessions), finished(study), pressed)
+        sessions.append(play(len(study.people()), report))
+    return tuple(sessions)
 
 
-def finished(study: Study) -> tuple[str, ...]:
+def finished(study: KeptStudy[Any]) -> tuple[str, ...]:
+    """Return the simulated people of a study who are done, by name."""
     return tuple(person.name for person in study.people() if person.state == "finished")
 
 

@@ -11,10 +11,9 @@ from fdvv.errors import InputError, ModelError
 from fdvv.io.files import make_private, private_folder, write_atomic
 from fdvv.rendering.session import now
 from fdvv.study.analysis.code_book import csv_text
-from fdvv.study.analysis.unseal import PAGES_FILE, suspects_of
-from fdvv.study.files.chained_log import read_chained
-from fdvv.study.files.layout import PEOPLE, SCHEDULE_FILE, SESSION_FILE, UNSEALED
-from fdvv.study.files.people import Person, open_schedule, people_of
+from fdvv.study.analysis.unseal import PAGES_FILE, events_of, open_person, pages_text, suspects_of
+from fdvv.study.files.layout import UNSEALED
+from fdvv.study.files.people import Person, people_of
 from fdvv.study.files.seal import KeyHolder
 from fdvv.task.tapping import strokes_Hz
 from fdvv.timing.analysis.scores import SCORES_FILE, ScoreRow, TimingScores, scores_text
@@ -73,21 +72,15 @@ def unseal_timing(
 
 def _session(study: TimingStudy, person: Person, holder: KeyHolder, suspect: bool) -> UnsealedSession | None:
     """Join a person's schedule with their log; None of whom nothing is kept, or who did not begin."""
-    own = study.folder / PEOPLE / person.name
-    if person.state == "deleted":
+    found = open_person(study.folder, person, holder)
+    if found is None or not found[1].records:
         return None
+    schedule, read = found
+    events = events_of(person, read, TimingState)
     try:
-        schedule = open_schedule(own / SCHEDULE_FILE, holder)
-    except InputError:
-        return None  # reported by verify, and on record
-    read = read_chained(own / SESSION_FILE, bytes.fromhex(schedule.key))
-    try:
-        events = [TimingState.event_of(record) for record in read.records]
-        state = TimingState.of(study.plan, events) if events else None
+        state = TimingState.of(study.plan, events)
     except ModelError as error:
         raise InputError(person.name, "session", str(error), "install the fdvv that ran the study") from error
-    if state is None:
-        return None
     conditions = {one.number: next(iter(one.labels.values())) for one in schedule.trials}
     begun = {one.number: one for one in reversed(events) if isinstance(one, TimedBegun)}
     return UnsealedSession(person, state, conditions, begun, suspect or bool(read.problems))
@@ -131,13 +124,7 @@ def _write(folder: Path, people: Sequence[UnsealedSession], scores: TimingScores
     rounds = (cells for one in people for cells in _round_cells(one))
     write_atomic(folder / ROUNDS_FILE, csv_text(ROUNDS, rounds))
     write_atomic(folder / TRAINING_FILE, _training_text(people))
-    pages = (
-        (one.person.name, page, question, "" if value is None else value)
-        for one in people
-        for page, answered in one.state.pages.items()
-        for question, value in answered.values.items()
-    )
-    write_atomic(folder / PAGES_FILE, csv_text(("person", "page", "question", "answer"), pages))
+    write_atomic(folder / PAGES_FILE, pages_text((one.person, one.state.pages) for one in people))
     make_private(folder)
 
 

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from msgspec import Meta, Struct
 
+from fdvv.program.library import names_program
 from fdvv.study.plan.plan import Name, Page
 from fdvv.task.pointing import LEVELS_px_s, TemporalPointing
 from fdvv.task.tapping import RapidTapping
@@ -126,6 +127,12 @@ class TimingPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     def kind(self) -> str:
         """What a list of studies calls it."""
         return "tapping" if self.tapping else "timing"
+
+    @property
+    def named(self) -> frozenset[str]:
+        """Built-in buttons, and the files beside the study, that the plan names; no shipped programs."""
+        names = {one.button for one in self.conditions if one.button}
+        return frozenset(one for one in names if "." in one or not names_program(one))
 
     @property
     def tapping(self) -> bool:

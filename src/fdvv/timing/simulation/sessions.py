@@ -7,18 +7,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 
-from fdvv.errors import InputError, ModelError
 from fdvv.optimize.people.groups import TAPPERS
 from fdvv.optimize.people.user import SimulatedUser, UserSettings, draw_user
 from fdvv.study.plan.sitting import ENDS, Step
-from fdvv.study.simulation.sessions import PAGE_s, SimulatedClock
+from fdvv.study.simulation.sessions import PAGE_s, Progress, SimulatedClock, finished, simulate_people
 from fdvv.timing.files.study import TimingStudy
 from fdvv.timing.plan.plan import DAY_s
 from fdvv.timing.plan.schedule import TimingFace
 from fdvv.timing.session.participant import TimingParticipant
 from fdvv.timing.simulation.people import SimulatedTimer
 
-Progress = Callable[[int, int], None]
 PLACE_s, BETWEEN_s = 20.0, 5.0
 """To put a switch on the table, and between two trials (assumed)."""
 
@@ -64,31 +62,16 @@ def simulate_timing(
     InputError on a study that is not frozen or has people in it. On Ctrl-C who has not finished is withdrawn
     and deleted. OSError.
     """
-    wanted = study.plan.people if people is None else people
-    if wanted < 1:
-        raise ModelError(f"a study needs at least 1 person, got {wanted}")
-    if any(not person.simulated for person in study.people()):
-        reason = "has people, and cannot have simulated ones beside them"
-        raise InputError(study.folder, "study", reason, "declare another study for them")
-    sessions: list[SimulatedTiming] = []
-    missing = wanted - len(finished(study))
-    for done in range(missing):
 
-        def report(part: float, done: int = done) -> None:
-            progress(round(100 * (done + part)), 100 * missing)
+    def play(number: int, report: Callable[[float], None]) -> SimulatedTiming:
+        return _session(study, SimulatedTimer(_user(study, number, seed), seed, rig), report)
 
-        number = len(study.people())
-        sessions.append(_session(study, SimulatedTimer(_user(study, number, seed), seed, rig), report))
-    return SimulatedTimingStudy(tuple(sessions), finished(study))
+    return SimulatedTimingStudy(simulate_people(study, people, play, progress), finished(study))
 
 
 def _user(study: TimingStudy, number: int, seed: int) -> SimulatedUser:
     """Draw one person of a study, who of tapping has a finger's limit."""
     return draw_user(number, seed, TAPPERS if study.plan.tapping else UserSettings())
-
-
-def finished(study: TimingStudy) -> tuple[str, ...]:
-    return tuple(person.name for person in study.people() if person.state == "finished")
 
 
 def _session(study: TimingStudy, timer: SimulatedTimer, report: Callable[[float], None]) -> SimulatedTiming:
