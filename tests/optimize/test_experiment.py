@@ -17,9 +17,10 @@ import pytest
 from fdvv.errors import InputError, ModelError
 from fdvv.optimize.experiment.experiment import ExperimentResult, judge_experiment, run_experiment
 from fdvv.optimize.experiment.html import experiment_html, write_experiment
-from fdvv.optimize.experiment.setup import ExperimentSetup, WeekGap, a_week_later, blocks_of, random_design
+from fdvv.optimize.experiment.setup import ExperimentSetup, blocks_of
 from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.people.user import SimulatedUser
+from fdvv.optimize.people.week import WeekGap, a_week_later, random_design
 from tests.support.experiments import invented
 
 SMALL = ExperimentSetup(people=4, trials=2, presses=3, engine="sobol", seed=2)

@@ -1,23 +1,20 @@
-"""What an experiment is about: who trains what, what is compared, and what a week does to a person."""
+"""What an experiment is about: who trains what, what is compared, and in which order."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import msgspec
-import numpy as np
 from msgspec import Meta, Struct
 
-from fdvv.errors import InputError, ModelError
+from fdvv.errors import InputError
 from fdvv.io.documents import Kind, read_record
 from fdvv.io.files import write_atomic
-from fdvv.optimize.people.user import SimulatedUser
+from fdvv.optimize.people.week import WeekGap
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.setup import LARGEST_bytes, setup_text
-from fdvv.optimize.space import DesignSpace
 from fdvv.rendering.session import now, versions
 from fdvv.stats.orders import counterbalanced
 
@@ -30,23 +27,6 @@ OPTIMAL, RANDOM = "optimal", "random"
 MX = ("mx-clear", "mx-brown", "mx-black", "mx-red")
 MADE = ("versions", "created")
 """What may differ when an experiment is continued."""
-
-
-class WeekGap(Struct, frozen=True, forbid_unknown_fields=True):
-    """What a week between training and validation does to a simulated person; all of it is assumed.
-
-    Attributes
-    ----------
-    kept_ratio : share of the presses made in training that still count as practice.
-    bias_ms, anticipated_ms : spread of what another day shifts in the person's lateness and anticipation.
-    clock_ratio, pace_ratio : spread of the logarithm of timing noise and pace from day to day.
-    """
-
-    kept_ratio: Annotated[float, Meta(ge=0, le=1)] = 0.5
-    bias_ms: Annotated[float, Meta(ge=0, le=100)] = 5.0
-    anticipated_ms: Annotated[float, Meta(ge=0, le=100)] = 5.0
-    clock_ratio: Annotated[float, Meta(ge=0, le=1)] = 0.1
-    pace_ratio: Annotated[float, Meta(ge=0, le=1)] = 0.1
 
 
 class ExperimentSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -115,11 +95,6 @@ def _check_same(path: Path, there: ExperimentSetup, requested: ExperimentSetup) 
             raise InputError(path, f"$.{name}", begun, "go on with the same, or name a new folder")
 
 
-WEEK, DESIGN = 1, 2
-"""What else is drawn of a person, each from a stream of its own."""
-TRIES = 1000
-
-
 @dataclass(frozen=True)
 class Block:
     """One round of one person at one level: every button once, in an order of its own.
@@ -154,32 +129,3 @@ def blocks_of(setup: ExperimentSetup, person: int) -> tuple[Block, ...]:
         Block(person, level, round_, orders[i], i * len(setup.buttons))
         for i, (level, round_) in enumerate(places)
     )
-
-
-def a_week_later(user: SimulatedUser, gap: WeekGap, practised: int, seed: int) -> SimulatedUser:
-    """Return the same person on another day, with part of the practice forgotten and rested.
-
-    practised : presses made in training. What of them is kept becomes the state of learning that the person
-    comes with; fatigue is gone, adaptation begins anew, and timing, pace and bias are those of the day.
-    """
-    random = np.random.default_rng([seed, user.number, WEEK])
-    bias, anticipated, clock, pace = np.clip(random.standard_normal(4), -2, 2).tolist()
-    kept = math.exp(-gap.kept_ratio * practised / user.learning_presses)
-    return replace(
-        user,
-        bias_ms=user.bias_ms + gap.bias_ms * bias,
-        anticipated_ms=user.anticipated_ms + gap.anticipated_ms * anticipated,
-        clock_ratio=user.clock_ratio * math.exp(gap.clock_ratio * clock),
-        pace_mm_s=user.pace_mm_s * math.exp(gap.pace_ratio * pace),
-        learning_ratio=user.learning_ratio * kept,
-    )
-
-
-def random_design(space: DesignSpace, seed: int, person: int) -> dict[str, float]:
-    """Draw the random design of a person, evenly within the space and its constraints. Raises ModelError."""
-    random = np.random.default_rng([seed, person, DESIGN])
-    for _ in range(TRIES):
-        (design,) = space.of_unit(random.random(len(space.parameters)))
-        if not space.broken(design):
-            return design
-    raise ModelError(f"none of {TRIES} random designs holds the constraints of the space {space.name}")

@@ -14,14 +14,13 @@ from fdvv.optimize.experiment.setup import (
     RANDOM,
     Block,
     ExperimentSetup,
-    a_week_later,
     blocks_of,
     level_order,
-    random_design,
 )
 from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.people.simulate import score_design
 from fdvv.optimize.people.user import SimulatedUser, draw_user
+from fdvv.optimize.people.week import a_week_later, random_design
 from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.player import SimulatedPlayer, about_player, play_seed
 from fdvv.optimize.run.session import Optimization

@@ -5,8 +5,8 @@ from __future__ import annotations
 from fdvv.errors import ModelError
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.registry import engine_of
-from fdvv.optimize.experiment.setup import random_design
 from fdvv.optimize.paper_space import paper_model, paper_space
+from fdvv.optimize.people.week import random_design
 from fdvv.optimize.problem import Problem, Trial, TrialState
 from fdvv.optimize.run.player import play_seed
 from fdvv.task.pointing import ASYNCHRONY

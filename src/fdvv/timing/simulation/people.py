@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.optimize.experiment.setup import WeekGap, a_week_later
 from fdvv.optimize.people.press_simulator import refusal_of
 from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.people.user import SimulatedUser
+from fdvv.optimize.people.week import WeekGap, a_week_later
 from fdvv.optimize.run.player import play_seed
 from fdvv.study.plan.sitting import Step
 from fdvv.study.simulation.participant import filled_page
