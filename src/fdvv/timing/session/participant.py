@@ -215,4 +215,4 @@ class TimingParticipant(Sitting[TimingStudy, TimingState]):
             self._add(events.TrainingEnded(self._now()))
 
     def _whole(self, face: TimingFace) -> bool:
-        return len(self.state.counting(face.number)) >= self._plan.trial_rounds
+        return len(self.state.counting(face.number)) >= self.state.plan.trial_rounds
