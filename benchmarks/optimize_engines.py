@@ -23,6 +23,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+from benchmarks.optimize_baselines import compared_engine
 from benchmarks.optimize_people import FIRST_SEED, SHIFTED, Person
 from benchmarks.optimize_tables import (
     BASELINE,
@@ -41,7 +42,6 @@ from benchmarks.optimize_tables import (
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_records
 from fdvv.optimize.button_constraints import button_constraints
-from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.people.groups import PAPER_GROUP
 from fdvv.optimize.population.plan import PopulationPlan, optimise
@@ -100,7 +100,7 @@ class Runner:
 
     def engine(self, variant: Variant) -> Engine:
         """Make the engine of a variant."""
-        return engine_of(variant.engine, variant.options)
+        return compared_engine(variant.engine, variant.options)
 
     def prior(self, variant: Variant, level: str) -> tuple[Trial, ...]:
         """Return what others scored, of a variant that begins from it."""
@@ -120,7 +120,7 @@ class Runner:
         trials = optimise(engine, problem, evaluate, variant.budget)
         answers = {run.variant: engine}
         if run.variant == BASELINE:
-            answers[SMOOTHED] = engine_of("gp-ei", {"smoothed": True})
+            answers[SMOOTHED] = compared_engine("gp-ei", {"smoothed": True})
         known: dict[tuple[float, ...], float] = {}
         return {
             name: [

@@ -25,7 +25,7 @@ FDVV = [sys.executable, "-P", "-m", "fdvv"]
 EXTRAS = {
     "matplotlib": (["show", "mx-clear", "--figure", "clear.svg"], "fdvv[plot]"),
     "nacl": (["study", "freeze", "realism", "--passphrase-file", "word.txt"], "fdvv[study]"),
-    "optuna": (["optimize", "run", "--folder", "run", "--trials", "1"], "fdvv[optimize]"),
+    "sklearn": (["optimize", "run", "--folder", "run", "--trials", "1"], "fdvv[optimize]"),
     "serialx": (["device", "info", "--device", "serial:none"], "fdvv[serial]"),
     "fdvv_rig": (["hardware", "parts"], "fdvv-rig"),
     "fdvv_strip": (["device", "strip", "--strip", "host"], "fdvv-strip"),

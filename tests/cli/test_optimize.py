@@ -224,7 +224,8 @@ def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(
     ("arguments", "message"),
     [
         (("--engine", "foo"), "foo: no engine has this name; use one of random, sobol"),
-        (("--engine", "tpe:[1]"), "the options of tpe are no JSON object"),
+        (("--engine", "tpe"), "a baseline of the benchmarks now, no engine of fdvv; use one of random"),
+        (("--engine", "gp:[1]"), "the options of gp are no JSON object"),
         (("--task", "foo"), "no simulated person plays it; use one of temporal-pointing"),
         (("--rig", "foo"), "none is called so; use one of ideal"),
         (("--space", "foo"), "no such file or built-in button"),

@@ -25,7 +25,7 @@ def test_a_grid_is_printed_as_json_that_says_simulated_and_becomes_a_prior(tmp_p
     assert summary["simulated"]
     assert summary["plan"]["shifts"] == {"pace_mm_s": 1.2}
     assert set(summary["best"]["parameters"]) >= {"actuation_mm", "y3_cN"}
-    people = invoke(second, "--engine", "tpe", "--budget", "2", "--prior", first, *sizes)
+    people = invoke(second, "--engine", "sobol", "--budget", "2", "--prior", first, *sizes)
     assert people.exit_code == 0, people.output
     found = json.loads(people.stdout)
     assert 0 < found["judged_ms"]["low"] <= found["judged_ms"]["median"] <= found["judged_ms"]["high"]

@@ -52,7 +52,7 @@ def test_a_trial_is_on_the_disk_before_it_is_given(tmp_path: Path) -> None:
         assert repr(trial.design["x1_mm"]) in (tmp_path / "run" / "trials.jsonl").read_text()
 
 
-@pytest.mark.parametrize("engine", ["sobol", "tpe"])
+@pytest.mark.parametrize("engine", ["sobol", "gp"])
 def test_a_run_that_is_closed_and_opened_at_every_step_is_the_same_run(tmp_path: Path, engine: str) -> None:
     setup = OptimizeSetup(engine=engine, budget=14, seed=3)
     with Optimization.create(tmp_path / "whole", setup) as session:
@@ -75,7 +75,7 @@ def test_a_run_that_is_closed_and_opened_at_every_step_is_the_same_run(tmp_path:
 
 
 def test_a_batch_that_was_half_written_comes_out_as_the_whole_one(tmp_path: Path) -> None:
-    setup = OptimizeSetup(engine="tpe", seed=1)
+    setup = OptimizeSetup(engine="gp", seed=1)
     with Optimization.create(tmp_path / "a", setup) as session:
         go_on(session, 11)
         whole = session.ask(3)
@@ -109,7 +109,7 @@ def test_a_suggestion_can_be_edited_until_it_is_shown(tmp_path: Path) -> None:
 
 
 def test_failed_trials_count_and_abandoned_ones_do_not(tmp_path: Path) -> None:
-    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="tpe", budget=3)) as session:
+    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol", budget=3)) as session:
         a, b = session.ask(2)
         session.fail(a.number, "the rig refused it")
         session.abandon(b.number)
@@ -151,7 +151,7 @@ def test_a_setup_is_read_back_as_it_was(tmp_path: Path) -> None:
     with Optimization.create(tmp_path / "a", OptimizeSetup(engine="sobol")) as session:
         go_on(session, 3)
         trials = session.trials
-    setup = OptimizeSetup(engine="tpe", prior=trials, level="easy", about={"person": {"name": "P1"}})
+    setup = OptimizeSetup(engine="sobol", prior=trials, level="easy", about={"person": {"name": "P1"}})
     with Optimization.create(tmp_path / "b", setup) as session:
         assert session.setup == setup
         assert session.problem.prior == trials
@@ -162,7 +162,7 @@ def test_a_run_states_the_options_whose_defaults_may_change_and_one_that_does_no
 ) -> None:
     with Optimization.create(tmp_path / "new", OptimizeSetup(options={"startup": 2})) as session:
         assert session.setup.options == {"startup": 2, "length": session.space.length}
-    with Optimization.create(tmp_path / "other", OptimizeSetup(engine="tpe")) as session:
+    with Optimization.create(tmp_path / "other", OptimizeSetup(engine="sobol")) as session:
         assert session.setup.options == {}
     path = tmp_path / "new" / "optimize.json"
     record = json.loads(path.read_text())

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from benchmarks.optimize_baselines import compared_engine
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError, ModelError
 from fdvv.optimize.engines.multi_objective import ParetoFront, believed_front, pareto_front
-from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.problem import Problem, Trial, TrialState
 from fdvv.optimize.space import DesignSpace, Parameter
 from fdvv.task.score import Objective, Score
@@ -111,7 +111,7 @@ def front_of(name: str, count: int) -> tuple[int, float]:
     two = Problem(BOWL, (Objective("near_mm2"), Objective("far_mm2")), 2)
     trials: list[Trial] = []
     for i in range(count):
-        (design,) = engine_of(name).suggest(two, trials)
+        (design,) = compared_engine(name).suggest(two, trials)
         near, far = (sum((value - ideal) ** 2 for value in design.values()) for ideal in (0.0, 2.0))
         scores = {"near_mm2": Score(near), "far_mm2": Score(far)}
         trials.append(Trial(i, design, TrialState.DONE, scores))

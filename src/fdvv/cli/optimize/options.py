@@ -51,7 +51,7 @@ def _wait(trial: Trial) -> None:
 
 
 class EngineType(click.ParamType[tuple[str, dict[str, Any]]]):
-    """An engine's name, with options in braces if there are any: gp, or 'tpe:{"multivariate": false}'."""
+    """An engine's name, with options in braces if there are any: gp, or 'gp:{"startup": 5}'."""
 
     name = "engine"
 

@@ -10,7 +10,7 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.optimize.options import group_option
 from fdvv.cli.options import Workers, executor_options
-from fdvv.optimize.engines.registry import engine_of
+from fdvv.optimize.engines.registry import check_engine, engine_of
 from fdvv.optimize.paper_space import paper_model, paper_space
 from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.population.plan import PopulationPlan
@@ -55,6 +55,7 @@ def population(
 
 
 def _plan(grid: int | None, level: str, engine: str, shifts: tuple[str, ...], **options: Any) -> Any:
+    check_engine(engine)
     engine_of(engine)
     found = PopulationPlan(
         kind="optimize" if grid is None else "grid",

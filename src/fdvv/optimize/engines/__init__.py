@@ -1,1 +1,1 @@
-"""Engines that suggest designs: random, Sobol, Gaussian processes, Optuna, preferences."""
+"""Engines that suggest designs: random, Sobol, Gaussian processes, preferences."""

@@ -1,17 +1,14 @@
-"""Gaussian-process engines: GPEngine, which knows the errors of scores, and a plain baseline.
+"""The Gaussian-process engine, which knows the errors of scores.
 
-Both take the design of largest expected improvement. GPEngine divides it by the seconds that a trial takes,
-because a new force on a rig needs an upload or minutes of compensation; candidates reuse what is built (see
-CABOP, arXiv 2602.01774). The baseline is the default of GPyOpt 1.2, the paper's library: one Matern-5/2
-length for all parameters, a fitted noise, improvement on the best score seen, five random designs first, and
-the best score seen as the answer.
+It takes the design of largest expected improvement, divided by the seconds that a trial takes, because a new
+force on a rig needs an upload or minutes of compensation; candidates reuse what is built (see CABOP, arXiv
+2602.01774).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
@@ -20,10 +17,8 @@ from fdvv.optimize.engines.gp_model import (
     Basis,
     Belief,
     believe,
-    believed_best,
     best_of,
     finished,
-    fitted_process,
     observed,
     prior_basis,
 )
@@ -34,7 +29,6 @@ from fdvv.optimize.engines.search import (
     generator,
     log_expected_improvement,
     most_wanted,
-    random_places,
     sobol_places,
     tried_places,
 )
@@ -108,11 +102,6 @@ def log_success(space: DesignSpace, trials: Sequence[Trial], places: FloatArray)
     return np.asarray(np.log1p(-SURE * np.exp(-0.5 * squared / NEAR**2)).sum(axis=1))
 
 
-def _check_startup(count: int) -> None:
-    if count < 1:
-        raise InputError("engine", "startup", f"is {count}", "give at least one design")
-
-
 @dataclass(frozen=True)
 class GPEngine:
     """Expected improvement over the posterior mean's best, by a Gaussian process with known errors.
@@ -142,7 +131,8 @@ class GPEngine:
     def __post_init__(self) -> None:
         if self.forget is not None and not self.forget > 0:
             raise InputError("engine", "forget", f"is {self.forget}", "give a number of trials above 0")
-        _check_startup(self.startup)
+        if self.startup < 1:
+            raise InputError("engine", "startup", f"is {self.startup}", "give at least one design")
         if self.length is not None and not 0 < self.length < np.inf:
             raise InputError("engine", "length", f"is {self.length}", "give a length above 0")
 
@@ -209,71 +199,3 @@ class GPEngine:
         if self.forget is not None:
             scores = replace(scores, faded=2.0 ** ((now - number) / self.forget))
         return believe(scores, prior_basis(problem), length=self.length or problem.space.length)
-
-
-@dataclass(frozen=True)
-class GPExpectedImprovement:
-    """Expected improvement on the best score seen, errors of scores unknown to it.
-
-    All options but the first are there to tune the baseline as hard as what is compared with it.
-
-    Parameters
-    ----------
-    smoothed : recommend by the posterior mean instead of the best score seen.
-    startup : random designs before the process may learn.
-    jitter : of the scores' standard deviation, by which improvement must exceed.
-    ard : a length per parameter instead of one for all.
-    plug_in : improve on the best posterior mean of a tried design instead of the best score seen.
-    """
-
-    smoothed: bool = False
-    startup: int = 5
-    jitter: float = 0.0
-    ard: bool = False
-    plug_in: bool = False
-    name: str = field(default="gp-ei", init=False)
-
-    def __post_init__(self) -> None:
-        _check_startup(self.startup)
-
-    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
-        """Suggest, see Engine. Raises ModelError on several objectives."""
-        if len(finished(problem, trials)) < self.startup:
-            return problem.space.of_unit(random_places(problem, trials, count))
-        done = best_of(problem, trials)
-        scores = observed(problem.space, problem.objectives[0], done)
-        centre, scale = float(np.mean(scores.values)), float(np.std(scores.values)) or 1.0
-        y = (scores.values - centre) / scale
-        model = _fitted(scores.places, y, self.ard)
-        least = model.predict(scores.places).min() if self.plug_in else y.min()
-        tried = tried_places(problem.space, trials)
-        seed = int(generator(problem, trials, 8).integers(2**31))
-        net = even_net(problem, seed)
-        chosen = np.empty((0, tried.shape[1]))
-
-        def worth(places: FloatArray) -> FloatArray:
-            mean, sd = model.predict(places, return_std=True)
-            return log_expected_improvement(mean, np.maximum(sd, 1e-9), float(least) - self.jitter)
-
-        about = scores.places[np.argsort(y)[:2]]
-        for i in range(count):
-            place = most_wanted(problem, worth, net, np.vstack([tried, chosen]), seed + i, about)
-            chosen = np.vstack([chosen, place])
-        return problem.space.of_unit(chosen)
-
-    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
-        """Recommend the design of the best score, see Engine."""
-        if self.smoothed:
-            return believed_best(problem, trials)
-        done = best_of(problem, trials)
-        values = observed(problem.space, problem.objectives[0], done).values
-        return dict(done[int(np.argmin(values))].design)
-
-
-def _fitted(X: FloatArray, y: FloatArray, ard: bool) -> Any:
-    lengths = np.full(X.shape[1] if ard else 1, 0.5)
-    numbers = (1.0, (1e-3, 1e3)), (lengths, (1e-2, 1e2)), (0.1, (1e-6, 1e1))
-    model = fitted_process("gp-ei", X, y, *numbers, n_restarts_optimizer=4, random_state=0)
-    # what is improved upon is the function, not the next noisy score
-    model.kernel_.k2.noise_level = 1e-12
-    return model

@@ -9,9 +9,8 @@ from typing import Any
 
 from fdvv import extras
 from fdvv.errors import InputError
-from fdvv.optimize.engines.gp import GPEngine, GPExpectedImprovement
-from fdvv.optimize.engines.gp_model import RecommendsBelievedBest
-from fdvv.optimize.engines.optuna import CMAESEngine, NSGA2Engine, TPEEngine
+from fdvv.optimize.engines.gp import GPEngine
+from fdvv.optimize.engines.gp_model import RecommendsBelievedBest, best_of
 from fdvv.optimize.engines.preference import PreferenceEngine
 from fdvv.optimize.engines.preference_line import PreferenceLineEngine
 from fdvv.optimize.engines.search import random_places, sobol_places, tried_places
@@ -39,14 +38,31 @@ class SobolEngine(RecommendsBelievedBest):
         return problem.space.of_unit(places)
 
 
+@dataclass(frozen=True)
+class RetiredEngine(RecommendsBelievedBest):
+    """An engine of an earlier fdvv: its runs are read and reported, and cannot be continued."""
+
+    name: str
+    options: Mapping[str, Any]
+
+    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
+        """Raise InputError."""
+        reason = "suggests no more designs: it is a baseline of the benchmarks now"
+        raise InputError("engine", self.name, reason, "report what there is, or begin another run with gp")
+
+    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
+        """Recommend a design as the engine did: gp-ei that of the best score, luck or not."""
+        if self.name != "gp-ei" or self.options.get("smoothed"):
+            return super().best(problem, trials)
+        (objective,), done = problem.objectives, best_of(problem, trials)
+        return dict(min(done, key=lambda one: objective.sign * one.scores[objective.name].value).design)
+
+
+RETIRED = ("tpe", "cmaes", "nsga2", "gp-ei")
 ENGINES: Mapping[str, Callable[..., Engine]] = MappingProxyType(
     {
         "random": RandomEngine,
         "sobol": SobolEngine,
-        "tpe": TPEEngine,
-        "cmaes": CMAESEngine,
-        "nsga2": NSGA2Engine,
-        "gp-ei": GPExpectedImprovement,
         "gp": GPEngine,
     }
 )
@@ -69,11 +85,20 @@ def pair_engine_names() -> tuple[str, ...]:
     return (*PAIR_ENGINES, *extras.names("pair_engines"))
 
 
+def check_engine(name: str) -> None:
+    """Raise InputError where a new run cannot have this engine."""
+    if name in RETIRED:
+        reason = "is a baseline of the benchmarks now, no engine of fdvv"
+        raise InputError("engine", name, reason, f"use one of {', '.join(engine_names())}")
+
+
 def engine_of(name: str, options: Mapping[str, Any] | None = None) -> Engine:
-    """Make an engine.
+    """Make an engine; of RETIRED one that suggests nothing.
 
     Raises InputError on a name or an option that is not known, BuildError if its extra is not installed.
     """
+    if name in RETIRED:
+        return RetiredEngine(name, options or {})
     engine: Engine = _made(ENGINES, "engines", name, options)
     return engine
 

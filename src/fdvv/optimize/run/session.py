@@ -6,6 +6,7 @@ from pathlib import Path
 
 from fdvv.errors import InputError
 from fdvv.io.files import require_new_folder, write_atomic
+from fdvv.optimize.engines.registry import check_engine
 from fdvv.optimize.problem import OPEN, Answer, Comparison, Line, Trial, TrialState
 from fdvv.optimize.run.blocks import in_drawn_order
 from fdvv.optimize.run.compromise import keep_choice
@@ -38,6 +39,7 @@ class Optimization(RunState):
         """
         folder = Path(folder)
         require_new_folder(folder, "name a new one, or resume the run in it")
+        check_engine(setup.engine)
         checked = cls(project or folder, setup, Ledger())
         if setup.space.rig and project:
             RigCatalog(project).lend(setup.space.rig, folder)

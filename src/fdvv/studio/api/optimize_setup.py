@@ -90,11 +90,7 @@ PAPER = "paper"
 ENGINE_DESCRIPTIONS = {
     "random": "draws designs by lot",
     "sobol": "spreads designs evenly",
-    "tpe": "Optuna's; for many trials",
-    "cmaes": "moves a cloud of designs towards the better ones",
-    "nsga2": "breeds designs; for several objectives",
     "gp": "learns from every score, and knows how noisy each is",
-    "gp-ei": "as in the paper: a Gaussian process and expected improvement",
     "botorch": "the strongest; needs the extra fdvv[botorch]",
 }
 SPACE_DESCRIPTIONS = {

@@ -1,8 +1,7 @@
-"""Optuna's samplers as engines: a study is built anew from the trials for every suggestion."""
+"""Optuna's samplers as engines to compare with: a study is built anew for every suggestion."""
 
 from __future__ import annotations
 
-import importlib
 import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -18,7 +17,6 @@ from fdvv.optimize.engines.search import (
     fresh,
     generator,
     missed_by,
-    missing,
     sobol_places,
     tried_places,
 )
@@ -76,13 +74,13 @@ class CMAESEngine(RecommendsBelievedBest):
     def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
         """Suggest, see Engine. Raises ModelError on several objectives."""
         if len(problem.objectives) != 1:
-            raise ModelError("cmaes takes one objective; use nsga2, tpe, gp or botorch")
+            raise ModelError("cmaes takes one objective; use nsga2, tpe or gp")
         others = finished(problem, problem.prior)
         if others and not trials and count == 1:
             first = believed_best(problem, others)
             if not problem.space.broken(first):
                 return [first]
-        with _quiet("cmaes"):
+        with _quiet():
             import optuna
 
             seed = problem.seed & 0x7FFFFFFF
@@ -136,15 +134,10 @@ def _weighed_prior(problem: Problem, trials: Sequence[Trial]) -> list[Trial]:
 
 
 @contextmanager
-def _quiet(*parts: str) -> Iterator[None]:
-    """Keep Optuna from logging every study. BuildError without it, or without parts that it needs."""
-    try:
-        import optuna
+def _quiet() -> Iterator[None]:
+    """Keep Optuna from logging every study."""
+    import optuna
 
-        for part in parts:
-            importlib.import_module(part)
-    except ImportError as error:
-        raise missing("of Optuna", "optimize", error) from error
     before = optuna.logging.get_verbosity()
     optuna.logging.set_verbosity(logging.WARNING)
     try:
