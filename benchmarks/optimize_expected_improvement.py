@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -40,6 +40,7 @@ class GPExpectedImprovement:
     plug_in : improve on the best posterior mean of a tried design instead of the best score seen.
     """
 
+    trial_size: ClassVar[int] = 1
     smoothed: bool = False
     startup: int = 5
     jitter: float = 0.0

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -31,6 +31,7 @@ class ScikitOptimize:
     """
 
     pool: FloatArray
+    trial_size: ClassVar[int] = 1
     startup: int = 10
     name: str = field(default="scikit-optimize", init=False)
     _optimizer: Any = field(default=None, init=False, repr=False)
@@ -81,6 +82,7 @@ def _optimizer(problem: Problem, startup: int, pool: FloatArray) -> Any:
 class FixedDesign:
     """The design that others scored best on average: no trial changes it."""
 
+    trial_size: ClassVar[int] = 1
     name: str = field(default="fixed design", init=False)
 
     def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:

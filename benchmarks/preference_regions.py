@@ -20,13 +20,14 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from fdvv.optimize.engines.preference_line import PreferenceLineEngine
-from fdvv.optimize.engines.registry import LINE_ENGINES, line_engine_of, pair_engine_of
+from fdvv.optimize.engines.registry import engine_of
 from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Answer, Comparison, Line, LineEngine, PairEngine, Problem
+from fdvv.optimize.problem import Engine, Problem, Trial, TrialState
 from fdvv.stats.share import share
 from fdvv.task.score import Objective
 from fdvv.units import FloatArray
@@ -55,61 +56,53 @@ def person(seed: int, kind: str) -> Utility:
 @dataclass(frozen=True)
 class Champion:
     name: str = "champion"
+    trial_size: ClassVar[int] = 2
 
-    def pair(
-        self, problem: Problem, comparisons: Sequence[Comparison]
-    ) -> tuple[dict[str, float], dict[str, float]]:
-        rng = np.random.default_rng([problem.seed, len(comparisons), 7002])
+    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
+        rng = np.random.default_rng([problem.seed, len(trials), 7002])
         first, second = problem.space.of_unit(rng.random((2, DIMENSIONS)))
-        return (self.best(problem, comparisons) if comparisons else first), second
+        return [self.best(problem, trials) if trials else first, second]
 
-    def best(self, problem: Problem, comparisons: Sequence[Comparison]) -> dict[str, float]:
-        last = comparisons[-1]
-        return last.second if last.answer is Answer.SECOND else last.first
+    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
+        last = trials[-1]
+        return last.designs[last.best[0] if last.best else 0]
 
 
 @dataclass(frozen=True)
-class ChampionLine:
+class ChampionLine(Champion):
     name: str = "champion-line"
+    trial_size: ClassVar[int] = 9
 
-    def line(self, problem: Problem, lines: Sequence[Line]) -> tuple[dict[str, float], ...]:
-        rng = np.random.default_rng([problem.seed, len(lines), 7005])
-        middle = SPACE.to_unit([self.best(problem, lines)])[0] if lines else np.full(DIMENSIONS, 0.5)
+    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
+        rng = np.random.default_rng([problem.seed, len(trials), 7005])
+        middle = SPACE.to_unit([self.best(problem, trials)])[0] if trials else np.full(DIMENSIONS, 0.5)
         (way,) = PreferenceLineEngine(lines=1)._ways(rng, middle, 1.0)
-        return tuple(SPACE.of_unit(way))
-
-    def best(self, problem: Problem, lines: Sequence[Line]) -> dict[str, float]:
-        return lines[-1].stops[lines[-1].best or 0]
+        return SPACE.of_unit(way)
 
 
+CHAMPIONS = {"champion": Champion, "champion-line": ChampionLine}
 Feel = Callable[[Sequence[dict[str, float]]], FloatArray]
 """Worth of designs to a person, in SD over the space."""
 
 
-def compared(
-    engine: PairEngine, problem: Problem, feel: Feel, rng: np.random.Generator, count: int
+def answered(
+    engine: Engine, problem: Problem, feel: Feel, rng: np.random.Generator, count: int
 ) -> dict[str, float]:
-    """Return the design that is recommended after count comparisons."""
-    comparisons = list[Comparison]()
+    """Return the design that is recommended after count comparisons or lines."""
+    trials = list[Trial]()
     for number in range(count):
-        first, second = engine.pair(problem, comparisons)
-        a, b = feel([first, second])
-        gap = a - b + NOISE * rng.normal()
-        answer = Answer.EQUAL if abs(gap) < EQUAL else Answer.FIRST if gap > 0 else Answer.SECOND
-        comparisons.append(Comparison(number, first, second, answer))
-    return engine.best(problem, comparisons)
+        design, *beside = engine.suggest(problem, trials)
+        best = _best(feel([design, *beside]), rng)
+        trials.append(Trial(number, design, TrialState.DONE, beside=tuple(beside), best=best))
+    return engine.best(problem, trials)
 
 
-def walked(
-    engine: LineEngine, problem: Problem, feel: Feel, rng: np.random.Generator, count: int
-) -> dict[str, float]:
-    """Return the design that is recommended after count lines."""
-    lines = list[Line]()
-    for number in range(count):
-        stops = engine.line(problem, lines)
-        felt = feel(stops) + NOISE * rng.normal(size=len(stops))
-        lines.append(Line(number, stops, int(felt.argmax())))
-    return engine.best(problem, lines)
+def _best(worth: FloatArray, rng: np.random.Generator) -> tuple[int, ...]:
+    """Return which of some designs a person says is best; of two also both."""
+    if len(worth) > 2:
+        return (int((worth + NOISE * rng.normal(size=len(worth))).argmax()),)
+    gap = worth[0] - worth[1] + NOISE * rng.normal()
+    return (0, 1) if abs(gap) < EQUAL else (0,) if gap > 0 else (1,)
 
 
 def rank(name: str, seed: int, kind: str, count: int) -> float:
@@ -121,12 +114,8 @@ def rank(name: str, seed: int, kind: str, count: int) -> float:
     def feel(designs: Sequence[dict[str, float]]) -> FloatArray:
         return np.asarray(utility(SPACE.to_unit(designs)) / everywhere.std())
 
-    if name in LINE_ENGINES or name == ChampionLine.name:
-        on_lines = ChampionLine() if name == ChampionLine.name else line_engine_of(name)
-        best = walked(on_lines, problem, feel, rng, count)
-    else:
-        engine = Champion() if name == Champion.name else pair_engine_of(name)
-        best = compared(engine, problem, feel, rng, count)
+    engine = CHAMPIONS[name]() if name in CHAMPIONS else engine_of(name)
+    best = answered(engine, problem, feel, rng, count)
     return float((everywhere > utility(SPACE.to_unit([best]))).mean())
 
 

@@ -14,9 +14,9 @@ from fdvv.model.jnd_file import JndRecord, MeasuredJnd
 from fdvv.optimize.experiment.setup import ExperimentSetup
 from fdvv.optimize.population.plan import PopulationPlan
 from fdvv.optimize.population.population import ChunkRecord
-from fdvv.optimize.problem import Comparison, Trial
+from fdvv.optimize.problem import Trial
 from fdvv.optimize.run.compromise import Chosen
-from fdvv.optimize.run.ledger import Answered, Edited, TrialOutcome
+from fdvv.optimize.run.ledger import Edited, Line, LineChoice, Pair, PairAnswer, TrialOutcome
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.program.file import ProgramRecord
 from fdvv.project.history import DocumentBase, HistoryChange
@@ -129,17 +129,20 @@ FILES = (
     FileKind(
         "Optimisation",
         "`optimize.json`, `trials.jsonl`, `rounds.jsonl`, `compromise.json`",
-        "The folder of a run. `trials.jsonl` is an event log of trials, edits, outcomes, comparisons and "
-        "answers; `rounds.jsonl` is an event log of the rounds that a person played and of how they rated; "
-        "`compromise.json` is there once a person took another design of the front.",
+        "The folder of a run. `trials.jsonl` is an event log of trials, edits and outcomes; an earlier fdvv "
+        "wrote pairs with answers and lines with choices. `rounds.jsonl` is an event log of the rounds that "
+        "a person played and of how they rated; `compromise.json` is there once a person took another design "
+        "of the front.",
         {
             "optimize.json": OptimizeSetup,
             "compromise.json": Chosen,
             "trial": Trial,
             "edit": Edited,
             "state": TrialOutcome,
-            "pair": Comparison,
-            "answer": Answered,
+            "pair": Pair,
+            "answer": PairAnswer,
+            "line": Line,
+            "choice": LineChoice,
             "rounds.jsonl": TaskRound,
             "rated": TrialRated,
         },

@@ -331,7 +331,7 @@ def test_the_best_design_is_played_again_against_the_start_and_nobody_knows_whic
         for score_ms in (90.0, 60.0):
             (trial,) = session.ask()
             session.show(trial.number)
-            session.done(trial.number, {"asynchrony_ms": Score(score_ms, 5.0)})
+            session.answer(trial.number, {"asynchrony_ms": Score(score_ms, 5.0)})
     page.goto(f"{page.url.partition('#')[0]}#/optimize/1")
     for number in (1, 2, 3, 4):
         page.get_by_role("button", name=f"Play again, blind: {number} of 4").click(timeout=LONG_ms)
@@ -353,7 +353,7 @@ def test_a_person_rates_a_button_after_a_reload_too_and_takes_another_compromise
         for score_ms, liked in ((90.0, 2.0), (60.0, 3.0), (65.0, 5.0), (70.0, 6.0)):
             (trial,) = session.ask()
             session.show(trial.number)
-            session.done(
+            session.answer(
                 trial.number, {ASYNCHRONY.name: Score(score_ms, 1.0), LIKING.name: Score(liked, 0.1)}
             )
     page.goto(f"{page.url.partition('#')[0]}#/optimize/1")
@@ -413,8 +413,8 @@ def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: 
     page.get_by_role("tab", name="Result").click()
     page.wait_for_selector(".opt-compared")
     with ended(page, studio) as session:
-        assert [one.answer for one in session.comparisons] == [Answer.SECOND, Answer.EQUAL]
-        assert [one.answer for one in session.retest_comparisons] in ([Answer.FIRST], [])
+        assert [one.answer for one in session.trials] == [Answer.SECOND, Answer.EQUAL]
+        assert session.retest_answers in ((Answer.FIRST,), ())
 
 
 def test_a_line_is_felt_and_answered_by_keys_until_the_budget_is_spent(
@@ -455,8 +455,8 @@ def test_a_line_is_felt_and_answered_by_keys_until_the_budget_is_spent(
     page.get_by_role("tab", name="Result").click()
     page.wait_for_selector(".opt-compared")
     with ended(page, studio) as session:
-        assert [one.best for one in session.lines] == [5, 8]
-        assert [one.answer for one in session.retest_comparisons] == [Answer.FIRST]
+        assert [one.best for one in session.trials] == [(5,), (8,)]
+        assert session.retest_answers == (Answer.FIRST,)
 
 
 def test_runs_of_two_people_give_one_button_for_both_to_save(page: Page, studio: RunningStudio) -> None:

@@ -16,7 +16,7 @@ from fdvv.errors import BuildError
 from fdvv.formats.exchange.exchange_format import ButtonFormat, ExportSettings
 from fdvv.formats.exchange.exported import Exported
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.engines.registry import engine_names, engine_of, pair_engine_of
+from fdvv.optimize.engines.registry import engine_names, engine_of, pair_engine_names
 from tests.cli.conftest import Run
 
 OWN = ("fdvv",)
@@ -64,8 +64,9 @@ def test_an_absent_engine_is_known_and_names_its_extra() -> None:
     assert "botorch" in engine_names()
     with pytest.raises(BuildError, match="pip install fdvv-botorch"):
         engine_of("botorch")
+    assert "preference-botorch" in pair_engine_names()
     with pytest.raises(BuildError, match="pip install fdvv-botorch"):
-        pair_engine_of("preference-botorch")
+        engine_of("preference-botorch")
 
 
 @pytest.mark.usefixtures("bare")

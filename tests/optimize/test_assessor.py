@@ -49,7 +49,7 @@ def test_what_is_found_suits_the_taste_of_most_people_better_than_the_start(tmp_
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_run_in_pieces_has_the_answers_of_one_at_a_time(tmp_path: Path, engine: str) -> None:
     with assessed(tmp_path / "whole", engine=engine) as session:
-        whole = session.lines, session.comparisons, session.retest_comparisons
+        whole = session.trials, session.retests
         assert session.finished
     begun(tmp_path / "pieces", engine=engine).close()
     going = True
@@ -57,15 +57,14 @@ def test_a_run_in_pieces_has_the_answers_of_one_at_a_time(tmp_path: Path, engine
         with Optimization.open(tmp_path / "pieces") as session:
             going = assessor_of(session.setup).answer_next(session)
     with Optimization.open(tmp_path / "pieces") as session:
-        assert (session.lines, session.comparisons, session.retest_comparisons) == whole
+        assert (session.trials, session.retests) == whole
 
 
 def test_buttons_that_feel_alike_are_equal_or_either_is_preferred(tmp_path: Path) -> None:
     with begun(tmp_path / "run", engine="preference", budget=1) as session:
-        pair = session.compare()
-        assert pair is not None
+        (pair,) = session.ask()
         people = [SimulatedAssessor(draw_taste(0, 3), seed) for seed in range(400)]
-        said = [one.compare(session, pair.first, pair.first, 0) for one in people]
+        said = [one.compare(session, [pair.design, pair.design], 0) for one in people]
     counts = [said.count(answer) for answer in (Answer.FIRST, Answer.SECOND, Answer.EQUAL)]
     # a difference of two normal numbers of 0.3 points is within 0.15 in 28 %
     assert counts == pytest.approx([145, 145, 110], abs=35)

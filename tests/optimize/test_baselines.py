@@ -33,7 +33,7 @@ def test_an_earlier_run_of_a_retired_engine_is_reported_and_not_continued(tmp_pa
     with Optimization.create(folder, OptimizeSetup(engine="random", budget=4)) as session:
         for late_ms in (70.0, 60.0, 80.0):
             (trial,) = session.ask()
-            session.done(trial.number, {"asynchrony_ms": Score(late_ms, 5.0)})
+            session.answer(trial.number, {"asynchrony_ms": Score(late_ms, 5.0)})
     for file in ("optimize.json", "trials.jsonl"):
         path = folder / file
         _rename(path, name)
@@ -65,6 +65,6 @@ def test_gp_ei_recommends_the_best_score_as_it_did_and_the_others_what_is_believ
         for i, (one, value) in enumerate(zip(designs, (90, 70, 99, 66), strict=True))
     ]
     assert engine_of("gp-ei").best(problem(), trials) == designs[3]
-    believed = believed_best(problem(), trials)
+    expected = believed_best(problem(), trials)
     for name, options in (("tpe", {}), ("gp-ei", {"smoothed": True})):
-        assert engine_of(name, options).best(problem(), trials) == believed
+        assert engine_of(name, options).best(problem(), trials) == expected

@@ -32,8 +32,8 @@ def test_of_one_design_the_interval_is_that_of_the_mean_of_its_scores(tmp_path: 
     with run_of(tmp_path / "run") as run:
         scores = rng.normal(truth, noise, count)
         for value in scores:
-            trial = run._ledger.suggest({"size_px": 100.0}, "test")
-            run.done(trial.number, {"score": Score(float(value))})
+            trial = run._ledger.suggest([{"size_px": 100.0}], "test")
+            run.answer(trial.number, {"score": Score(float(value))})
         best = best_design(run)
     error = scores.std(ddof=1) / np.sqrt(count)
     assert best.mean == pytest.approx(scores.mean(), abs=0.25 * error)
@@ -52,7 +52,7 @@ def test_the_interval_covers_the_true_score_of_the_best_design(tmp_path: Path, l
         rng = np.random.default_rng(seed)
         with run_of(tmp_path / str(seed), larger) as run:
             for trial in run.ask(20):
-                run.done(
+                run.answer(
                     trial.number, {"score": Score(truth(trial.design) + float(rng.normal(0, 20.0)), 20.0)}
                 )
             best = best_design(run)
@@ -66,10 +66,9 @@ def test_of_comparisons_the_favourite_is_worth_more_than_the_first(tmp_path: Pat
         with pytest.raises(ModelError):
             best_design(run)
         for _ in range(12):
-            pair = run.compare()
-            assert pair is not None
-            off = [abs(np.log(one["size_px"] / 200.0)) for one in (pair.first, pair.second)]
-            run.answer(pair.number, "first" if off[0] < off[1] else "second")
+            (pair,) = run.ask()
+            off = [abs(np.log(one["size_px"] / 200.0)) for one in pair.designs]
+            run.answer(pair.number, [off.index(min(off))])
         best = best_design(run)
     assert best.chance is not None
     assert best.chance > 0.5
@@ -91,7 +90,7 @@ def test_a_run_of_own_numbers_has_a_report(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     with run_of(tmp_path / "run") as run:
         for trial in run.ask(3):
-            run.done(trial.number, {"score": Score(trial.design["size_px"])})
+            run.answer(trial.number, {"score": Score(trial.design["size_px"])})
         page = optimize_html(run)
     assert "size (px)" in page
     assert "recommended" in page
@@ -110,10 +109,9 @@ def test_of_lines_the_favourite_is_worth_more_than_where_one_began(tmp_path: Pat
         with pytest.raises(ModelError):
             best_design(run)
         for _ in range(4):
-            line = run.line()
-            assert line is not None
-            sizes = [stop["size_px"] for stop in line.stops]
-            run.choose(line.number, sizes.index(max(sizes)))
+            (line,) = run.ask()
+            sizes = [design["size_px"] for design in line.designs]
+            run.answer(line.number, [sizes.index(max(sizes))])
         best = best_design(run)
     assert best.design["size_px"] == pytest.approx(1000.0)
     assert best.count == 4

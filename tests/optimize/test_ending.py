@@ -70,14 +70,14 @@ def play(
 ) -> None:
     """Play a run to its end: in the search everything is better than the start."""
     random = np.random.default_rng(4)
-    while trial := next(iter(session.ask()), None) or session.retest():
+    while trial := next(iter(session.ask()), None):
         session.show(trial.number)
         if trial.rival and trial.rival == failing:
-            session.fail(trial.number, "the rig cannot render it")
+            session.give_up(trial.number, "the rig cannot render it")
             continue
         mean_ms = truth_ms.get(name_of(session, trial), 80.0)
         score = Score(mean_ms + noise_ms * float(random.standard_normal()), 7.0)
-        session.done(trial.number, {"asynchrony_ms": score})
+        session.answer(trial.number, {"asynchrony_ms": score})
 
 
 def test_each_block_has_everything_once_and_the_start_is_one_of_the_switches(tmp_path: Path) -> None:
@@ -115,17 +115,17 @@ def test_an_end_that_is_killed_at_every_trial_goes_on_with_the_same_trials(tmp_p
             if played
             else begun(tmp_path / "pieces", blocks=2) as session
         ):
-            waiting = next(iter(session.ask()), None) or session.retest()
+            waiting = next(iter(session.ask()), None)
             if waiting is None:
                 break
             session.show(waiting.number)
         with Optimization.open(tmp_path / "pieces") as session:
-            again = next(iter(session.ask()), None) or session.retest()
+            again = next(iter(session.ask()), None)
             assert again is not None
             assert again.number == waiting.number
             name = name_of(session, again)
             score = Score(60.0 if name == FOUND else 80.0, 7.0)
-            played.append(session.done(again.number, {"asynchrony_ms": score}))
+            played.append(session.answer(again.number, {"asynchrony_ms": score}))
     assert [(trial.rival, trial.design) for trial in played[4:]] == whole
 
 
@@ -207,7 +207,9 @@ def test_a_start_that_is_recommended_is_still_compared_with_the_switches(tmp_pat
     with begun(tmp_path / "run") as session:
         while trial := next(iter(session.ask()), None):
             session.show(trial.number)
-            session.done(trial.number, {"asynchrony_ms": Score(50.0 if trial.design == START else 90.0, 1.0)})
+            session.answer(
+                trial.number, {"asynchrony_ms": Score(50.0 if trial.design == START else 90.0, 1.0)}
+            )
         assert session.recommended() == START
         play(session, {OWN: 60.0})
         assert len(session.retests) == 6 * 4
@@ -253,14 +255,13 @@ def test_a_trial_without_a_rival_is_written_as_it_was_before_there_were_any() ->
 
 def test_trials_of_the_end_that_are_stopped_are_played_again(tmp_path: Path) -> None:
     with begun(tmp_path / "run", blocks=2) as session:
-        while trial := next(iter(session.ask()), None):
+        while not session.searched:
+            (trial,) = session.ask()
             session.show(trial.number)
-            session.done(trial.number, {"asynchrony_ms": Score(60.0 + 20 * (trial.design == START), 1.0)})
-        first = session.retest()
-        assert first is not None
-        session.abandon(first.number)
-        again = session.retest()
-        assert again is not None
+            session.answer(trial.number, {"asynchrony_ms": Score(60.0 + 20 * (trial.design == START), 1.0)})
+        (first,) = session.ask()
+        session.give_up(first.number, failed=False)
+        (again,) = session.ask()
         assert (again.design, again.rival) == (first.design, first.rival)
         assert again.number != first.number
         play(session, {})

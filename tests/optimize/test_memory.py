@@ -20,7 +20,7 @@ def play(session: Optimization, count: int) -> None:
         (trial,) = session.ask()
         slow, effort = trial.design["actuation_mm"], trial.design["y1_cN"]
         scores = {"asynchrony_ms": Score(60.0 + 8.0 * slow, 1.0), "effort_N_s": Score(effort / 50.0, 1.0)}
-        session.done(trial.number, scores)
+        session.answer(trial.number, scores)
 
 
 def test_a_result_is_computed_anew_for_other_inputs_and_after_an_error_only() -> None:

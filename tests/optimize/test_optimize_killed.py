@@ -45,7 +45,7 @@ def go_on(session: Optimization):  # type: ignore[no-untyped-def]
             if trial.state is TrialState.SUGGESTED:
                 session.show(trial.number)
             found = score(trial.number, trial.design)
-            yield session.done(trial.number, {"asynchrony_ms": found})
+            yield session.answer(trial.number, {"asynchrony_ms": found})
 
 
 def finished(session: Optimization) -> int:

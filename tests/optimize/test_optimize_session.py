@@ -32,7 +32,7 @@ def go_on(session: Optimization, count: int) -> None:
     for _ in range(count):
         (trial,) = session.ask()
         session.show(trial.number)
-        session.done(trial.number, scored(trial.design))
+        session.answer(trial.number, scored(trial.design))
 
 
 def test_a_run_ends_with_its_budget_and_recommends_a_design(tmp_path: Path) -> None:
@@ -68,7 +68,7 @@ def test_a_run_that_is_closed_and_opened_at_every_step_is_the_same_run(tmp_path:
         with Optimization.open(tmp_path / "pieces") as session:
             (trial,) = session.ask()
             assert trial.state is TrialState.SHOWN
-            session.done(trial.number, scored(trial.design))
+            session.answer(trial.number, scored(trial.design))
     with Optimization.open(tmp_path / "pieces") as session:
         assert session.trials == whole
     assert replay_differences(tmp_path / "pieces") == ()
@@ -104,15 +104,15 @@ def test_a_suggestion_can_be_edited_until_it_is_shown(tmp_path: Path) -> None:
         session.show(trial.number)
         with pytest.raises(InputError, match="edited"):
             session.edit(trial.number, MIDDLE)
-        session.done(trial.number, scored(MIDDLE))
+        session.answer(trial.number, scored(MIDDLE))
     assert replay_differences(tmp_path / "run") == ()
 
 
 def test_failed_trials_count_and_abandoned_ones_do_not(tmp_path: Path) -> None:
     with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol", budget=3)) as session:
         a, b = session.ask(2)
-        session.fail(a.number, "the rig refused it")
-        session.abandon(b.number)
+        session.give_up(a.number, "the rig refused it")
+        session.give_up(b.number, failed=False)
         assert session.left == 2
         go_on(session, 2)
         assert session.finished
@@ -124,7 +124,7 @@ def test_scores_of_every_objective_are_asked_for(tmp_path: Path) -> None:
     with Optimization.create(tmp_path / "run", OptimizeSetup(objectives=objectives)) as session:
         (trial,) = session.ask()
         with pytest.raises(InputError, match="effort_N_s"):
-            session.done(trial.number, scored(trial.design))
+            session.answer(trial.number, scored(trial.design))
 
 
 def test_a_folder_in_use_or_with_something_in_it_is_refused_in_one_line(tmp_path: Path) -> None:
@@ -176,20 +176,21 @@ def test_comparisons_are_kept_resumed_and_replayed(tmp_path: Path) -> None:
     Optimization.create(tmp_path / "run", setup).close()
     for turn in range(4):
         with Optimization.open(tmp_path / "run") as session:
-            pair = session.compare()
+            (pair,) = session.ask()
         with Optimization.open(tmp_path / "run") as session:
-            again = session.compare()
-            assert again is not None
-            assert again == pair
-            session.answer(again.number, ("first", "equal", "second", "first")[turn])
+            (again,) = session.ask()
+            assert again == pair == session.next_trial()
+            session.answer(again.number, ((0,), (0, 1), (1,), (0,))[turn])
     with Optimization.open(tmp_path / "run") as session:
         assert session.finished
-        assert session.compare() is None
+        assert session.next_trial() is None
         assert session.space.checked(session.best()) == session.best()
-        with pytest.raises(InputError, match="compar"):
-            session.ask()
-        with pytest.raises(InputError, match="neither"):
-            session.answer(0, "neither")
+        with pytest.raises(InputError, match="say which of its designs is best"):
+            session.answer(0, scored(session.trials[0].design))
+        with pytest.raises(InputError, match="names no design"):
+            session.answer(0, ())
+        with pytest.raises(InputError, match="can no longer be edited"):
+            session.edit(0, session.trials[0].design)
     assert replay_differences(tmp_path / "run") == ()
 
 
@@ -199,31 +200,26 @@ def test_lines_are_kept_resumed_and_replayed_and_then_the_result_is_compared(tmp
     Optimization.create(tmp_path / "run", setup).close()
     for turn in range(3):
         with Optimization.open(tmp_path / "run") as session:
-            line = session.line()
+            (line,) = session.ask()
             assert session.left == 2 - turn
         with Optimization.open(tmp_path / "run") as session:
-            again = session.line()
+            again = session.next_trial()
             assert again is not None
             assert again == line
-            with pytest.raises(InputError, match="ask for lines"):
-                session.compare()
-            session.choose(again.number, (8, 0, 3)[turn])
+            with pytest.raises(InputError, match="has designs 0 to 8, not 9"):
+                session.answer(again.number, [9])
+            session.answer(again.number, [(8, 0, 3)[turn]])
             assert session.answered == turn + 1
     with Optimization.open(tmp_path / "run") as session:
-        assert session.line() is None
         assert (session.searched, session.finished) == (True, False)
-        assert session.start == session.lines[0].middle
+        assert session.start == session.trials[0].designs[4]
         for _ in range(2):
-            pair = session.compare()
-            assert pair is not None
-            assert session.start in (pair.first, pair.second)
-            assert session.recommended() in (pair.first, pair.second)
-            session.answer(pair.number, "first")
-        assert session.compare() is None
+            (pair,) = session.ask()
+            assert sorted(map(str, pair.designs)) == sorted(map(str, (session.start, session.recommended())))
+            session.answer(pair.number, [0])
+        assert session.ask() == ()
         assert session.finished
         assert session.space.checked(session.best()) == session.best()
-        with pytest.raises(InputError, match="compar"):
-            session.ask()
     assert replay_differences(tmp_path / "run") == ()
 
 
@@ -232,19 +228,22 @@ def test_a_recommendation_follows_every_line_that_is_answered(tmp_path: Path) ->
     with Optimization.create(tmp_path / "run", setup) as session:
         assert session.recommended() is None
         for best in (8, 0, 3):
-            line = session.line()
-            assert line is not None
-            session.choose(line.number, best)
+            (line,) = session.ask()
+            session.answer(line.number, [best])
             assert session.recommended() == session.best()
 
 
-def test_only_a_run_of_lines_has_lines(tmp_path: Path) -> None:
-    setup = OptimizeSetup(task="preference", engine="preference")
-    with (
-        Optimization.create(tmp_path / "run", setup) as session,
-        pytest.raises(InputError, match="preference has no lines"),
-    ):
-        session.line()
+def test_a_trial_that_is_scored_has_no_best_design(tmp_path: Path) -> None:
+    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol")) as session:
+        (trial,) = session.ask()
+        with pytest.raises(InputError, match="say its scores"):
+            session.answer(trial.number, [0])
+
+
+@pytest.mark.parametrize(("task", "engine"), [("preference", "gp"), ("temporal-pointing", "preference")])
+def test_an_engine_that_reads_other_answers_is_refused(tmp_path: Path, task: str, engine: str) -> None:
+    with pytest.raises(InputError, match="reads"):
+        Optimization.create(tmp_path / "run", OptimizeSetup(task=task, engine=engine))
 
 
 def test_several_objectives_have_a_front_and_no_best(tmp_path: Path) -> None:
@@ -254,7 +253,7 @@ def test_several_objectives_have_a_front_and_no_best(tmp_path: Path) -> None:
         for _ in range(8):
             (trial,) = session.ask()
             effort = Score(trial.design["y2_cN"] / 100)
-            session.done(trial.number, {**scored(trial.design), "effort_N_s": effort})
+            session.answer(trial.number, {**scored(trial.design), "effort_N_s": effort})
         with pytest.raises(ModelError, match="front"):
             session.best()
         assert 1 <= len(session.front().trials) <= 8

@@ -8,9 +8,10 @@ from scipy.optimize import minimize
 from scipy.stats import norm
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize.engines.preference import NOISE, believe_answers
-from fdvv.optimize.engines.registry import pair_engine_names, pair_engine_of
-from fdvv.optimize.problem import Answer, Comparison, PairEngine, Problem
+from fdvv.optimize.engines.preference import NOISE, believe_choices
+from fdvv.optimize.engines.registry import engine_of, pair_engine_names
+from fdvv.optimize.problem import Answer, Engine, Problem, Trial, TrialState
+from fdvv.optimize.space import Design
 from fdvv_botorch.models import torch_there
 from tests.optimize.problems import BOWL, HELD, bowl_ms, problem
 
@@ -19,33 +20,40 @@ NAMES = [pytest.param(n, marks=NO_TORCH if n.endswith("botorch") else ()) for n 
 
 
 @pytest.fixture(params=NAMES)
-def engine(request: pytest.FixtureRequest) -> PairEngine:
-    return pair_engine_of(request.param)
+def engine(request: pytest.FixtureRequest) -> Engine:
+    return engine_of(request.param)
 
 
-def compared(case: Problem, engine: PairEngine, count: int) -> list[Comparison]:
+def pair(number: int, first: Design, second: Design, answer: Answer | None = None) -> Trial:
+    if answer is None:
+        return Trial(number, dict(first), beside=(dict(second),))
+    return Trial(number, dict(first), TrialState.DONE, beside=(dict(second),), best=answer.best)
+
+
+def compared(case: Problem, engine: Engine, count: int) -> list[Trial]:
     """Let somebody answer who likes a low bowl, and sees no difference below 1 ms."""
-    found: list[Comparison] = []
+    found: list[Trial] = []
     for number in range(count):
-        first, second = engine.pair(case, found)
+        first, second = engine.suggest(case, found)
         gap = bowl_ms(second) - bowl_ms(first)
         answer = Answer.EQUAL if abs(gap) < 1.0 else Answer.FIRST if gap > 0 else Answer.SECOND
-        found.append(Comparison(number, first, second, answer))
+        found.append(pair(number, first, second, answer))
     return found
 
 
-def test_pairs_replay_differ_and_hold_the_constraints(engine: PairEngine) -> None:
+def test_pairs_replay_differ_and_hold_the_constraints(engine: Engine) -> None:
     case = problem(HELD, seed=3)
     found = compared(case, engine, 5)
-    assert found == compared(case, pair_engine_of(engine.name), 5)
+    assert found == compared(case, engine_of(engine.name), 5)
     for one in found:
-        assert one.first != one.second
-        assert HELD.broken(one.first) == HELD.broken(one.second) == ()
-    asked = {frozenset((tuple(one.first.values()), tuple(one.second.values()))) for one in found}
+        first, second = one.designs
+        assert first != second
+        assert HELD.broken(first) == HELD.broken(second) == ()
+    asked = {frozenset(tuple(design.values()) for design in one.designs) for one in found}
     assert len(asked) == 5
 
 
-def test_a_favourite_is_found_in_ten_comparisons(engine: PairEngine) -> None:
+def test_a_favourite_is_found_in_ten_comparisons(engine: Engine) -> None:
     everywhere = np.array([bowl_ms(d) for d in BOWL.of_unit(np.random.default_rng(4).random((2000, 3)))])
     ranks = []
     for seed in range(7 if engine.name == "preference" else 3):
@@ -55,26 +63,26 @@ def test_a_favourite_is_found_in_ten_comparisons(engine: PairEngine) -> None:
     assert np.median(ranks) < 0.1
 
 
-def test_nothing_is_recommended_before_an_answer(engine: PairEngine) -> None:
+def test_nothing_is_recommended_before_an_answer(engine: Engine) -> None:
     first, second = BOWL.of_unit([[0.1] * 3, [0.9] * 3])
-    unanswered = Comparison(0, first, second)
+    unanswered = pair(0, first, second)
     with pytest.raises(ModelError):
         engine.best(problem(), [unanswered])
-    assert engine.pair(problem(), [unanswered])[0] not in (unanswered.first, unanswered.second)
+    assert engine.suggest(problem(), [unanswered])[0] not in unanswered.designs
 
 
-def test_equal_answers_alone_prefer_nobody(engine: PairEngine) -> None:
+def test_equal_answers_alone_prefer_nobody(engine: Engine) -> None:
     a, b, c = BOWL.of_unit([[0.1] * 3, [0.9] * 3, [0.5, 0.1, 0.9]])
-    same = [Comparison(0, a, b, Answer.EQUAL), Comparison(1, b, c, Answer.EQUAL)]
+    same = [pair(0, a, b, Answer.EQUAL), pair(1, b, c, Answer.EQUAL)]
     assert engine.best(problem(), same) in (a, b, c)
-    first, second = engine.pair(problem(), same)
+    first, second = engine.suggest(problem(), same)
     assert first != second
 
 
 def test_the_worths_are_the_most_probable_ones() -> None:
     a, b, c = BOWL.of_unit([[0.1] * 3, [0.9] * 3, [0.5, 0.1, 0.9]])
     answers = [(a, b, Answer.FIRST), (b, c, Answer.EQUAL), (c, a, Answer.SECOND), (a, b, Answer.SECOND)]
-    belief = believe_answers(BOWL, [Comparison(i, x, y, z) for i, (x, y, z) in enumerate(answers)])
+    belief = believe_choices(BOWL, [pair(i, x, y, z) for i, (x, y, z) in enumerate(answers)])
     assert belief is not None
     K = belief._kernel(belief.places)
 
@@ -90,4 +98,4 @@ def test_the_worths_are_the_most_probable_ones() -> None:
 
 def test_an_unknown_engine_is_refused_with_those_there_are() -> None:
     with pytest.raises(InputError, match="preference-botorch"):
-        pair_engine_of("elo")
+        engine_of("elo")

@@ -11,7 +11,6 @@ from scipy.stats import ttest_1samp
 
 from fdvv.model.file import load_builtin
 from fdvv.optimize.model_space import neutral_design
-from fdvv.optimize.problem import Answer
 from fdvv.optimize.realistic import realistic_space
 from fdvv.optimize.run.replay import replay_differences
 from fdvv.optimize.run.session import Optimization
@@ -41,11 +40,11 @@ def begun(folder: Path, pairs: int = 6, engine: str = "sobol", simulated: bool =
 def play(session: Optimization, gain_ms: float, noise_ms: float, seed: int = 0) -> None:
     """Play a run to its end: every design but the start is so much better, in truth."""
     random = np.random.default_rng(seed)
-    while trial := next(iter(session.ask()), None) or session.retest():
+    while trial := next(iter(session.ask()), None):
         session.show(trial.number)
         truth = 80.0 - (0.0 if trial.design == START else gain_ms)
         score = Score(truth + noise_ms * float(random.standard_normal()), 7.0)
-        session.done(trial.number, {"asynchrony_ms": score})
+        session.answer(trial.number, {"asynchrony_ms": score})
 
 
 def test_each_pair_has_start_and_design_in_a_drawn_order_and_teaches_the_engine_nothing(
@@ -60,7 +59,7 @@ def test_each_pair_has_start_and_design_in_a_drawn_order_and_teaches_the_engine_
         assert [{str(a.design), str(b.design)} for a, b in pairs] == [{str(START), str(found)}] * 6
         assert 0 < sum(one.design == START for one, _ in pairs) < 6
         assert session.finished
-        assert session.retest() is None
+        assert session.ask() == ()
     assert replay_differences(tmp_path / "run") == ()
 
 
@@ -69,19 +68,18 @@ def test_a_run_killed_in_its_retest_goes_on_with_the_same_trials(tmp_path: Path)
         play(session, 12.0, 3.0)
         whole = [one.design for one in session.retests]
     with begun(tmp_path / "pieces") as session:
-        while trial := next(iter(session.ask()), None):
+        while not session.searched:
+            (trial,) = session.ask()
             session.show(trial.number)
-            session.done(trial.number, {"asynchrony_ms": Score(70.0 if trial.number else 80.0)})
+            session.answer(trial.number, {"asynchrony_ms": Score(70.0 if trial.number else 80.0)})
     for _ in whole:
         with Optimization.open(tmp_path / "pieces") as session:
-            waiting = session.retest()
-            assert waiting is not None
+            (waiting,) = session.ask()
             session.show(waiting.number)
         with Optimization.open(tmp_path / "pieces") as session:
-            again = session.retest()
-            assert again is not None
+            (again,) = session.ask()
             assert again.number == waiting.number
-            session.done(again.number, {"asynchrony_ms": Score(70.0)})
+            session.answer(again.number, {"asynchrony_ms": Score(70.0)})
     with Optimization.open(tmp_path / "pieces") as session:
         assert session.finished
         assert [one.design == START for one in session.retests] == [design == START for design in whole]
@@ -137,16 +135,13 @@ def test_of_people_without_a_difference_few_are_called_better() -> None:
 @pytest.mark.parametrize("engine", ["preference", "preference-line"])
 def test_what_people_preferred_is_retested_too(tmp_path: Path, engine: str) -> None:
     with begun(tmp_path / "run", engine=engine, simulated=False) as session:
-        while session.line_engine and (line := session.line()):
-            forces = [stop["force_ratio"] for stop in line.stops]
-            session.choose(line.number, forces.index(min(forces)))
-        while pair := session.compare():
-            liked = Answer.FIRST if pair.first["force_ratio"] < pair.second["force_ratio"] else Answer.SECOND
-            session.answer(pair.number, liked)
+        while trial := session.next_trial():
+            forces = [design["force_ratio"] for design in trial.designs]
+            session.answer(trial.number, [forces.index(min(forces))])
         assert session.answered == 4
         found = retest_of(session)
         assert found is not None
-        assert found.pairs == len(session.retest_comparisons) == 6
+        assert found.pairs == len(session.retests) == 6
         assert session.finished
         sentence = str(verdict_sentence(session))
         assert sentence.startswith(

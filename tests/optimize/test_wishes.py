@@ -59,17 +59,17 @@ def search(session: Optimization) -> None:
             ASYNCHRONY.name: Score(50.0 + 30.0 * depth**2 + 40.0 * worse, 2.0),
             LIKING.name: Score(6.0 - 3.0 * (1 - depth) ** 2 - 2.0 * worse, 0.2),
         }
-        session.done(trial.number, scores)
+        session.answer(trial.number, scores)
 
 
 def retest(session: Optimization, gain_ms: float, gain: float, noise: float = 1.0) -> None:
     random = np.random.default_rng(0)
-    while trial := session.retest():
+    while trial := next(iter(session.ask()), None):
         session.show(trial.number)
         found = trial.design != START
         late_ms = 80.0 - gain_ms * found + noise * float(random.standard_normal())
         liked = 4.0 + gain * found + 0.3 * noise * float(random.standard_normal())
-        session.done(trial.number, {ASYNCHRONY.name: Score(late_ms, 7.0), LIKING.name: Score(liked, 0.3)})
+        session.answer(trial.number, {ASYNCHRONY.name: Score(late_ms, 7.0), LIKING.name: Score(liked, 0.3)})
 
 
 def test_the_knee_lies_between_the_best_of_both_wishes(tmp_path: Path) -> None:
@@ -103,8 +103,7 @@ def test_a_compromise_that_a_person_takes_is_retested_whatever_ends_the_process(
         assert session.recommended() == last.design
     with Optimization.open(tmp_path / "run") as session:
         assert session.recommended() == last.design
-        waiting = session.retest()
-        assert waiting is not None
+        (waiting,) = session.ask()
         assert waiting.design in (START, last.design)
         with pytest.raises(InputError, match="between the search and its retest"):
             session.take(session.front().trials[0].number)

@@ -27,9 +27,7 @@ ALSO = {
     "template": ("templates.name",),
     "person": ("people.person",),
     "rig": ("rigs.name", "rig_id"),
-    "trial": ("trials.number", "number"),
-    "pair": ("pairs.number", "number"),
-    "line": ("lines.number", "number"),
+    "trial": ("trials.number", "pairs.number", "lines.number", "number"),
     "velocities_mm_s": ("velocity_mm_s",),
 }
 """Names under which the values of a field are answered, besides its own."""

@@ -386,7 +386,7 @@ def test_a_simulated_person_plays_to_the_end_of_the_budget(
     assert found["simulated"] == {**found["simulated"], "running": False, "done": 3, "fault": ""}
     assert [one["state"] for one in found["trials"]] == ["done"] * 3
     assert ask("best", run=run)["design"].keys() == found["start"].keys()
-    assert "all played" in refusal(client, "next", run=run)
+    assert "all over" in refusal(client, "next", run=run)
 
 
 def test_a_run_ends_beside_the_switches_if_it_is_asked_to(
@@ -495,21 +495,20 @@ def test_two_designs_are_compared_until_the_budget_is_spent(
     some = {"engine": "preference", "budget": 2, "start": None, "retest": 1}
     wanted = {**CREATE, "preference": True, "also": also, **some}
     run = ask("create", **wanted)["run"]
-    for number, answer in enumerate(("second", "equal")):
-        assert ask("pair", run=run) == ask("pair", run=run) == {"run": run, "pair": number}
-        ask("answer", run=run, pair=number, answer=answer)
+    for number, best in enumerate(([1], [0, 1])):
+        assert ask("next", run=run) == ask("next", run=run) == {"run": run, "trial": number}
+        ask("answer", run=run, trial=number, best=best)
     found = ask("detail", run=run)
     assert [one["answer"] for one in found["pairs"]] == ["second", "equal"]
     assert found["row"]["spent"] == 2
     assert found["start"] == found["pairs"][0]["first"]
     assert ask("best", run=run)["design"].keys() == found["start"].keys()
-    retested = ask("pair", run=run)["pair"]
+    retested = ask("next", run=run)["trial"]
     assert retested == 2
-    ask("answer", run=run, pair=retested, answer="first")
-    assert "all made" in refusal(client, "pair", run=run)
+    ask("answer", run=run, trial=retested, best=[0])
+    assert "all over" in refusal(client, "next", run=run)
     assert ask("detail", run=run)["retest"]["done"] == 1
-    assert "answered" in refusal(client, "answer", run=run, pair=0, answer="first")
-    assert "compared" in refusal(client, "next", run=run)
+    assert "answered" in refusal(client, "answer", run=run, trial=0, best=[0])
 
 
 def test_lines_are_answered_until_the_budget_is_spent_and_the_result_is_compared(
@@ -519,21 +518,19 @@ def test_lines_are_answered_until_the_budget_is_spent_and_the_result_is_compared
     some = {"engine": "preference-line", "budget": 2, "start": None, "retest": 1}
     run = ask("create", **{**CREATE, "preference": True, **some})["run"]
     for number, best in enumerate((8, 3)):
-        assert ask("line", run=run) == ask("line", run=run) == {"run": run, "line": number}
-        assert "ask for lines" in refusal(client, "pair", run=run)
-        assert "stops 0 to 8" in refusal(client, "choose", run=run, line=number, best=9)
-        ask("choose", run=run, line=number, best=best)
+        assert ask("next", run=run) == ask("next", run=run) == {"run": run, "trial": number}
+        assert "designs 0 to 8" in refusal(client, "answer", run=run, trial=number, best=[9])
+        ask("answer", run=run, trial=number, best=[best])
     found = ask("detail", run=run)
     assert found["on_lines"]
     assert [one["best"] for one in found["lines"]] == [8, 3]
     assert (found["row"]["spent"], found["searched"], found["pairs"]) == (2, True, [])
     assert found["start"] == found["lines"][0]["stops"][4]
     assert ask("best", run=run)["design"] in [stop for one in found["lines"] for stop in one["stops"]]
-    assert "all answered" in refusal(client, "line", run=run)
-    assert "was answered" in refusal(client, "choose", run=run, line=0, best=1)
-    ask("answer", run=run, pair=ask("pair", run=run)["pair"], answer="first")
+    assert "was answered" in refusal(client, "answer", run=run, trial=0, best=[1])
+    ask("answer", run=run, trial=ask("next", run=run)["trial"], best=[0])
+    assert "all over" in refusal(client, "next", run=run)
     assert ask("detail", run=run)["retest"]["done"] == 1
-    assert "all made" in refusal(client, "pair", run=run)
 
 
 def test_several_objectives_make_a_front_to_pick_from(ask: Callable[..., Any], own_studio: Studio) -> None:
@@ -544,7 +541,7 @@ def test_several_objectives_make_a_front_to_pick_from(ask: Callable[..., Any], o
         for number, (late_ms, lost) in enumerate(scores):
             session.ask()
             session.show(number)
-            session.done(number, {"asynchrony_ms": Score(late_ms), "lost_ratio": Score(lost)})
+            session.answer(number, {"asynchrony_ms": Score(late_ms), "lost_ratio": Score(lost)})
     found = ask("detail", run=run)
     assert [one["front"] for one in found["trials"]] == [True, True, False]
     assert ask("best", run=run)["design"] in [one["design"] for one in found["trials"][:2]]

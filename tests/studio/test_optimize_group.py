@@ -20,7 +20,7 @@ def scored_run(folder: Path, title: str, low_mm: float) -> None:
         while trials := session.ask():
             session.show(trials[0].number)
             value = 40.0 + 5.0 * (trials[0].design["actuation_mm"] - low_mm) ** 2
-            session.done(trials[0].number, {"asynchrony_ms": Score(value, 2.0)})
+            session.answer(trials[0].number, {"asynchrony_ms": Score(value, 2.0)})
 
 
 @pytest.fixture

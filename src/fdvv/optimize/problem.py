@@ -1,4 +1,4 @@
-"""What suggests designs: ask and tell, with all state in the trials."""
+"""What people are asked, and what suggests it: ask and answer, with all state in the trials."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fdvv.task.score import Objective, Score
 class TrialState(StrEnum):
     """How far a trial is.
 
-    suggested : written down, not yet shown to anybody. shown : somebody tries it. done : scored.
+    suggested : written down, not yet shown to anybody. shown : somebody tries it. done : answered.
     failed : it could not be tried or scored, and the reason is known. abandoned : somebody stopped it; its
     presses do not count.
     """
@@ -33,14 +33,33 @@ OPEN = (TrialState.SUGGESTED, TrialState.SHOWN)
 """States of a trial that is under way."""
 
 
+PREFERENCE = "preference"
+"""The task in which the best of some designs is chosen; the names of engines for it begin with it."""
+
+
+class Answer(StrEnum):
+    """What a person says of two designs, in the words of messages."""
+
+    FIRST = "first"
+    SECOND = "second"
+    EQUAL = "equal"
+
+    @property
+    def best(self) -> tuple[int, ...]:
+        """Which of the two are liked best, from 0."""
+        return {"first": (0,), "second": (1,), "equal": (0, 1)}[self]
+
+
 @dataclass(frozen=True)
 class Trial:
-    """One design and what became of it.
+    """One design to be scored, or several of which the best is chosen, and what became of it.
 
     Attributes
     ----------
     number : from 0, in the order of suggestion.
-    design : what is tried. suggested : what the engine had suggested, if a person edited it.
+    design : what is tried. beside : the others that are tried with it, of a choice; two designs are compared,
+        more are felt along a line in their order. best : which of all these, from 0, is liked best; several
+        where somebody finds no difference. suggested : what the engine had suggested, if a person edited it.
     state : how far it is. scores : by objective, when done. reason : of a failure.
     origin : who suggested it: an engine's name, "start" (the person's own button) or "retest".
     components : of a design that several people scored: what a person of one standard deviation along each
@@ -58,44 +77,23 @@ class Trial:
     origin: str = ""
     components: tuple[float, ...] | msgspec.UnsetType = msgspec.UNSET
     rival: str | msgspec.UnsetType = msgspec.UNSET
-
-
-class Answer(StrEnum):
-    """What a person says of two designs."""
-
-    FIRST = "first"
-    SECOND = "second"
-    EQUAL = "equal"
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """Two designs and which of them somebody preferred; answer None: not yet answered."""
-
-    number: int
-    first: dict[str, float]
-    second: dict[str, float]
-    answer: Answer | None = None
-
-
-@dataclass(frozen=True)
-class Line:
-    """Designs along a straight line through the space, and the one of them that somebody liked best.
-
-    Attributes
-    ----------
-    number : from 0, in the order of suggestion. stops : at least two designs, in the order of the line.
-    best : which of the stops is liked best, from 0; None: not yet answered.
-    """
-
-    number: int
-    stops: tuple[dict[str, float], ...]
-    best: int | None = None
+    beside: tuple[dict[str, float], ...] | msgspec.UnsetType = msgspec.UNSET
+    best: tuple[int, ...] | msgspec.UnsetType = msgspec.UNSET
 
     @property
-    def middle(self) -> dict[str, float]:
-        """The stop in the middle; of a run's first line, what its result is compared with."""
-        return self.stops[len(self.stops) // 2]
+    def designs(self) -> tuple[dict[str, float], ...]:
+        """All designs that are tried."""
+        return (self.design, *(self.beside or ()))
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it is under way."""
+        return self.state in OPEN
+
+    @property
+    def answer(self) -> Answer | None:
+        """What is said of two designs; None before it is said."""
+        return next((one for one in Answer if one.best == self.best), None)
 
 
 @dataclass(frozen=True)
@@ -128,11 +126,16 @@ class Engine(Protocol):
 
     @property
     def name(self) -> str:
-        """Its name, as `--engine` knows it."""
+        """Its name, as `--engine` knows it; it begins with PREFERENCE where the best of designs is chosen."""
+
+    @property
+    def trial_size(self) -> int:
+        """How many designs a trial has at most: 1 is scored, 2 are compared, more are felt along a line."""
 
     def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
-        """Suggest count designs that hold the constraints, given all trials so far (every state).
+        """Suggest designs that hold the constraints, given all trials so far (every state).
 
+        Return those of the next count trials where designs are scored, else all those of the next trial.
         Trials that are suggested or shown are under way; failed ones say that their neighbourhood may fail;
         abandoned ones say nothing. InputError if no design of the space holds the constraints.
         """
@@ -142,33 +145,3 @@ class Engine(Protocol):
 
         Only with one objective; ModelError if nothing is done yet.
         """
-
-
-class PairEngine(Protocol):
-    """Suggests two designs to be compared; keeps nothing, as Engine."""
-
-    @property
-    def name(self) -> str:
-        """Its name, as `--engine` knows it."""
-
-    def pair(
-        self, problem: Problem, comparisons: Sequence[Comparison]
-    ) -> tuple[dict[str, float], dict[str, float]]:
-        """Suggest the next two designs."""
-
-    def best(self, problem: Problem, comparisons: Sequence[Comparison]) -> dict[str, float]:
-        """Recommend a design; ModelError if nothing was answered yet."""
-
-
-class LineEngine(Protocol):
-    """Suggests a line along which the best design is felt out; keeps nothing, as Engine."""
-
-    @property
-    def name(self) -> str:
-        """Its name, as a setup knows it."""
-
-    def line(self, problem: Problem, lines: Sequence[Line]) -> tuple[dict[str, float], ...]:
-        """Suggest the stops of the next line; all of them hold the constraints."""
-
-    def best(self, problem: Problem, lines: Sequence[Line]) -> dict[str, float]:
-        """Recommend a design; ModelError if nothing was answered yet."""

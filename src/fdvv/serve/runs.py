@@ -14,9 +14,9 @@ from msgspec import to_builtins
 from fdvv.errors import InputError
 from fdvv.model.file import builtin_names, load_builtin, model_from_json, model_to_json
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.engines.registry import engine_names, pair_engine_names
+from fdvv.optimize.engines.registry import engine_names, pair_engine_names, reads_choices
 from fdvv.optimize.model_space import model_space, neutral_design
-from fdvv.optimize.problem import OPEN, Trial, TrialState
+from fdvv.optimize.problem import PREFERENCE, Trial
 from fdvv.optimize.run.belief import best_design
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import SETUP_FILE, OptimizeSetup, SpaceSetup, model_space_setup
@@ -107,7 +107,7 @@ def setup_of(ask: m.BeginRun, studio: Studio) -> OptimizeSetup:
     return OptimizeSetup(
         space=space,
         engine=ask.engine,
-        task="preference" if ask.engine in pair_engine_names() else SCORED,
+        task=PREFERENCE if reads_choices(ask.engine) else SCORED,
         objectives=(Objective(ask.objective, ask.goal == "maximise"),),
         seed=ask.seed,
         budget=ask.budget,
@@ -131,17 +131,16 @@ def _space(ask: m.BeginRun, studio: Studio) -> tuple[SpaceSetup, dict[str, float
 
 def status_of(run: Optimization, _ask: object = None) -> a.RunStatus:
     setup, objective = run.setup, run.problem.objectives[0]
-    scored = sum(one.state is TrialState.DONE for one in run.trials)
     return a.RunStatus(
         run.folder.name,
         setup.engine,
-        run.pair_engine is not None,
+        setup.preference,
         run.space.parameters,
         objective.name,
         "maximise" if objective.larger_is_better else "minimise",
         setup.budget,
         run.left,
-        sum(one.answer is not None for one in run.comparisons) if run.pair_engine else scored,
+        run.answered,
         run.finished,
     )
 
@@ -156,8 +155,9 @@ def _model(run: Optimization, design: dict[str, float] | None) -> dict[str, Any]
 
 def _ask(run: Optimization, _ask: m.AskDesign) -> a.Suggestion:
     """Return the trial that is open, else the next one of the search, else of the retest."""
-    open_ = (one for one in (*run.trials, *run.retests) if one.state in OPEN)
-    trial = next(open_, None) or next(iter(run.ask()), None) or run.retest()
+    if run.setup.preference:
+        raise InputError("run", "task", "designs of this run are compared", "ask for comparisons instead")
+    trial = run.next_trial()
     if trial is None:
         return a.Suggestion(None, {}, None, run.left, run.finished)
     return a.Suggestion(trial.number, trial.design, _model(run, trial.design), run.left, False)
@@ -173,9 +173,9 @@ def _tell(run: Optimization, ask: m.TellOutcome) -> a.RunStatus:
     if before is not None and _is(before, run, ask):
         return status_of(run)
     if ask.score is not None:
-        run.done(ask.trial, {run.problem.objectives[0].name: _score(run, ask)})
+        run.answer(ask.trial, {run.problem.objectives[0].name: _score(run, ask)})
     else:
-        (run.fail if ask.outcome == "failed" else run.abandon)(ask.trial, ask.reason)
+        run.give_up(ask.trial, ask.reason, failed=ask.outcome == "failed")
     return status_of(run)
 
 
@@ -200,17 +200,19 @@ def _best(run: Optimization, _ask: m.BestOfRun) -> a.Best:
 
 
 def _compare(run: Optimization, _ask: m.AskPair) -> a.Pair:
-    pair = run.compare()
-    if pair is None:
+    if not run.setup.preference:
+        raise InputError("run", "task", "designs of this run are scored", "ask for trials instead")
+    trial = run.next_trial()
+    if trial is None:
         return a.Pair(None, {}, {}, None, None, run.left, run.finished)
-    models = _model(run, pair.first), _model(run, pair.second)
-    return a.Pair(pair.number, pair.first, pair.second, *models, run.left, False)
+    first, second = trial.designs
+    return a.Pair(trial.number, first, second, _model(run, first), _model(run, second), run.left, False)
 
 
 def _prefer(run: Optimization, ask: m.TellAnswer) -> a.RunStatus:
-    known = (*run.comparisons, *run.retest_comparisons)
-    if not any(one.number == ask.pair and one.answer is ask.answer for one in known):
-        run.answer(ask.pair, ask.answer)
+    trial = run.trial(ask.pair)
+    if trial is None or trial.answer is not ask.answer:
+        run.answer(ask.pair, ask.answer.best)
     return status_of(run)
 
 

@@ -76,8 +76,8 @@ class SimulatedPlay:
         """Play the next trial; False if there is none."""
         with self._runs.session(self._run) as session:
             task, seed = pointing_of(session.setup), session.setup.seed
-            waiting = [one for one in session.trials if one.state is TrialState.SUGGESTED]
-            trial = next(iter(waiting or session.ask()), None) or session.retest()
+            waiting = [one for one in session.open_trials if one.state is TrialState.SUGGESTED]
+            trial = next(iter(waiting or session.ask()), None)
             if trial is None:
                 return False
             if trial.state is TrialState.SUGGESTED:
@@ -90,7 +90,7 @@ class SimulatedPlay:
         with self._runs.session(self._run) as session:
             if session.setup.asks_liking:
                 scores[LIKING.name] = liking_score(rate(model, taste, seed + trial.number))
-            session.done(trial.number, scores)
+            session.answer(trial.number, scores)
         return True
 
 

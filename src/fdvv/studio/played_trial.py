@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from msgspec import Meta
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize.problem import OPEN, Trial, TrialState
+from fdvv.optimize.problem import Trial, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.studio.contract import Message
@@ -186,14 +186,14 @@ class PlayedTrial:
     def _score(self, presses: list[TaskPress]) -> None:
         with self._runs.session(self._run) as session:
             try:
-                session.done(self._number, self.task.scores(presses))
+                session.answer(self._number, self.task.scores(presses))
             except ModelError as error:
-                session.fail(self._number, str(error))
+                session.give_up(self._number, str(error))
 
     def fail(self, reason: str) -> None:
         """Keep that this design cannot be played, and let go of the run."""
         with self._runs.session(self._run) as session:
-            session.fail(self._number, reason)
+            session.give_up(self._number, reason)
         self.close()
 
     def close(self) -> None:
@@ -209,10 +209,6 @@ def _open_trial(session: Optimization, number: int) -> Trial:
     trial = session.trial(number)
     if trial is None:
         raise InputError("optimise", f"trial {number + 1}", "there is none", "ask for the next one")
-    if trial.state not in OPEN:
+    if not trial.is_open:
         raise InputError("optimise", f"trial {number + 1}", f"is {trial.state}", "ask for the next one")
     return trial
-
-
-def open_trials(session: Optimization) -> tuple[Trial, ...]:
-    return tuple(one for one in session.trials if one.state in OPEN)

@@ -50,9 +50,9 @@ def rate_trial(runs: Optimizations, run: int, number: int, answers: Sequence[int
         try:
             scores = pointing_of(session.setup).scores([one.press for one in rounds.counting(number)])
         except ModelError as error:
-            session.fail(number, str(error))
+            session.give_up(number, str(error))
             return
-        session.done(number, {**scores, LIKING.name: liking_score(answers)})
+        session.answer(number, {**scores, LIKING.name: liking_score(answers)})
 
 
 def _waits_for_none(number: int) -> InputError:

@@ -31,7 +31,7 @@ def run_of(folder: Path, person: int, low: float, **other: Any) -> Path:
             session.show(trial.number)
             first, second = trial.design.values()
             value = 20.0 + 60.0 * ((first - low) ** 2 + (second - 0.5) ** 2) + random.standard_normal()
-            session.done(trial.number, {session.setup.objectives[0].name: Score(value, 1.0)})
+            session.answer(trial.number, {session.setup.objectives[0].name: Score(value, 1.0)})
     return folder
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -38,6 +38,7 @@ class BoTorchEngine:
     of others are the model's mean, with the weight that the person's own scores give it.
     """
 
+    trial_size: ClassVar[int] = 1
     name: str = field(default="botorch", init=False)
 
     def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:

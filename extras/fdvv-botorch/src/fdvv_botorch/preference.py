@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.optimize.engines.preference import Pair, PreferenceEngine, compared_places
-from fdvv.optimize.engines.search import draw_feasible, fresh, generator
-from fdvv.optimize.problem import Answer, Comparison, Problem
+from fdvv.optimize.engines.preference import PreferenceEngine
+from fdvv.optimize.engines.search import draw_feasible, fresh, generator, tried_places
+from fdvv.optimize.problem import Problem, Trial
 from fdvv.units import FloatArray
 from fdvv_botorch.models import tensor, torch_seeded
 
@@ -23,48 +23,50 @@ FEW, DRAWN = 48, 256
 class PreferenceBoTorchEngine:
     """PairwiseGP and qEUBO over pairs, both designs free. An "equal" is half an answer either way."""
 
+    trial_size: ClassVar[int] = 2
     name: str = field(default="preference-botorch", init=False)
 
-    def pair(self, problem: Problem, comparisons: Sequence[Comparison]) -> Pair:
-        """Suggest, see PairEngine."""
-        seed = int(generator(problem, comparisons, 11).integers(2**31))
+    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
+        """Suggest, see Engine."""
+        seed = int(generator(problem, trials, 11).integers(2**31))
         with torch_seeded(self.name, seed) as torch:
-            if not any(one.answer is not None for one in comparisons):
-                return PreferenceEngine().pair(problem, comparisons)
-            model, known = _model(torch, problem, comparisons)
+            if not any(trial.best for trial in trials):
+                return PreferenceEngine().suggest(problem, trials)
+            model, known = _model(torch, problem, trials)
             rng = np.random.default_rng(seed)
             net = draw_feasible(
                 problem,
                 lambda n: rng.random((n, len(problem.space.names))),
-                compared_places(problem, comparisons),
+                tried_places(problem.space, trials),
                 DRAWN,
             )
-            first, second = problem.space.of_unit(_best_pair(torch, model, known, net))
-        return (first, second) if seed % 2 else (second, first)
+            pair = _best_pair(torch, model, known, net)
+        return problem.space.of_unit(pair if seed % 2 else pair[::-1])
 
-    def best(self, problem: Problem, comparisons: Sequence[Comparison]) -> dict[str, float]:
-        """Recommend the most liked design that was compared, see PairEngine."""
-        if not any(one.answer is not None for one in comparisons):
+    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
+        """Recommend the most liked design that was compared, see Engine."""
+        if not any(trial.best for trial in trials):
             raise ModelError("no comparison is answered yet, so there is no favourite")
         with torch_seeded(self.name, problem.seed & 0x7FFFFFFF) as torch:
-            model, known = _model(torch, problem, comparisons)
+            model, known = _model(torch, problem, trials)
             means = _moments(torch, model, known)[0]
         return problem.space.of_unit(known[int(np.argmax(means))])[0]
 
 
-def _model(torch: Any, problem: Problem, comparisons: Sequence[Comparison]) -> tuple[Any, FloatArray]:
+def _model(torch: Any, problem: Problem, trials: Sequence[Trial]) -> tuple[Any, FloatArray]:
     """Fit the pairwise process; give it and the places, (n, d), that were compared."""
     from botorch.fit import fit_gpytorch_mll
     from botorch.models.pairwise_gp import PairwiseGP, PairwiseLaplaceMarginalLogLikelihood
 
-    answered = [one for one in comparisons if one.answer is not None]
-    both = compared_places(problem, answered)
+    answered = [trial for trial in trials if trial.best]
+    both = tried_places(problem.space, answered)
     places = fresh(both, np.empty((0, both.shape[1])))
     rows = np.abs(both[:, None] - places[None]).max(axis=2).argmin(axis=1).reshape(-1, 2)
     pairs: list[tuple[int, int]] = []
-    for (first, second), one in zip(rows.tolist(), answered, strict=True):
+    for (first, second), trial in zip(rows.tolist(), answered, strict=True):
+        best = trial.best or ()
         # every answer stands twice, so that an equal one can stand once each way
-        ways = {Answer.FIRST: (0, 0), Answer.SECOND: (1, 1), Answer.EQUAL: (0, 1)}[one.answer or Answer.EQUAL]
+        ways = best if len(best) == 2 else best * 2
         pairs += [((first, second), (second, first))[way] for way in ways if first != second]
     model = PairwiseGP(tensor(torch, places), torch.tensor(pairs).reshape(-1, 2))
     fit_gpytorch_mll(PairwiseLaplaceMarginalLogLikelihood(model.likelihood, model))

@@ -40,16 +40,16 @@ def try_on_strip(
         image = compile_button(session.button(trial), limits=Limits(device.settings())).image
         device.upload_program(image)
     except (InputError, RefusedError) as error:
-        return session.fail(trial.number, str(error))
+        return session.give_up(trial.number, str(error))
     if trial.state is TrialState.SUGGESTED:  # or it was shown when a run before this one was killed
         session.show(trial.number)
     try:
         with rendering(device) as feed:
             presses = play_on_strip(strip, task, seed, presser=presser, meanwhile=feed)
     except DeviceError as error:
-        session.abandon(trial.number, str(error))
+        session.give_up(trial.number, str(error), failed=False)
         raise
-    return session.done(trial.number, task.scores(presses))
+    return session.answer(trial.number, task.scores(presses))
 
 
 @contextmanager
@@ -88,7 +88,7 @@ def run_on_strip(
     not quantised. Raises InputError if the session is about another task, DeviceError if rig or strip fail.
     """
     task = _task(session, rounds)
-    while trial := next(iter(session.ask()), None) or session.retest():
+    while trial := next(iter(session.ask()), None):
         if ready:
             ready(trial)
         yield try_on_strip(session, trial, device, strip, task, presser)

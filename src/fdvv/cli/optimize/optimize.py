@@ -139,7 +139,7 @@ def replay(folder: Path, as_json: bool) -> None:
     """
     with Optimization.open(folder) as session:
         engine, asks_for = session.setup.engine, session.asks_for
-        suggested = session.asked + sum(trial.origin == engine for trial in session.trials)
+        suggested = sum(trial.origin == engine for trial in session.trials)
     different = [trial.number for trial in replay_differences(folder)]
     if as_json:
         ui.print_json(
@@ -187,7 +187,7 @@ def _request(
 
 def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool) -> None:
     ui.print_warnings(session.warnings)
-    at_end = session.retest_left + len(session.retests) + len(session.retest_answers)
+    at_end = session.retest_left + len(session.retests)
     budget = session.setup.budget + at_end
     if not session.setup.simulated:
         search, end = (f"{played_min(session.setup, n):.0f} min" for n in (session.setup.budget, at_end))
@@ -197,14 +197,14 @@ def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool
     with ui.progress(f"{session.asks_for}s", budget) as move:
         try:
             if session.setup.preference:
-                assessor_of(session.setup).play(session, lambda: move(_answered(session), budget))
+                assessor_of(session.setup).play(session, lambda: move(_count(session), budget))
             elif play is None:
                 player_of(session.setup).play(session, lambda trial: _on_trial(trial, budget, move, verbose))
             else:
                 for trial in play(session):
                     _on_trial(trial, budget, move, verbose)
         except KeyboardInterrupt:
-            kept = ui.counted(len(session.trials) or _answered(session), session.asks_for)
+            kept = ui.counted(_count(session), session.asks_for)
             raise KeyboardInterrupt(
                 f"stopped with {kept} kept; go on with: fdvv optimize resume {session.folder}"
             ) from None
@@ -215,9 +215,9 @@ def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool
         _print(session, document)
 
 
-def _answered(session: Optimization) -> int:
-    """Return how many answers there are, those of the retest among them."""
-    return session.answered + len(session.retest_answers)
+def _count(session: Optimization) -> int:
+    """Return how many trials there are, of comparisons those that are answered, in the retest too."""
+    return session.answered + len(session.retest_answers) if session.setup.preference else len(session.trials)
 
 
 def _on_trial(trial: Trial, budget: int, move: Any, verbose: bool) -> None:
@@ -233,7 +233,7 @@ def _print(session: Optimization, document: dict[str, Any]) -> None:
     trials = document["trials"]
     click.echo(
         f"{session.setup.title}{ui.simulated(document['simulated'])}, engine {document['engine']}, "
-        f"{ui.counted(len(trials) or session.answered, session.asks_for)}"
+        f"{ui.counted(session.answered if session.setup.preference else len(trials), session.asks_for)}"
     )
     if session.setup.several:
         _print_front(document)

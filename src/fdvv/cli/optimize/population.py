@@ -16,6 +16,7 @@ from fdvv.optimize.people.simulate import simulate_task
 from fdvv.optimize.population.plan import PopulationPlan
 from fdvv.optimize.population.population import run_population
 from fdvv.optimize.run.begin import read_grid
+from fdvv.optimize.run.player import POINTING
 from fdvv.task.pointing import TemporalPointing
 
 
@@ -55,7 +56,7 @@ def population(
 
 
 def _plan(grid: int | None, level: str, engine: str, shifts: tuple[str, ...], **options: Any) -> Any:
-    check_engine(engine)
+    check_engine(engine, POINTING)
     engine_of(engine)
     found = PopulationPlan(
         kind="optimize" if grid is None else "grid",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -120,6 +121,7 @@ class GPEngine:
         improvement is sought per second.
     """
 
+    trial_size: ClassVar[int] = 1
     startup: int = 3
     length: float | None = None
     trend: bool = False

@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -311,7 +311,9 @@ def believed_best(problem: Problem, trials: Sequence[Trial]) -> dict[str, float]
 
 
 class RecommendsBelievedBest:
-    """An engine without a model of its own: it recommends what a Gaussian process believes best."""
+    """An engine of scores without a model of its own: it recommends what a Gaussian process believes best."""
+
+    trial_size: ClassVar[int] = 1
 
     def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
         return believed_best(problem, trials)

@@ -10,18 +10,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from itertools import islice
+from typing import Any, ClassVar
 
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.optimize.engines.search import draw_feasible, fresh, generator, missing
-from fdvv.optimize.problem import Answer, Comparison, Problem
+from fdvv.optimize.engines.search import draw_feasible, fresh, generator, missing, tried_places
+from fdvv.optimize.problem import Problem, Trial
 from fdvv.optimize.space import DesignSpace
 from fdvv.units import FloatArray
 
-LENGTH = 0.4
-"""Over which worth changes, ranges times the root of d: few answers cannot tell lengths, so it is given."""
+LENGTH, LINE_LENGTH = 0.4, 0.3
+"""Over which worth changes, ranges times the root of d: few answers cannot tell lengths, so it is given; of
+lines it is shorter, because a line tells more of it than a pair."""
+LINE_WEIGHT = 0.4
+"""Of each design of a line that was not chosen, in answers: all of them share the error of the best one."""
 NOISE = 0.3
 """SD of an answer's noise, parts of worth's own."""
 STEPS = 50
@@ -100,25 +104,34 @@ def distinct(places: FloatArray) -> tuple[FloatArray, Rows]:
     return once, np.abs(places[:, None] - once[None]).max(axis=2).argmin(axis=1)
 
 
-def believe_answers(space: DesignSpace, comparisons: Sequence[Comparison]) -> PreferenceBelief | None:
-    """Learn from answered comparisons; None without any. Raises BuildError without scikit-learn."""
-    answered = [one for one in comparisons if one.answer is not None]
+def believe_choices(
+    space: DesignSpace, trials: Sequence[Trial], of_lines: bool = False
+) -> PreferenceBelief | None:
+    """Learn from answered choices: the best design beat each other one. None without any, else BuildError.
+
+    of_lines : the designs of a trial are along a line, and all share the error of the best one.
+    """
+    answered = [trial for trial in trials if trial.best]
     if not answered:
         return None
-    both = space.to_unit([design for one in answered for design in (one.first, one.second)])
-    places, rows = distinct(both)
-    pairs, counts = [], []
-    for (first, second), one in zip(rows.reshape(-1, 2).tolist(), answered, strict=True):
-        if first == second:
-            continue
-        share = {Answer.FIRST: 1.0, Answer.SECOND: 0.0, Answer.EQUAL: 0.5}[one.answer or Answer.EQUAL]
-        pairs += [(first, second), (second, first)]
-        counts += [share, 1.0 - share]
+    weight, length = (LINE_WEIGHT, LINE_LENGTH) if of_lines else (1.0, LENGTH)
+    places, rows = distinct(tried_places(space, answered))
+    row, pairs, counts = iter(rows.tolist()), list[tuple[int, int]](), list[float]()
+    for trial in answered:
+        tried = list(islice(row, len(trial.designs)))
+        liked = [tried[place] for place in trial.best or ()]
+        wins = [(best, other) for best in liked for other in tried if other != best]
+        pairs += wins
+        counts += [weight / len(liked)] * len(wins)
     table = np.array(pairs, dtype=np.intp).reshape(-1, 2)
-    return PreferenceBelief(places, table, np.array(counts), kernel_of(both.shape[1]))
+    return PreferenceBelief(places, table, np.array(counts), kernel_of(places.shape[1], length))
 
 
-Pair = tuple[dict[str, float], dict[str, float]]
+def favourite(belief: PreferenceBelief | None, space: DesignSpace) -> dict[str, float]:
+    """Return the most liked design that was tried. ModelError where nothing is known."""
+    if belief is None:
+        raise ModelError("nothing is answered yet, so there is no favourite")
+    return space.of_unit(belief.most_liked(belief.places))[0]
 
 
 @dataclass(frozen=True)
@@ -134,29 +147,19 @@ class PreferenceEngine:
     drawn : designs that the challenger is chosen from; more of them trust the belief more.
     """
 
+    trial_size: ClassVar[int] = 2
     drawn: int = 128
     name: str = field(default="preference", init=False)
 
-    def pair(self, problem: Problem, comparisons: Sequence[Comparison]) -> Pair:
-        rng, d = generator(problem, comparisons, 9), len(problem.space.names)
-        tried = compared_places(problem, comparisons)
-        belief = believe_answers(problem.space, comparisons)
-        count = 2 if belief is None else self.drawn
-        net = draw_feasible(problem, lambda n: rng.random((n, d)), tried, count)
+    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
+        rng, d = generator(problem, trials, 9), len(problem.space.names)
+        belief = believe_choices(problem.space, trials)
+        drawn = 2 if belief is None else self.drawn
+        net = draw_feasible(problem, lambda n: rng.random((n, d)), tried_places(problem.space, trials), drawn)
         if belief is not None:
             net = np.vstack([belief.most_liked(belief.places), belief.most_liked(net)])
-        first, second = problem.space.of_unit(net)
         # neither place of the two is always the favourite's
-        return (first, second) if rng.random() < 0.5 else (second, first)
+        return problem.space.of_unit(net if rng.random() < 0.5 else net[::-1])
 
-    def best(self, problem: Problem, comparisons: Sequence[Comparison]) -> dict[str, float]:
-        """Recommend the most liked design that was compared, see PairEngine."""
-        belief = believe_answers(problem.space, comparisons)
-        if belief is None:
-            raise ModelError("no comparison is answered yet, so there is no favourite")
-        return problem.space.of_unit(belief.most_liked(belief.places))[0]
-
-
-def compared_places(problem: Problem, comparisons: Sequence[Comparison]) -> FloatArray:
-    """Return the places, (2 n, d), of compared designs, pair by pair."""
-    return problem.space.to_unit([design for one in comparisons for design in (one.first, one.second)])
+    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
+        return favourite(believe_choices(problem.space, trials), problem.space)

@@ -15,36 +15,14 @@ from itertools import islice
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.optimize.engines.preference import PreferenceBelief, distinct, kernel_of
+from fdvv.optimize.engines.preference import PreferenceBelief, believe_choices, favourite
 from fdvv.optimize.engines.search import FEW, draw_feasible, generator, holds
-from fdvv.optimize.problem import Line, Problem
-from fdvv.optimize.space import DesignSpace
+from fdvv.optimize.problem import Problem, Trial
 from fdvv.units import FloatArray
 
-LENGTH = 0.3
-"""Over which worth changes, as of `preference`; shorter, because a line tells more of it than a pair."""
-WEIGHT = 0.4
-"""Of each stop that was not chosen, in answers: all of them share the error of the stop that was."""
 REACH = (1.0, 0.5, 0.25)
 """Parts of the way from the favourite to the bounds that a line goes."""
 SAMPLES = 64
-
-
-def believe_lines(space: DesignSpace, lines: Sequence[Line]) -> PreferenceBelief | None:
-    """Learn from answered lines: the chosen stop beat each other one. None without any, else BuildError."""
-    answered = [one for one in lines if one.best is not None]
-    if not answered:
-        return None
-    stops = space.to_unit([design for one in answered for design in one.stops])
-    places, found = distinct(stops)
-    rows = iter(found.tolist())
-    pairs: list[tuple[int, int]] = []
-    for one in answered:
-        felt = list(islice(rows, len(one.stops)))
-        chosen = felt[one.best or 0]
-        pairs += [(chosen, other) for other in felt if other != chosen]
-    table = np.array(pairs, dtype=np.intp).reshape(-1, 2)
-    return PreferenceBelief(places, table, np.full(len(table), WEIGHT), kernel_of(stops.shape[1], LENGTH))
 
 
 @dataclass(frozen=True)
@@ -66,14 +44,18 @@ class PreferenceLineEngine:
         if self.stops < 2 or self.lines < 1:
             raise ModelError(f"a line needs 2 stops or more and is chosen from 1 or more, got {self}")
 
-    def line(self, problem: Problem, lines: Sequence[Line]) -> tuple[dict[str, float], ...]:
-        rng, d = generator(problem, lines, 10), len(problem.space.names)
-        belief = believe_lines(problem.space, lines)
+    @property
+    def trial_size(self) -> int:
+        return self.stops
+
+    def suggest(self, problem: Problem, trials: Sequence[Trial], count: int = 1) -> list[dict[str, float]]:
+        rng, d = generator(problem, trials, 10), len(problem.space.names)
+        belief = believe_choices(problem.space, trials, of_lines=True)
         middle = np.full(d, 0.5) if belief is None else belief.most_liked(belief.places)
         ways = self._ways(rng, middle, 1.0 if belief is None else rng.choice(REACH, size=self.lines))
         worth = np.zeros(self.lines) if belief is None else expected_best(belief, ways, rng)
         found = self._holding(problem, ways[np.argsort(-worth, kind="stable")], belief, rng)
-        return tuple(problem.space.of_unit(found))
+        return problem.space.of_unit(found)
 
     def _ways(self, rng: np.random.Generator, middle: FloatArray, reach: FloatArray | float) -> FloatArray:
         """Draw lines through a place, each towards a random one and back, (lines, stops, d)."""
@@ -111,12 +93,8 @@ class PreferenceLineEngine:
         inside[[0, -1]] = True
         return way[inside]
 
-    def best(self, problem: Problem, lines: Sequence[Line]) -> dict[str, float]:
-        """Recommend the most liked design that was felt, see LineEngine."""
-        belief = believe_lines(problem.space, lines)
-        if belief is None:
-            raise ModelError("no line is answered yet, so there is no favourite")
-        return problem.space.of_unit(belief.most_liked(belief.places))[0]
+    def best(self, problem: Problem, trials: Sequence[Trial]) -> dict[str, float]:
+        return favourite(believe_choices(problem.space, trials, of_lines=True), problem.space)
 
 
 def expected_best(belief: PreferenceBelief, ways: FloatArray, rng: np.random.Generator) -> FloatArray:

@@ -8,13 +8,13 @@ from types import MappingProxyType
 from typing import Any
 
 from fdvv import extras
-from fdvv.errors import InputError
+from fdvv.errors import BuildError, InputError
 from fdvv.optimize.engines.gp import GPEngine
 from fdvv.optimize.engines.gp_model import RecommendsBelievedBest, best_of
 from fdvv.optimize.engines.preference import PreferenceEngine
 from fdvv.optimize.engines.preference_line import PreferenceLineEngine
 from fdvv.optimize.engines.search import random_places, sobol_places, tried_places
-from fdvv.optimize.problem import Engine, LineEngine, PairEngine, Problem, Trial
+from fdvv.optimize.problem import PREFERENCE, Engine, Problem, Trial
 
 
 @dataclass(frozen=True)
@@ -64,69 +64,68 @@ ENGINES: Mapping[str, Callable[..., Engine]] = MappingProxyType(
         "random": RandomEngine,
         "sobol": SobolEngine,
         "gp": GPEngine,
+        "preference-line": PreferenceLineEngine,
+        "preference": PreferenceEngine,
     }
 )
-"""Engines of this package that read scores, by name; called with their options."""
-PAIR_ENGINES: Mapping[str, Callable[..., PairEngine]] = MappingProxyType({"preference": PreferenceEngine})
-"""Engines of this package that read comparisons, by name."""
-LINE_ENGINES: Mapping[str, Callable[..., LineEngine]] = MappingProxyType(
-    {"preference-line": PreferenceLineEngine}
-)
-"""Engines that read which stop of a line is liked best, by name."""
+"""Engines of this package, by name; called with their options."""
 
 
-def engine_names() -> tuple[str, ...]:
-    """Return the names of the engines that read scores, those of extras last."""
-    return (*ENGINES, *extras.names("engines"))
+def reads_choices(name: str) -> bool:
+    """Whether an engine learns from which design is liked best, not from scores."""
+    return name.startswith(PREFERENCE)
 
 
-def pair_engine_names() -> tuple[str, ...]:
-    """Return the names of the engines that read comparisons, those of extras last."""
-    return (*PAIR_ENGINES, *extras.names("pair_engines"))
+def engine_names(choices: bool = False) -> tuple[str, ...]:
+    """Return the names of the engines that read scores, or choices, those of extras last."""
+    return tuple(name for name in (*ENGINES, *extras.names("engines")) if reads_choices(name) is choices)
 
 
-def check_engine(name: str) -> None:
-    """Raise InputError where a new run cannot have this engine."""
+def check_engine(name: str, task: str) -> None:
+    """Raise InputError where a new run cannot have this engine: one of RETIRED, or of another task."""
+    choices = task == PREFERENCE
+    remedy = f"use one of {', '.join(engine_names(choices))}"
     if name in RETIRED:
-        reason = "is a baseline of the benchmarks now, no engine of fdvv"
-        raise InputError("engine", name, reason, f"use one of {', '.join(engine_names())}")
+        raise InputError("engine", name, "is a baseline of the benchmarks now, no engine of fdvv", remedy)
+    if choices and name in engine_names():
+        raise InputError("engine", name, "reads scores, but designs are compared", remedy)
+    if not choices and name in engine_names(choices=True):
+        reason = f"reads what somebody likes better, but {task} is scored"
+        raise InputError("engine", name, reason, f"play {PREFERENCE}, or leave the engine out")
 
 
 def engine_of(name: str, options: Mapping[str, Any] | None = None) -> Engine:
     """Make an engine; of RETIRED one that suggests nothing.
 
-    Raises InputError on a name or an option that is not known, BuildError if its extra is not installed.
+    Raises InputError on a name or an option that is not known, and on an engine whose name does not say what
+    it reads; BuildError if its extra is not installed.
     """
     if name in RETIRED:
         return RetiredEngine(name, options or {})
-    engine: Engine = _made(ENGINES, "engines", name, options)
-    return engine
-
-
-def pair_engine_of(name: str, options: Mapping[str, Any] | None = None) -> PairEngine:
-    """Make an engine of comparisons. Raises like ``engine_of``."""
-    engine: PairEngine = _made(PAIR_ENGINES, "pair_engines", name, options)
-    return engine
-
-
-def line_engine_of(name: str, options: Mapping[str, Any] | None = None) -> LineEngine:
-    """Make an engine of lines. Raises like ``engine_of``."""
-    engine: LineEngine = _made(LINE_ENGINES, None, name, options)
-    return engine
-
-
-def _made(
-    own: Mapping[str, Callable[..., Any]],
-    kind: extras.Kind | None,
-    name: str,
-    options: Mapping[str, Any] | None,
-) -> Any:
-    known = (*own, *(extras.names(kind) if kind else ()))
+    known = (*engine_names(), *engine_names(choices=True))
     if name not in known:
         raise InputError("engine", name, "no engine has this name", f"use one of {', '.join(known)}")
-    make = own[name] if name in own or kind is None else extras.load(kind, name)
+    make = ENGINES.get(name) or extras.load("engines", name)
     try:
-        return make(**(options or {}))
+        engine: Engine = make(**(options or {}))
     except TypeError as error:
         reason = f"an option does not fit ({error})"
         raise InputError("engine", name, reason, "see the options in the docs") from error
+    if (engine.trial_size > 1) is not reads_choices(name):
+        reason = f"tries {engine.trial_size} designs at once"
+        remedy = f"let the name begin with {PREFERENCE!r} where there are several, and only there"
+        raise InputError("engine", name, reason, remedy)
+    return engine
+
+
+def default_trial_size(name: str) -> int:
+    """Return how many designs an engine tries at once by default; of an absent extra at least so many."""
+    try:
+        return engine_of(name).trial_size
+    except BuildError:
+        return 2 if reads_choices(name) else 1
+
+
+def pair_engine_names() -> tuple[str, ...]:
+    """Return the names of the engines that compare two designs, those of extras last."""
+    return tuple(name for name in engine_names(choices=True) if default_trial_size(name) == 2)

@@ -47,8 +47,8 @@ def fresh(places: FloatArray, tried: FloatArray) -> FloatArray:
 
 
 def tried_places(space: DesignSpace, trials: Sequence[Trial]) -> FloatArray:
-    """Return the places of all trials that may have taught something; of an abandoned one too."""
-    return space.to_unit([trial.design for trial in trials])
+    """Return the places, (n, d), of all designs of trials, one after the other; of abandoned ones too."""
+    return space.to_unit([design for trial in trials for design in trial.designs])
 
 
 def draw_feasible(problem: Problem, draw: Draw, tried: FloatArray, count: int) -> FloatArray:

@@ -34,20 +34,22 @@ class SimulatedAssessor:
     seed: int = 0
 
     def answer_next(self, session: Optimization) -> bool:
-        """Answer the next line or comparison of a run, then of its retest; False when both are over."""
-        if session.line_engine is not None and (line := session.line()) is not None:
-            liked = self._felt(session, line.stops, LINE, line.number)
-            session.choose(line.number, int(liked.argmax()))
-            return True
-        pair = session.compare()
-        if pair is None:
+        """Answer the next trial of a run, then of its retest; False when both are over."""
+        trial = session.next_trial()
+        if trial is None:
             return False
-        session.answer(pair.number, self.compare(session, pair.first, pair.second, pair.number))
+        lines = len(session.trials) if session.asks_for == "line" else 0
+        if trial.number < lines:
+            liked = self._felt(session, trial.designs, LINE, trial.number)
+            session.answer(trial.number, [int(liked.argmax())])
+        else:
+            answer = self.compare(session, trial.designs, trial.number - lines)
+            session.answer(trial.number, answer.best)
         return True
 
-    def compare(self, session: Optimization, first: Design, second: Design, number: int) -> Answer:
+    def compare(self, session: Optimization, designs: Sequence[Design], number: int) -> Answer:
         """Return which of two designs is liked better, in the comparison of that number."""
-        more = float(np.subtract(*self._felt(session, (first, second), PAIR, number)))
+        more = float(np.subtract(*self._felt(session, designs, PAIR, number)))
         if abs(more) < EQUAL_points:
             return Answer.EQUAL
         return Answer.FIRST if more > 0 else Answer.SECOND

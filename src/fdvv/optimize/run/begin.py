@@ -13,14 +13,14 @@ from typing import Any
 from fdvv.button.open import open_button
 from fdvv.errors import InputError
 from fdvv.optimize.engines.multi_objective import check_weights
-from fdvv.optimize.engines.registry import LINE_ENGINES, pair_engine_names
+from fdvv.optimize.engines.registry import check_engine
 from fdvv.optimize.experiment.setup import LEVELS
 from fdvv.optimize.model_space import model_space, neutral_design
 from fdvv.optimize.paper_space import paper_space
 from fdvv.optimize.people.groups import PAPER_GROUP
 from fdvv.optimize.people.press_simulator import IDEAL
 from fdvv.optimize.population.population import RESULT_FILE, PopulationResult, read_population
-from fdvv.optimize.problem import Trial
+from fdvv.optimize.problem import PREFERENCE, Trial
 from fdvv.optimize.run.player import (
     POINTING,
     SIMULATED_BLOCKS,
@@ -30,7 +30,7 @@ from fdvv.optimize.run.player import (
 )
 from fdvv.optimize.run.rivals import NONE, PEOPLE, SWITCHES, Rival, fixed_rivals, switch_rivals
 from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.setup import PREFERENCE, OptimizeSetup, SpaceSetup, model_space_setup, wished
+from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup, wished
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS, SUFFIX
 from fdvv.task.pointing import ASYNCHRONY
 from fdvv.task.questionnaire import LIKING
@@ -146,13 +146,15 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
     request = replace(request, space=request.space or (PAPER if request.prior else BUTTON))
     if request.task == PREFERENCE:
         _check_compared(request)
+    engine = request.engine or ("preference-line" if request.task == PREFERENCE else "gp")
+    check_engine(engine, request.task)
     with _shelf_of(request.within) as (project, rig_id):
         space, start = _space(request, rig_id)
         objectives = _objectives(request)
         rivals = _rivals(request, space, start)
         setup = OptimizeSetup(
             space=space,
-            engine=_engine(request),
+            engine=engine,
             options=request.options,
             task=request.task,
             level=request.level if request.task == POINTING else None,
@@ -166,21 +168,6 @@ def begin_run(folder: Path, request: RunRequest) -> Optimization:
             about=_about(request, SIMULATED_BLOCKS if rivals else SIMULATED_PAIRS),
         )
         return Optimization.create(folder, setup, project)
-
-
-def _engine(request: RunRequest) -> str:
-    """Return the engine's name. Raises InputError on one that reads what the task does not ask."""
-    of_answers = (*LINE_ENGINES, *pair_engine_names())
-    compares = request.task == PREFERENCE
-    if request.engine is None:
-        return of_answers[0] if compares else "gp"
-    if compares and request.engine not in of_answers:
-        remedy = f"use one of {', '.join(of_answers)}"
-        raise InputError("engine", request.engine, "reads scores, but designs are compared", remedy)
-    if not compares and request.engine in of_answers:
-        reason = f"reads what somebody likes better, but {request.task} is scored"
-        raise InputError("engine", request.engine, reason, f"play {PREFERENCE}, or leave the engine out")
-    return request.engine
 
 
 def _check_compared(request: RunRequest) -> None:

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.errors import ModelError
 from fdvv.optimize.engines.gp_model import belief_of, finished
-from fdvv.optimize.engines.preference import believe_answers
-from fdvv.optimize.engines.preference_line import believe_lines
+from fdvv.optimize.engines.preference import believe_choices
 from fdvv.optimize.run.state import RunState
 from fdvv.optimize.run.verdict import LEVEL
 
@@ -56,10 +54,9 @@ def _liked(run: RunState) -> BestDesign:
     from scipy.stats import norm
 
     design = run.best()
-    belief = believe_answers(run.space, run.comparisons) or believe_lines(run.space, run.lines)
-    if belief is None:
-        raise ModelError("nothing is answered yet, so there is no favourite")
-    first = run.lines[0].middle if run.lines else run.comparisons[0].first
+    belief, first = believe_choices(run.space, run.trials, of_lines=run.asks_for == "line"), run.first
+    assert belief is not None  # something is answered, or no design were recommended
+    assert first is not None
     mean, cov = belief.predict(run.space.to_unit([design, first]))
     more, variance = float(mean[0] - mean[1]), float(cov[0, 0] + cov[1, 1] - 2 * cov[0, 1])
     deviation = float(np.sqrt(max(variance, 1e-12)))

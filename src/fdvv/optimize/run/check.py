@@ -11,11 +11,12 @@ from fdvv.recording.check import CheckedJournal, FileCheck
 
 def check_trials(path: Path, kind: str) -> FileCheck:
     """Count what a ledger holds. InputError."""
-    ledger = read_ledger(path)
-    states = Counter(str(trial.state) for trial in ledger.trials)
-    facts = {"trials": len(ledger.trials), **states, "comparisons": len(ledger.comparisons)}
-    if ledger.lines:
-        facts["lines"] = len(ledger.lines)
+    trials = read_ledger(path).trials
+    states = Counter(str(trial.state) for trial in trials if not trial.beside)
+    sizes = Counter(min(len(trial.designs), 3) for trial in trials)
+    facts = {"trials": sizes[1], **states, "comparisons": sizes[2]}
+    if sizes[3]:
+        facts["lines"] = sizes[3]
     return FileCheck(path, kind, {**facts, "size_bytes": path.stat().st_size})
 
 

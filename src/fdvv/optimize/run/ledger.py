@@ -1,9 +1,9 @@
-"""The ledger of a run: every trial, comparison and line, on the disk before anybody sees it.
+"""The ledger of a run: every trial, on the disk before anybody sees it.
 
 ``trials.jsonl`` is a journal (see `fdvv.eventlog`) with the records ``{"trial": …}`` of a suggestion,
-``{"edit": …}`` of its design, ``{"state": …}`` of what became of it, ``{"pair": …}`` of two designs to be
-compared, ``{"answer": …}`` of which was preferred, ``{"line": …}`` of designs in a row and ``{"choice": …}``
-of which was liked best.
+``{"edit": …}`` of its design and ``{"state": …}`` of what became of it. An earlier fdvv wrote trials of which
+the best design is chosen as ``{"pair": …}`` and ``{"line": …}``, and what was chosen as ``{"answer": …}`` and
+``{"choice": …}``; each kind had numbers of its own.
 """
 
 from __future__ import annotations
@@ -11,13 +11,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
 
 import msgspec
 
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_bodies
-from fdvv.optimize.problem import Answer, Comparison, Line, Trial, TrialState
+from fdvv.optimize.problem import Answer, Trial, TrialState
 from fdvv.optimize.space import Design
 from fdvv.task.score import Score
 
@@ -28,7 +27,6 @@ NEXT = {
     TrialState.SHOWN: frozenset({TrialState.DONE, TrialState.FAILED, TrialState.ABANDONED}),
 }
 """What may follow a state; a trial that has come to an end stays as it is."""
-Read = TypeVar("Read")
 
 
 class Edited(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -39,46 +37,82 @@ class Edited(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class TrialOutcome(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What became of a trial."""
+    """What became of a trial. best : of its designs, where the best is chosen."""
 
     number: int
     state: TrialState
     scores: dict[str, Score] = {}
     reason: str = ""
+    best: tuple[int, ...] | msgspec.UnsetType = msgspec.UNSET
 
 
-class Answered(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Which of two was preferred."""
+class Pair(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Two designs that are compared, of an earlier fdvv."""
+
+    number: int
+    first: dict[str, float]
+    second: dict[str, float]
+    answer: None = None
+
+    @property
+    def designs(self) -> tuple[dict[str, float], ...]:
+        return self.first, self.second
+
+
+class PairAnswer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Which of two was preferred, of an earlier fdvv."""
 
     number: int
     answer: Answer
 
+    @property
+    def choice(self) -> tuple[int, ...]:
+        return self.answer.best
 
-class Chosen(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Which stop of a line is liked best."""
+
+class Line(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Designs in a row, of an earlier fdvv."""
+
+    number: int
+    stops: tuple[dict[str, float], ...]
+    best: None = None
+
+    @property
+    def designs(self) -> tuple[dict[str, float], ...]:
+        return self.stops
+
+
+class LineChoice(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Which design of a line is liked best, of an earlier fdvv."""
 
     number: int
     best: int
 
+    @property
+    def choice(self) -> tuple[int, ...]:
+        return (self.best,)
 
-Suggested = Trial | Comparison | Line
-Record = Suggested | Edited | TrialOutcome | Answered | Chosen
+
+EarlierRecord = Pair | PairAnswer | Line | LineChoice
+Record = Trial | Edited | TrialOutcome
 KIND = JournalKind(
     {
         "trial": Trial,
         "edit": Edited,
         "state": TrialOutcome,
-        "pair": Comparison,
-        "answer": Answered,
+        "pair": Pair,
+        "answer": PairAnswer,
         "line": Line,
-        "choice": Chosen,
+        "choice": LineChoice,
     },
     REMEDY,
 )
+LINES = "preference-line"
+"""The only engine of lines that an earlier fdvv had; of its pairs the engine is not known."""
 
 
 class Ledger:
-    """Trials, comparisons and lines in memory, and on file for one process at a time if there is a path.
+    """Trials in memory, and on file for one process at a time if there is a path.
 
     Parameters
     ----------
@@ -94,8 +128,6 @@ class Ledger:
     def __init__(self, path: Path | None = None) -> None:
         self._source: object = path or "ledger"
         self._trials: list[Trial] = []
-        self._comparisons: list[Comparison] = []
-        self._lines: list[Line] = []
         self._journal: Journal | None = None
         self.warnings: list[str] = []
         if path is not None:
@@ -109,107 +141,84 @@ class Ledger:
     def trials(self) -> tuple[Trial, ...]:
         return tuple(self._trials)
 
-    @property
-    def comparisons(self) -> tuple[Comparison, ...]:
-        return tuple(self._comparisons)
-
-    @property
-    def lines(self) -> tuple[Line, ...]:
-        return tuple(self._lines)
-
-    def suggest(self, design: Design, origin: str, rival: str = "") -> Trial:
-        trial = Trial(len(self._trials), dict(design), origin=origin, rival=rival or msgspec.UNSET)
-        self._keep("trial", trial)
-        return trial
+    def suggest(self, designs: Sequence[Design], origin: str, rival: str = "") -> Trial:
+        """Write down the designs of the next trial: one to be scored, or several of which one is chosen."""
+        design, *beside = map(dict, designs)
+        number, others = len(self._trials), tuple(beside) or msgspec.UNSET
+        trial = Trial(number, design, origin=origin, rival=rival or msgspec.UNSET, beside=others)
+        return self._write("trial", trial)
 
     def edit(self, number: int, design: Design) -> Trial:
         """Put a person's design in the place of a suggestion that nobody has tried yet. Raises InputError."""
-        self._keep("edit", Edited(number, dict(design)))
-        return self._trials[number]
+        return self._write("edit", Edited(number, dict(design)))
 
     def become(
-        self, number: int, state: TrialState, scores: dict[str, Score] | None = None, reason: str = ""
+        self,
+        number: int,
+        state: TrialState,
+        scores: dict[str, Score] | None = None,
+        reason: str = "",
+        best: Sequence[int] = (),
     ) -> Trial:
         """Write down what became of a trial. Raises InputError where that cannot follow what it was."""
-        self._keep("state", TrialOutcome(number, state, scores or {}, reason))
-        return self._trials[number]
+        outcome = TrialOutcome(number, state, scores or {}, reason, tuple(best) or msgspec.UNSET)
+        return self._write("state", outcome)
 
-    def pair(self, first: Design, second: Design) -> Comparison:
-        comparison = Comparison(len(self._comparisons), dict(first), dict(second))
-        self._keep("pair", comparison)
-        return comparison
-
-    def answer(self, number: int, answer: Answer | str) -> Comparison:
-        """Write down which was preferred. Raises InputError where it was answered before."""
-        self._keep("answer", Answered(number, Answer(answer)))
-        return self._comparisons[number]
-
-    def line(self, stops: Sequence[Design]) -> Line:
-        line = Line(len(self._lines), tuple(dict(stop) for stop in stops))
-        self._keep("line", line)
-        return line
-
-    def choose(self, number: int, best: int) -> Line:
-        """Write down which stop is liked best. Raises InputError on no stop, and on a second answer."""
-        self._keep("choice", Chosen(number, best))
-        return self._lines[number]
-
-    def _keep(self, key: str, body: Any) -> None:
-        changed = self._changed(body)
+    def _write(self, key: str, body: Record) -> Trial:
+        changed = self._change(body)
         if self._journal:
             self._journal.write({key: msgspec.to_builtins(body)})
-        self._put(changed)
+        return self._put(changed)
 
-    def _resume(self, _key: str, body: Record) -> None:
+    def _resume(self, _key: str, body: Record | EarlierRecord) -> None:
         try:
-            self._put(self._changed(body))
+            self.read(body)
         except InputError as error:  # the journal adds the line and what to do about a damaged file
             raise ValueError(f"{error.place}: {error.reason}") from error
 
-    def _put(self, changed: Suggested) -> None:
-        rows = self._rows(changed)
+    def read(self, body: Record | EarlierRecord) -> None:
+        """Take over a record that is on file. Raises InputError where it cannot follow those before it."""
+        self._put(self._change(self._renew(body) if isinstance(body, EarlierRecord) else body))
+
+    def _put(self, changed: Trial) -> Trial:
         # in the place of its number, or at the end
-        rows[changed.number : changed.number + 1] = [changed]
+        self._trials[changed.number : changed.number + 1] = [changed]
+        return changed
 
-    def _rows(self, body: Suggested) -> list[Any]:
-        if isinstance(body, Line):
-            return self._lines
-        return self._trials if isinstance(body, Trial) else self._comparisons
+    def _renew(self, body: EarlierRecord) -> Record:
+        """Return a record of an earlier fdvv as it is written now."""
+        origin = LINES if isinstance(body, Line | LineChoice) else ""
+        numbers = [trial.number for trial in self._trials if trial.beside and trial.origin == origin]
+        if isinstance(body, Pair | Line):
+            if body.number != len(numbers):
+                raise self._refusal(body.number, f"the next number is {len(numbers)}")
+            design, *beside = body.designs
+            return Trial(len(self._trials), design, origin=origin, beside=tuple(beside))
+        if not 0 <= body.number < len(numbers):
+            raise self._refusal(body.number, "there is no such trial")
+        return TrialOutcome(numbers[body.number], TrialState.DONE, best=body.choice)
 
-    def _changed(self, body: Record) -> Suggested:
-        """Return what was suggested as a record leaves it. Raises InputError where it cannot follow."""
-        if isinstance(body, Trial | Comparison | Line):
-            if body.number != (count := len(self._rows(body))):
+    def _change(self, body: Record) -> Trial:
+        """Return a trial as a record leaves it. Raises InputError where it cannot follow."""
+        if isinstance(body, Trial):
+            if body.number != (count := len(self._trials)):
                 raise self._refusal(body.number, f"the next number is {count}")
             return body
-        if isinstance(body, Answered):
-            pair = self._at(self._comparisons, body.number)
-            if pair.answer is not None:
-                raise self._refusal(body.number, f"was answered: {pair.answer}")
-            return replace(pair, answer=body.answer)
-        if isinstance(body, Chosen):
-            return self._chosen(body)
-        trial = self._at(self._trials, body.number)
+        if not 0 <= body.number < len(self._trials):
+            raise self._refusal(body.number, "there is no such trial")
+        trial = self._trials[body.number]
         if isinstance(body, Edited):
-            if trial.state is not TrialState.SUGGESTED:
-                raise self._refusal(trial.number, f"is {trial.state} and can no longer be edited")
+            if trial.state is not TrialState.SUGGESTED or trial.beside:
+                why = "has several designs" if trial.beside else f"is {trial.state}"
+                raise self._refusal(trial.number, f"{why} and can no longer be edited")
             return replace(trial, design=body.design, suggested=trial.suggested or trial.design)
         if body.state not in NEXT.get(trial.state, frozenset()):
-            raise self._refusal(trial.number, f"is {trial.state} and cannot become {body.state}")
-        return replace(trial, state=body.state, scores=body.scores, reason=body.reason)
-
-    def _chosen(self, body: Chosen) -> Line:
-        line = self._at(self._lines, body.number)
-        if line.best is not None:
-            raise self._refusal(body.number, f"was answered: stop {line.best}")
-        if not 0 <= body.best < len(line.stops):
-            raise self._refusal(body.number, f"has stops 0 to {len(line.stops) - 1}, not {body.best}")
-        return replace(line, best=body.best)
-
-    def _at(self, rows: list[Read], number: int) -> Read:
-        if not 0 <= number < len(rows):
-            raise self._refusal(number, "there is no such trial")
-        return rows[number]
+            before = f"is {trial.state}" if trial.best is msgspec.UNSET else "was answered"
+            raise self._refusal(trial.number, f"{before} and cannot become {body.state}")
+        last = len(trial.designs) - 1
+        if body.best and not all(0 <= place <= last for place in body.best):
+            raise self._refusal(trial.number, f"has designs 0 to {last}, not {max(body.best, key=abs)}")
+        return replace(trial, state=body.state, scores=body.scores, reason=body.reason, best=body.best)
 
     def _refusal(self, number: int, reason: str) -> InputError:
         return InputError(self._source, f"trial {number}", reason, "look at the list of trials")
@@ -224,18 +233,15 @@ def read_ledger(path: Path) -> Ledger:
     """Read all that is on file into memory; nothing is written, no lock taken. Raises InputError, OSError."""
     ledger = Ledger()
     for _, body, _ in read_bodies(path, KIND):
-        ledger._put(ledger._changed(body))
+        ledger.read(body)
     return ledger
 
 
-Step = tuple[tuple[Trial, ...], tuple[Comparison, ...], tuple[Line, ...], Suggested]
-"""Trials, comparisons and lines that were known, and what was suggested next."""
-
-
-def steps_before(path: Path) -> Iterator[Step]:
-    """Return every suggestion with what was known before it, for replay. Raises InputError, OSError."""
+def steps_before(path: Path) -> Iterator[tuple[tuple[Trial, ...], Trial]]:
+    """Return every suggestion with the trials before it, for replay. Raises InputError, OSError."""
     ledger = Ledger()
     for _, body, _ in read_bodies(path, KIND):
-        if isinstance(body, Trial | Comparison | Line):
-            yield ledger.trials, ledger.comparisons, ledger.lines, body
-        ledger._put(ledger._changed(body))
+        before = ledger.trials
+        ledger.read(body)
+        if isinstance(body, Trial | Pair | Line):
+            yield before, ledger.trials[-1]

@@ -53,20 +53,20 @@ class SimulatedPlayer:
 
         What the rig's firmware cannot hold fails with its reason; nobody presses it.
         """
-        trial = next(iter(session.ask()), None) or session.retest()
+        trial = next(iter(session.ask()), None)
         if trial is None:
             return None
         # a run killed in the middle of a trial has shown it already
         shown = trial if trial.state is TrialState.SHOWN else session.show(trial.number)
         model = session.button(shown)
         if refusal := refusal_of(model, self.rig):
-            return session.fail(shown.number, refusal)
+            return session.give_up(shown.number, refusal)
         seed = play_seed(self.seed, shown.number)
         before = self.presses_before + shown.number * self.task.rounds
         scores = score_design(self.task, model, self.user, seed, rig=self.rig, presses_before=before)
         if session.setup.asks_liking:
             scores[LIKING.name] = liking_score(rate(model, self.taste, seed))
-        return session.done(shown.number, scores)
+        return session.answer(shown.number, scores)
 
     def play(self, session: Optimization, report: TrialDone = lambda _trial: None) -> None:
         """Try trials until the run is over. An interrupted run continues with the same trials."""

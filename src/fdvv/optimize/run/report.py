@@ -111,6 +111,7 @@ def optimize_report(session: RunState) -> dict[str, Any]:
     its retest.
     """
     setup, best, retest = session.setup, session.recommended(), retest_of(session)
+    asks = session.asks_for
     return {
         "space": session.space.name,
         "engine": setup.engine,
@@ -121,9 +122,9 @@ def optimize_report(session: RunState) -> dict[str, Any]:
         "objectives": [one.name for one in session.problem.objectives],
         "budget": setup.budget,
         "finished": session.finished,
-        "trials": [trial_report(trial) for trial in session.trials],
-        "lines": [asdict(line) for line in session.lines],
-        "comparisons": [asdict(one) for one in session.comparisons],
+        "trials": [trial_report(trial) for trial in session.trials if asks == "trial"],
+        "lines": [line_report(trial) for trial in session.trials if asks == "line"],
+        "comparisons": [comparison_report(trial) for trial in session.trials if asks == "comparison"],
         "best": best,
         "at_bound": at_bound(session.space, best, session.start) if best else {},
         "front": front_report(session),
@@ -152,6 +153,16 @@ def trial_report(trial: Trial) -> dict[str, Any]:
     }
 
 
+def line_report(trial: Trial) -> dict[str, Any]:
+    """Return a line: best is which of its stops is liked best, from 0; None before somebody said it."""
+    return {"number": trial.number, "stops": trial.designs, "best": trial.best[0] if trial.best else None}
+
+
+def comparison_report(trial: Trial) -> dict[str, Any]:
+    first, second = trial.designs
+    return {"number": trial.number, "first": first, "second": second, "answer": trial.answer}
+
+
 def optimize_html(session: RunState) -> str:
     """Write the page of a run. Needs matplotlib (BuildError without it)."""
     report, setup = optimize_report(session), session.setup
@@ -175,8 +186,7 @@ def _counts(session: RunState) -> str:
     budget = session.setup.budget
     if session.setup.preference:
         return f"{session.answered} of {budget} {session.asks_for}s answered"
-    done = [trial for trial in session.trials if trial.state is TrialState.DONE]
-    return f"{len(session.trials)} of {budget} trials, {len(done)} of them scored"
+    return f"{len(session.trials)} of {budget} trials, {session.answered} of them scored"
 
 
 def control_points(design: dict[str, float]) -> FloatArray | None:
@@ -249,17 +259,25 @@ def _scores(session: RunState) -> Section | None:
 def _answers(session: RunState) -> Section:
     """List what was liked best of every line, or better of every two."""
     rows = [
-        (str(line.number), f"{line.best + 1} of {len(line.stops)}", *_cells(session, line.stops[line.best]))
-        for line in session.lines
-        if line.best is not None
+        (str(trial.number), _which(trial, trial.best), *_cells(session, liked_design(trial)))
+        for trial in session.trials
+        if trial.best
     ]
-    for one in session.comparisons:
-        if one.answer is not None:
-            sides = {Answer.FIRST: ("A", one.first), Answer.SECOND: ("B", one.second)}
-            which, design = sides.get(one.answer, ("equal", None))
-            rows.append((str(one.number), which, *_cells(session, design)))
     columns = (session.asks_for, "liked best", *map(score_label, session.space.names))
     return Section("Answers", (), (), (Table(columns, tuple(rows)),))
+
+
+def _which(trial: Trial, best: Sequence[int]) -> str:
+    """Write which designs of a trial are liked best."""
+    if len(best) > 1:
+        return "equal"
+    count = len(trial.designs)
+    return "AB"[best[0]] if count == 2 else f"{best[0] + 1} of {count}"
+
+
+def liked_design(trial: Trial) -> Design | None:
+    """Return the one design of a trial that is liked best; None where there is no difference."""
+    return trial.designs[trial.best[0]] if trial.best and len(trial.best) == 1 else None
 
 
 def _cells(session: RunState, design: Design | None) -> list[str]:

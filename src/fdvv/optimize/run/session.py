@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from fdvv.errors import InputError
 from fdvv.io.files import require_new_folder, write_atomic
 from fdvv.optimize.engines.registry import check_engine
-from fdvv.optimize.problem import OPEN, Answer, Comparison, Line, Trial, TrialState
+from fdvv.optimize.problem import Trial, TrialState
 from fdvv.optimize.run.blocks import in_drawn_order
 from fdvv.optimize.run.compromise import keep_choice
 from fdvv.optimize.run.ledger import LEDGER_FILE, Ledger
@@ -39,7 +40,7 @@ class Optimization(RunState):
         """
         folder = Path(folder)
         require_new_folder(folder, "name a new one, or resume the run in it")
-        check_engine(setup.engine)
+        check_engine(setup.engine, setup.task)
         checked = cls(project or folder, setup, Ledger())
         if setup.space.rig and project:
             RigCatalog(project).lend(setup.space.rig, folder)
@@ -64,23 +65,41 @@ class Optimization(RunState):
     def ask(self, count: int = 1) -> tuple[Trial, ...]:
         """Return the next trials, at most count: first those left open by an earlier run, then new ones.
 
-        New ones are on the disk when this returns, and each is suggested knowing those before it. Empty once
-        the budget is spent. InputError where designs are compared, not scored.
+        New ones are on the disk when this returns, and each is suggested knowing those before it. Behind the
+        budget come those of the retest. Empty once all are played.
         """
-        self._scored()
-        open_ = [t for t in self.trials if t.state in OPEN and t.number not in self._given]
+        open_ = [trial for trial in self.open_trials if trial.number not in self._given]
         trials = open_[:count]
-        while len(trials) < count and self.left:
-            trials.append(self._suggested())
+        while len(trials) < count and (trial := self._next_trial()):
+            trials.append(trial)
         self._given |= {trial.number for trial in trials}
         return tuple(trials)
 
-    def _suggested(self) -> Trial:
-        if self.setup.start is not None and not self.trials:
-            return self._ledger.suggest(self.space.checked(self.setup.start), START)
-        engine = self._scored()
-        (design,) = engine.suggest(self.problem, self.trials)
-        return self._ledger.suggest(design, engine.name)
+    def next_trial(self) -> Trial | None:
+        """Return the trial that is open, else the next one; None once all are played."""
+        return next(iter(self.open_trials or self.ask()), None)
+
+    def _next_trial(self) -> Trial | None:
+        """Suggest a trial of the search, then of the retest."""
+        if not self.left:
+            return self._retest() if self.searched and self.retest_left else None
+        if self.setup.start is not None and not self.trials and not self.setup.preference:
+            return self._ledger.suggest([self.space.checked(self.setup.start)], START)
+        return self._ledger.suggest(self.engine.suggest(self.problem, self.trials), self.engine.name)
+
+    def _retest(self) -> Trial:
+        """Suggest a trial of the retest.
+
+        Each block has the start, the recommended design and every rival once, in an order that is drawn: who
+        plays does not know which is which. Where designs are compared a block is one trial.
+        """
+        played, count = self._played(), len(self.retests)
+        if self.setup.preference:
+            designs = [one.design for one in in_drawn_order(played, self.setup.seed, count)]
+            return self._ledger.suggest(designs, RETEST)
+        block, place = divmod(count, len(played))
+        one = in_drawn_order(played, self.setup.seed, block)[place]
+        return self._ledger.suggest([one.design], RETEST, one.rival)
 
     def edit(self, number: int, design: Design) -> Trial:
         """Put a person's own design in the place of a suggestion that was not shown yet.
@@ -96,62 +115,35 @@ class Optimization(RunState):
         """Record that a trial is being tried."""
         return self._ledger.become(number, TrialState.SHOWN)
 
-    def done(self, number: int, scores: dict[str, Score]) -> Trial:
-        """Record the scores of a trial. Raises InputError where one of the run's objectives is missing."""
+    def answer(self, number: int, answer: Mapping[str, Score] | Sequence[int]) -> Trial:
+        """Record the scores of a trial, or which of its designs are liked best, from 0.
+
+        InputError on one of the run's objectives that is missing, on a design that the trial does not have,
+        on the other kind of answer, and where it was answered before.
+        """
+        trial = self.trial(number)
+        chosen = not isinstance(answer, Mapping)
+        if trial is not None and chosen is not bool(trial.beside):
+            wanted = "which of its designs is best" if trial.beside else "its scores"
+            raise InputError("answer", f"trial {number}", "is of another kind", f"say {wanted}")
+        if not isinstance(answer, Mapping):
+            if not answer:
+                raise InputError("answer", f"trial {number}", "names no design", "say which is best")
+            return self._ledger.become(number, TrialState.DONE, best=answer)
         for one in self.problem.objectives:
-            if one.name not in scores:
+            if one.name not in answer:
                 raise InputError("scores", one.name, "is missing", f"score trial {number} in every objective")
-        return self._ledger.become(number, TrialState.DONE, scores)
+        return self._ledger.become(number, TrialState.DONE, dict(answer))
 
-    def fail(self, number: int, reason: str) -> Trial:
-        """Record that a trial could not be tried or scored; designs near it are avoided."""
-        return self._ledger.become(number, TrialState.FAILED, reason=reason)
+    def give_up(self, number: int, reason: str = "", failed: bool = True) -> Trial:
+        """Record that a trial has no answer.
 
-    def abandon(self, number: int, reason: str = "") -> Trial:
-        """Record that a trial was stopped; it does not count."""
-        return self._ledger.become(number, TrialState.ABANDONED, reason=reason)
-
-    def compare(self) -> Comparison | None:
-        """Return the next two designs to be compared: the unanswered first; None once all is answered.
-
-        Behind the budget come those of the retest, start and recommended design, in a drawn order. They are
-        on the disk when this returns. InputError where the run's task is not preference, and where its
-        search is by lines and not over.
+        failed : it could not be tried or scored, and designs near it are avoided; else it was stopped, and
+        does not count.
         """
-        if not self.setup.preference:
-            raise InputError("run", "task", "designs of this run are scored", "ask for trials instead")
-        if self.pair_engine is None and not self.searched:
-            raise InputError("run", "engine", "this run searches along lines", "ask for lines instead")
-        unanswered = next((one for one in self._ledger.comparisons if one.answer is None), None)
-        if unanswered is not None:
-            return unanswered
-        if not self.left:
-            more = self.retest_left > 0
-            return self._ledger.pair(*self._blind(len(self.retest_comparisons))) if more else None
-        assert self.pair_engine is not None
-        return self._ledger.pair(*self.pair_engine.pair(self.problem, self.comparisons))
-
-    def answer(self, number: int, answer: Answer | str) -> Comparison:
-        """Record which of two designs was preferred. Raises InputError where it was answered before."""
-        if answer not in tuple(Answer):
-            raise InputError("answer", str(number), f"is {answer!r}", f"say {', '.join(Answer)}")
-        return self._ledger.answer(number, answer)
-
-    def line(self) -> Line | None:
-        """Return the next line, on the disk when this returns: the unanswered first; None once all are.
-
-        InputError where the run's engine does not search along lines.
-        """
-        if self.line_engine is None:
-            raise InputError("run", "engine", f"{self.setup.engine} has no lines", "begin another run")
-        unanswered = next((one for one in self.lines if one.best is None), None)
-        if unanswered is not None:
-            return unanswered
-        return self._ledger.line(self.line_engine.line(self.problem, self.lines)) if self.left else None
-
-    def choose(self, number: int, best: int) -> Line:
-        """Record which stop of a line is liked best. InputError on no stop, or if one was chosen before."""
-        return self._ledger.choose(number, best)
+        return self._ledger.become(
+            number, TrialState.FAILED if failed else TrialState.ABANDONED, reason=reason
+        )
 
     def take(self, number: int) -> Trial:
         """Recommend another trial of the front, on the disk when this returns.
@@ -162,26 +154,6 @@ class Optimization(RunState):
             reason = "a compromise is chosen between the search and its retest"
             raise InputError("run", "compromise", reason, "choose it then, in a run of several objectives")
         return keep_choice(self.front(), number, self.folder)
-
-    def retest(self) -> Trial | None:
-        """Return the next trial of the retest, on the disk when this returns; None where there is none.
-
-        Each block has the start, the recommended design and every rival once, in an order that is drawn: who
-        plays does not know which is which.
-        """
-        if open_ := next((one for one in self.retests if one.state in OPEN), None):
-            return open_
-        if self.setup.preference or not self.searched or not self.retest_left:
-            return None
-        played = self._played()
-        block, place = divmod(len(self.retests), len(played))
-        one = in_drawn_order(played, self.setup.seed, block)[place]
-        return self._ledger.suggest(one.design, RETEST, one.rival)
-
-    def _blind(self, pair: int) -> tuple[dict[str, float], dict[str, float]]:
-        """Return both designs of a comparison in its drawn order."""
-        first, second = in_drawn_order(self._played(), self.setup.seed, pair)
-        return first.design, second.design
 
     def close(self) -> None:
         self._ledger.close()

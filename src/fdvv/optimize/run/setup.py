@@ -19,7 +19,7 @@ from fdvv.optimize.button_constraints import button_constraints
 from fdvv.optimize.engines.gp import GPEngine
 from fdvv.optimize.model_space import model_of, model_space
 from fdvv.optimize.paper_space import paper_model, paper_space
-from fdvv.optimize.problem import Problem, Trial
+from fdvv.optimize.problem import PREFERENCE, Problem, Trial
 from fdvv.optimize.realistic import realistic_bounds, realistic_cN
 from fdvv.optimize.rig_constraints import rig_constraints
 from fdvv.optimize.run.rivals import Rival
@@ -58,8 +58,6 @@ class SpaceSetup(Struct, frozen=True, forbid_unknown_fields=True):
     buttons: bool = False
 
 
-PREFERENCE = "preference"
-"""The task in which designs are compared, not scored."""
 WISHES = (*MORE, LIKING.name)
 """What temporal pointing may be optimised for beside its asynchrony."""
 
@@ -77,7 +75,7 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
 
     Attributes
     ----------
-    engine, options : name and options of an engine, or of a pair engine where the task is preference.
+    engine, options : name and options of an engine.
     task, level : what a person does, as tasks are named; level None where there is one only.
     budget : trials, or comparisons, that may be asked; failed ones count, abandoned ones do not.
     start : a person's own design, tried first. prior : finished trials of others to begin from.

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
-from fdvv.errors import InputError, ModelError
+from fdvv.errors import ModelError
 from fdvv.model.file import model_from_json
 from fdvv.model.model import FDVVModel
 from fdvv.optimize.engines.multi_objective import ParetoFront, believed_front
-from fdvv.optimize.engines.registry import LINE_ENGINES, engine_of, line_engine_of, pair_engine_of
-from fdvv.optimize.problem import OPEN, Answer, Comparison, Engine, Line, Trial, TrialState
+from fdvv.optimize.engines.registry import engine_of
+from fdvv.optimize.problem import Answer, Trial, TrialState
 from fdvv.optimize.run.blocks import Block, Played, blocks_of, played_in_block
 from fdvv.optimize.run.compromise import recommended_of
 from fdvv.optimize.run.ledger import Ledger
@@ -30,14 +31,13 @@ class RunState:
 
     Parameters
     ----------
-    folder : of the run, with the rig that its setup names. ledger : its trials and answers.
+    folder : of the run, with the rig that its setup names. ledger : its trials.
     memory : of an earlier state of the same run; None: nothing is known of it.
 
     Attributes
     ----------
     folder : of the run. setup : what it is about. space, problem : what its engine is asked.
-    engine : the one of scores. pair_engine, line_engine : where the task is preference one of these, which
-        reads comparisons, or which stop of a line is liked best.
+    engine : that suggests designs.
     warnings : what a person should know of the folder.
 
     Raises InputError, ModelError, BuildError.
@@ -50,11 +50,7 @@ class RunState:
         self.space = space_of(setup.space, RigCatalog(folder))
         self._designer = designer_of(setup.space)
         self.problem = problem_of(setup, self.space)
-        self.engine = None if setup.preference else engine_of(setup.engine, options_of(setup))
-        on_lines = setup.preference and setup.engine in LINE_ENGINES
-        self.line_engine = line_engine_of(setup.engine, setup.options) if on_lines else None
-        pairs = setup.preference and not on_lines
-        self.pair_engine = pair_engine_of(setup.engine, setup.options) if pairs else None
+        self.engine = engine_of(setup.engine, options_of(setup))
         self.warnings = ledger.warnings
         self._ledger = ledger
         self._rivals = named_rivals(setup.rivals)
@@ -63,86 +59,75 @@ class RunState:
     @property
     def trials(self) -> tuple[Trial, ...]:
         """The trials of the search; those of the retest are `retests`."""
-        return tuple(trial for trial in self._ledger.trials if trial.origin != RETEST)
+        return tuple(trial for trial in map(self.name_origin, self._ledger.trials) if trial.origin != RETEST)
 
     @property
     def retests(self) -> tuple[Trial, ...]:
         """The trials of the retest that count, block by block, in the order they are played in."""
-        retests = (trial for trial in self._ledger.trials if trial.origin == RETEST)
-        return tuple(trial for trial in retests if trial.state is not TrialState.ABANDONED)
+        trials = (trial for trial in map(self.name_origin, self._ledger.trials) if trial.origin == RETEST)
+        return tuple(trial for trial in trials if trial.state is not TrialState.ABANDONED)
+
+    def name_origin(self, trial: Trial) -> Trial:
+        """Return a trial with its origin, which an earlier fdvv did not write down of a comparison."""
+        if trial.origin or not trial.beside:
+            return trial
+        return replace(trial, origin=RETEST if trial.number >= self.setup.budget else self.engine.name)
 
     def trial(self, number: int) -> Trial | None:
         """Return a trial of the search or the retest; None if there is none."""
         return self._ledger.trials[number] if 0 <= number < len(self._ledger.trials) else None
 
     @property
-    def comparisons(self) -> tuple[Comparison, ...]:
-        """The comparisons of the search; those beyond the budget are the retest's."""
-        return self._ledger.comparisons[: self.setup.budget if self.pair_engine else 0]
-
-    @property
-    def retest_comparisons(self) -> tuple[Comparison, ...]:
-        return self._ledger.comparisons[len(self.comparisons) :]
+    def open_trials(self) -> tuple[Trial, ...]:
+        """The trials of search and retest that are under way."""
+        return tuple(trial for trial in (*self.trials, *self.retests) if trial.is_open)
 
     @property
     def retest_answers(self) -> tuple[Answer, ...]:
-        """What was answered in the retest so far."""
-        return tuple(one.answer for one in self.retest_comparisons if one.answer is not None)
-
-    @property
-    def lines(self) -> tuple[Line, ...]:
-        """The lines of the search, where the engine reads these."""
-        return self._ledger.lines
+        """What was answered in the retest so far, where designs are compared."""
+        return tuple(trial.answer for trial in self.retests if trial.answer is not None)
 
     @property
     def asks_for(self) -> Literal["trial", "line", "comparison"]:
         """What the search asks for, one after the other."""
-        if self.line_engine:
+        if self.engine.trial_size > 2:
             return "line"
-        return "comparison" if self.pair_engine else "trial"
-
-    @property
-    def asked(self) -> int:
-        """How many comparisons or lines the search asked for."""
-        return len(self.comparisons) + len(self.lines)
+        return "comparison" if self.engine.trial_size == 2 else "trial"
 
     @property
     def answered(self) -> int:
-        """How many comparisons or lines of the search are answered."""
-        answers = [one.answer for one in self.comparisons]
-        return sum(one is not None for one in (*answers, *(line.best for line in self.lines)))
+        """How many trials of the search are scored, or their best design chosen."""
+        return sum(trial.state is TrialState.DONE for trial in self.trials)
 
     @property
     def left(self) -> int:
-        """How many more trials, comparisons or lines may be suggested."""
+        """How many more trials may be suggested."""
         spent = sum(trial.state is not TrialState.ABANDONED for trial in self.trials)
-        return max(0, self.setup.budget - spent - self.asked)
+        return max(0, self.setup.budget - spent)
 
     @property
     def searched(self) -> bool:
         """Whether the budget is spent and nothing of the search is open."""
-        unanswered = self.answered < self.asked
-        return not self.left and not unanswered and not any(trial.state in OPEN for trial in self.trials)
+        return not self.left and not any(trial.is_open for trial in self.trials)
 
     @property
     def finished(self) -> bool:
         """Whether the search is over, and the retest where there is one."""
-        return self.searched and self.retest_left == 0 and not any(t.state in OPEN for t in self.retests)
+        return self.searched and self.retest_left == 0 and not any(trial.is_open for trial in self.retests)
 
     @property
     def blocks(self) -> tuple[Block, ...]:
-        """The blocks of the retest that are whole."""
-        over = [one for one in self.retests if one.state not in OPEN]
+        """The blocks of the retest that are whole; none where designs are compared."""
+        over = [] if self.setup.preference else [trial for trial in self.retests if not trial.is_open]
         return blocks_of(over, self.start, self._block_size) if over else ()
 
     @property
     def retest_left(self) -> int:
-        """How many trials or comparisons of the retest are still to be suggested or answered."""
-        blocks = self.setup.retest_pairs
-        if self.setup.preference:
-            alike = self.searched and self.recommended() in (None, self.start)
-            return 0 if alike or self.start is None else blocks - len(self.retest_answers)
-        return max(0, blocks * self._block_size - len(self.retests)) if blocks else 0
+        """How many trials of the retest are still to be suggested."""
+        size = self._block_size
+        # a comparison is of both designs at once
+        size = min(size, 1) if self.setup.preference else size
+        return max(0, self.setup.retest_pairs * size - len(self.retests))
 
     @property
     def _block_size(self) -> int:
@@ -160,18 +145,19 @@ class RunState:
     @property
     def start(self) -> dict[str, float] | None:
         """The design that the result is compared with: the person's own, or the first; None at first."""
-        if self.setup.start is not None:
-            return self.space.checked(self.setup.start)
-        if self.comparisons:
-            return self.comparisons[0].first
-        if self.lines:
-            return self.lines[0].middle
-        return self.trials[0].design if self.trials else None
+        return self.first if self.setup.start is None else self.space.checked(self.setup.start)
+
+    @property
+    def first(self) -> dict[str, float] | None:
+        """The first design of the search, of a line that in its middle; None at first."""
+        if not self.trials:
+            return None
+        designs = self.trials[0].designs
+        return designs[len(designs) // 2 if self.asks_for == "line" else 0]
 
     def recommended(self) -> dict[str, float] | None:
         """Return `best`, or a compromise; None while nothing is done. What is retested stays."""
-        retested = [one.design for one in self.retests if not one.rival]
-        retested += [design for one in self.retest_comparisons for design in (one.first, one.second)]
+        retested = [design for trial in self.retests if not trial.rival for design in trial.designs]
         if fixed := next((design for design in retested if design != self.start), None):
             return fixed
         try:
@@ -183,23 +169,9 @@ class RunState:
 
     def best(self) -> dict[str, float]:
         """Recommend a design by what the engine believes, not by luck. Raises ModelError if none is done."""
-        closed = tuple(trial for trial in self.trials if trial.state not in OPEN)
-        compared = tuple(one for one in self.comparisons if one.answer is not None)
-        chosen = tuple(line for line in self.lines if line.best is not None)
+        closed = tuple(trial for trial in self.trials if not trial.is_open)
         # an engine's model takes long
-        return self._memory.best.of((self.setup, closed, compared, chosen), self._best)
-
-    def _best(self) -> dict[str, float]:
-        if self.pair_engine:
-            return self.pair_engine.best(self.problem, self.comparisons)
-        if self.line_engine:
-            return self.line_engine.best(self.problem, self.lines)
-        return self._scored().best(self.problem, self.trials)
-
-    def _scored(self) -> Engine:
-        if self.engine is None:
-            raise InputError("run", "task", "designs of this run are compared", "ask for comparisons instead")
-        return self.engine
+        return self._memory.best.of((self.setup, closed), lambda: self.engine.best(self.problem, self.trials))
 
     def front(self) -> ParetoFront:
         """Return the compromises that no other trial beats in expected scores, see `believed_front`."""

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from fdvv.optimize.problem import Answer, Trial, TrialState
+from fdvv.optimize.problem import Trial, TrialState
 from fdvv.optimize.run.state import RunState
 from fdvv.optimize.space import Design, DesignSpace
 from fdvv.task.questionnaire import HIGHEST, LIKING
@@ -107,10 +107,10 @@ def _of_answers(session: RunState) -> Retest | None:
 
     from fdvv.stats.share import share
 
-    said = [one for one in session.retest_comparisons if one.answer not in (None, Answer.EQUAL)]
+    said = [trial for trial in session.retests if len(trial.best or ()) == 1]
     if len(said) < 2:
         return None
-    for_it = sum((one.first if one.answer is Answer.FIRST else one.second) != session.start for one in said)
+    for_it = sum(trial.designs[place] != session.start for trial in said for place in trial.best or ())
     found = share(for_it, len(said))
     chance = float(beta.sf(0.5, for_it + 1, len(said) - for_it + 1))
     return Retest(len(said), found.share - 0.5, found.low - 0.5, found.high - 0.5, chance)
@@ -188,7 +188,7 @@ def phrase_of(session: RunState, objective: Objective | None = None) -> Phrase:
 
 def verdict_kind(session: RunState) -> Kind | None:
     """Return what the retest says of the recommended design; None while it is not over."""
-    if not session.finished or not (session.trials or session.comparisons or session.lines):
+    if not session.finished or not session.trials:
         return None
     if session.recommended() == session.start:
         return "same"

@@ -188,7 +188,7 @@ def detail(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeDetail:
             strip_of(pointing_of(setup) if playable(setup) else TemporalPointing()),
             trial_list(session),
             pair_list(session),
-            session.line_engine is not None,
+            session.asks_for == "line",
             line_list(session),
             session.start,
             setup.start_name,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Literal
 
-from fdvv.optimize.problem import OPEN
 from fdvv.optimize.run.ending import FinalMean, ending_sentences, final_means
 from fdvv.optimize.run.session import Optimization
 from fdvv.optimize.run.verdict import Kind, Retest, at_bound, retest_of, verdict_kind, verdict_sentence
@@ -41,13 +40,12 @@ def compromise(session: Optimization) -> int | None:
 
 
 def retest_state(session: Optimization) -> OptimizeRetest:
-    retests, answered = session.retests, [one.answer is not None for one in session.retest_comparisons]
-    played = [one.state not in OPEN for one in retests] or answered
-    open_ = next((one.number for one in retests if one.state in OPEN), None)
+    retests = session.retests
+    open_ = next((one.number for one in retests if one.is_open), None)
     best = session.recommended() if session.searched else None
     return OptimizeRetest(
-        sum(played),
-        sum(played) + session.retest_left + len(retests) - sum(played[: len(retests)]),
+        sum(not one.is_open for one in retests),
+        len(retests) + session.retest_left,
         open_,
         at_bound(session.space, best, session.start) if best else {},
         verdict_sentence(session),

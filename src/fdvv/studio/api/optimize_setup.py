@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated
 
 from msgspec import Meta
 
 from fdvv.errors import InputError, ModelError
 from fdvv.live.press_subject import button_choices
-from fdvv.optimize.engines.registry import LINE_ENGINES, engine_names, pair_engine_names
+from fdvv.optimize.engines.registry import engine_names, pair_engine_names
 from fdvv.optimize.model_space import model_space, neutral_design
 from fdvv.optimize.paper_space import paper_design_like, paper_space
 from fdvv.optimize.people.groups import PAPER_GROUP
-from fdvv.optimize.problem import Trial
+from fdvv.optimize.problem import PREFERENCE, Trial
 from fdvv.optimize.run.begin import offered_grid, offered_grids
 from fdvv.optimize.run.rivals import PEOPLE, SWITCHES, Rival, fixed_rivals, switch_rivals
-from fdvv.optimize.run.setup import PREFERENCE, OptimizeSetup, SpaceSetup, model_space_setup, wished
+from fdvv.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup, wished
 from fdvv.optimize.space import Design
 from fdvv.studio.api.documents import ButtonId
 from fdvv.studio.api.optimize import OTHERS, START, TITLE, Level, Name, Number, OptimizeAsk
@@ -92,17 +93,15 @@ ENGINE_DESCRIPTIONS = {
     "sobol": "spreads designs evenly",
     "gp": "learns from every score, and knows how noisy each is",
     "botorch": "the strongest; needs the extra fdvv[botorch]",
+    "preference": "learns from which of two you prefer",
+    "preference-botorch": "the same, stronger; needs the extra fdvv[botorch]",
+    "preference-line": "learns from where on a line you like it best",
 }
 SPACE_DESCRIPTIONS = {
     "FDV": "force, bump, actuation and vibration of your button, as real buttons have them",
     "FDVV": "the same and a scale of force for every speed it knows",
     PAPER: "the paper's eight parameters, 35 to 310 cN; begun near your button",
 }
-PAIR_ENGINE_DESCRIPTIONS = {
-    "preference": "learns from which of two you prefer",
-    "preference-botorch": "the same, stronger; needs the extra fdvv[botorch]",
-}
-LINE_ENGINE_DESCRIPTIONS = {"preference-line": "learns from where on a line you like it best"}
 OBJECTIVE_DESCRIPTIONS = {
     "lost_ratio": "share of rounds lost",
     LIKING.name: f"how much you like it, {len(ITEMS)} questions after every trial",
@@ -111,10 +110,11 @@ OBJECTIVE_DESCRIPTIONS = {
 
 @call("optimize.offers")
 def offers(studio: Studio, _ask: Empty) -> OptimizeOffers:
+    pairs = pair_engine_names()
     return OptimizeOffers(
-        [Offer(name, ENGINE_DESCRIPTIONS.get(name, "")) for name in engine_names()],
-        [Offer(name, PAIR_ENGINE_DESCRIPTIONS.get(name, "")) for name in pair_engine_names()],
-        [Offer(name, LINE_ENGINE_DESCRIPTIONS[name]) for name in LINE_ENGINES],
+        _engine_offers(engine_names()),
+        _engine_offers(pairs),
+        _engine_offers(name for name in engine_names(choices=True) if name not in pairs),
         [Offer(name, about) for name, about in SPACE_DESCRIPTIONS.items()],
         [Offer(entry.rig_id, entry.about) for entry in studio.rigs.entries()],
         [Offer(name, f"{speed:g} pixels per second") for name, speed in LEVELS_px_s.items()],
@@ -124,6 +124,10 @@ def offers(studio: Studio, _ask: Empty) -> OptimizeOffers:
         list(SWITCHES),
         {level: TemporalPointing(level).period_s for level in LEVELS_px_s},
     )
+
+
+def _engine_offers(names: Iterable[str]) -> list[Offer]:
+    return [Offer(name, ENGINE_DESCRIPTIONS.get(name, "")) for name in names]
 
 
 @call("optimize.devices")

@@ -1,4 +1,4 @@
-"""Trials, comparisons and lines of a run: suggested, edited, answered, and what they recommend."""
+"""Trials of a run: suggested, edited, answered, and what they recommend."""
 
 from __future__ import annotations
 
@@ -9,14 +9,11 @@ from typing import Annotated, Any
 from msgspec import Meta
 
 from fdvv.errors import InputError
-from fdvv.optimize.problem import Answer
-from fdvv.optimize.run.ledger import Suggested
 from fdvv.optimize.run.session import Optimization
 from fdvv.project.patch import record_of
 from fdvv.studio.api.optimize import Name, Number, OptimizeAsk
 from fdvv.studio.contract import Message, call
 from fdvv.studio.optimizations import Optimizations
-from fdvv.studio.played_trial import open_trials
 from fdvv.studio.rated_trial import rate_trial
 
 
@@ -44,30 +41,10 @@ class OptimizeRate(OptimizeTrialAsk):
     answers: Annotated[list[int], Meta(max_length=20)]
 
 
-class OptimizeAnswer(OptimizeAsk):
-    """Say which of two designs is preferred."""
+class OptimizeAnswer(OptimizeTrialAsk):
+    """Say which designs of a trial are liked best, from 0; several where there is no difference."""
 
-    pair: Number
-    answer: Answer
-
-
-class OptimizePairAsk(Message):
-    """Name a comparison of a run."""
-
-    run: int
-    pair: int
-
-
-class OptimizeLineAsk(OptimizeAsk):
-    """Name a line of a run."""
-
-    line: Number
-
-
-class OptimizeChoose(OptimizeLineAsk):
-    """Say which stop of a line is liked best, from 0."""
-
-    best: Number
+    best: Annotated[list[Number], Meta(min_length=1, max_length=100)]
 
 
 class OptimizeModelAsk(OptimizeAsk):
@@ -101,16 +78,18 @@ def _changed(optimizations: Optimizations, run: int) -> Iterator[Optimization]:
 def next_trial(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeTrialAsk:
     """Return the open trial, or ask the engine for one."""
     with _changed(optimizations, ask.run) as session:
-        trial = next(iter(open_trials(session) or session.ask()), None) or session.retest()
-        remedy = "look at what was found, or begin another run"
-        return OptimizeTrialAsk(ask.run, _number(ask, trial, "its trials are all played", remedy))
+        trial = session.next_trial()
+        if trial is None:
+            remedy = "look at what was found, or begin another run"
+            raise InputError("optimise", f"run {ask.run}", f"its {session.asks_for}s are all over", remedy)
+        return OptimizeTrialAsk(ask.run, trial.number)
 
 
-def _number(ask: OptimizeAsk, waiting: Suggested | None, reason: str, remedy: str) -> int:
-    """Return the number of what waits to be tried or answered. InputError where nothing does."""
-    if waiting is None:
-        raise InputError("optimise", f"run {ask.run}", reason, remedy)
-    return waiting.number
+@call("optimize.answer")
+def answer(optimizations: Optimizations, ask: OptimizeAnswer) -> OptimizeTrialAsk:
+    with _changed(optimizations, ask.run) as session:
+        session.answer(ask.trial, ask.best)
+    return OptimizeTrialAsk(ask.run, ask.trial)
 
 
 @call("optimize.edit")
@@ -124,7 +103,7 @@ def edit(optimizations: Optimizations, ask: OptimizeEdit) -> OptimizeTrialAsk:
 def abandon(optimizations: Optimizations, ask: OptimizeTrialAsk) -> OptimizeTrialAsk:
     """Stop a trial; it teaches nothing and does not count."""
     with _changed(optimizations, ask.run) as session:
-        session.abandon(ask.trial, "stopped on the page")
+        session.give_up(ask.trial, "stopped on the page", failed=False)
     return ask
 
 
@@ -140,36 +119,6 @@ def take(optimizations: Optimizations, ask: OptimizeTrialAsk) -> OptimizeTrialAs
     """Recommend another compromise of the front, before its retest."""
     optimizations.take(ask.run, ask.trial)
     return ask
-
-
-@call("optimize.pair")
-def next_pair(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizePairAsk:
-    """Return the open comparison, or ask the engine for one."""
-    with _changed(optimizations, ask.run) as session:
-        reason, remedy = "its comparisons are all made", "look at what was found"
-        return OptimizePairAsk(ask.run, _number(ask, session.compare(), reason, remedy))
-
-
-@call("optimize.answer")
-def answer(optimizations: Optimizations, ask: OptimizeAnswer) -> OptimizePairAsk:
-    with _changed(optimizations, ask.run) as session:
-        session.answer(ask.pair, ask.answer)
-    return OptimizePairAsk(ask.run, ask.pair)
-
-
-@call("optimize.line")
-def next_line(optimizations: Optimizations, ask: OptimizeAsk) -> OptimizeLineAsk:
-    """Return the open line, or ask the engine for one."""
-    with _changed(optimizations, ask.run) as session:
-        reason, remedy = "its lines are all answered", "compare what was found, or begin another run"
-        return OptimizeLineAsk(ask.run, _number(ask, session.line(), reason, remedy))
-
-
-@call("optimize.choose")
-def choose(optimizations: Optimizations, ask: OptimizeChoose) -> OptimizeLineAsk:
-    with _changed(optimizations, ask.run) as session:
-        session.choose(ask.line, ask.best)
-    return OptimizeLineAsk(ask.run, ask.line)
 
 
 @call("optimize.model")

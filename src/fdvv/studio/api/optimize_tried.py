@@ -1,4 +1,4 @@
-"""What was tried in a run, as its page shows it: trials, comparisons and lines with their pictures."""
+"""What was tried in a run, as its page shows it: trials with their pictures."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.problem import Answer, TrialState
+from fdvv.optimize.problem import Answer, Trial, TrialState
 from fdvv.optimize.run.session import Optimization
 from fdvv.studio.contract import Message, message_of
 from fdvv.task.score import Score
@@ -73,17 +73,20 @@ def trial_list(session: Optimization) -> list[OptimizeTrial]:
             expected=front[one.number].scores if one.number in front else {},
         )
         for one in session.trials
+        if not one.beside
     ]
 
 
 def pair_list(session: Optimization) -> list[OptimizePair]:
-    def picture(design: dict[str, float]) -> OptimizeCurve:
-        return press_picture(session.model(design))
+    """Return the comparisons of the search and of its retest."""
+    search = session.trials if session.asks_for == "comparison" else ()
+    return [_pair(session, one) for one in (*search, *session.retests) if one.beside]
 
-    return [
-        message_of(OptimizePair, one, first_curve=picture(one.first), second_curve=picture(one.second))
-        for one in (*session.comparisons, *session.retest_comparisons)
-    ]
+
+def _pair(session: Optimization, trial: Trial) -> OptimizePair:
+    first, second = trial.designs
+    first_curve, second_curve = (press_picture(session.model(design)) for design in trial.designs)
+    return OptimizePair(trial.number, first, second, first_curve, second_curve, trial.answer)
 
 
 def press_picture(model: FDVVModel) -> OptimizeCurve:
@@ -94,4 +97,8 @@ def press_picture(model: FDVVModel) -> OptimizeCurve:
 
 
 def line_list(session: Optimization) -> list[OptimizeLine]:
-    return [message_of(OptimizeLine, one, stops=list(one.stops)) for one in session.lines]
+    return [
+        OptimizeLine(one.number, list(one.designs), one.best[0] if one.best else None)
+        for one in session.trials
+        if session.asks_for == "line"
+    ]
