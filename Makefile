@@ -12,6 +12,9 @@ LIBRARY := $(if $(filter Darwin,$(shell uname -s)),libfdvv.dylib,libfdvv.so)
 # matrices here are small: threads of BLAS would only wait for each other
 export OPENBLAS_NUM_THREADS ?= 1
 
+# without bytecode every test process compiles all it imports: 20 s to collect the tests alone
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help demo lock quick test test-slow test-browser check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools lowest newcomer clean
 
 help: ## Show this list
