@@ -57,14 +57,14 @@ test: check ## Every check and every test of the default run
 	$(BIN)/pytest -n 2 --dist worksteal -m "not slow and not browser"
 
 test-slow: setup ## The long tests
-	$(BIN)/pytest -n 2 --dist worksteal --timeout 300 --durations 25 -m "slow and not browser"
+	$(BIN)/pytest -n 2 --dist worksteal --durations 25 -m "slow and not browser"
 
 lock: setup ## Write the hashes of what constraints.txt names, for every system, into requirements.lock
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-header \
 	  --no-emit-index-url --upgrade constraints.txt -o requirements.lock
 
 test-browser: setup web-tools ## Drive the studio in a real browser
-	$(BIN)/pytest -n 2 --dist worksteal --timeout 180 -m browser
+	$(BIN)/pytest -n 2 --dist worksteal -m browser
 
 format: setup ## Format the code in place
 	$(BIN)/ruff format .

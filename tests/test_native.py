@@ -61,7 +61,6 @@ def test_an_array_lives_as_long_as_its_address() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
 def test_fits_and_presses_run_without_undefined_behaviour(tmp_path: Path) -> None:
     library = tmp_path / "libsanitised.so"
     flags = ["-std=c99", "-O1", "-g", "-fPIC", "-shared", "-fsanitize=undefined", "-fno-sanitize-recover=all"]
@@ -73,7 +72,6 @@ def test_fits_and_presses_run_without_undefined_behaviour(tmp_path: Path) -> Non
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
 def test_the_kernels_free_what_they_take_and_stay_in_bounds(tmp_path: Path) -> None:
     # valgrind would do as well; the address sanitiser comes with the compiler
     program = tmp_path / "program.c"

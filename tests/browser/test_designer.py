@@ -57,7 +57,6 @@ def edited_and_undone(page: Page) -> tuple[list[float], list[float]]:
     return before, dragged
 
 
-@pytest.mark.timeout(300)
 def test_a_designer_finds_edits_presses_renders_and_keeps_a_button(
     context: BrowserContext, start_studio: Callable[..., RunningStudio], tmp_path: Path
 ) -> None:

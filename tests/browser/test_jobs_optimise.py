@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 MOST = 4
 
 
-@pytest.mark.timeout(300)  # 107 trials are played; on a quiet machine half a minute
 @pytest.mark.parametrize("keyboard", [False, True], ids=["mouse", "keyboard"])
 def test_an_optimisation_with_its_verdict_takes_four_clicks_at_most(
     page: Page, studio: RunningStudio, keyboard: bool

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-import pytest
 from playwright.sync_api import expect
 
 if TYPE_CHECKING:
@@ -18,7 +17,6 @@ BEFORE_AND_AFTER = re.compile(
     r"Mean error [\d.]+ → [\d.]+ cN on simulated presses, largest [\d.]+ → [\d.]+ cN; "
     "a finger would (not )?notice it"
 )
-pytestmark = pytest.mark.timeout(180)
 
 
 class Hand:

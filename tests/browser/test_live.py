@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Locator, Page
 
 LONG_ms = 60_000
-# work on a machine that does much else takes longer than the default limit of a test
-pytestmark = pytest.mark.timeout(180)
 DONE = ".job-head .job-state.done"
 PRESSES = "table[aria-label='Presses, newest first'] tbody tr"
 

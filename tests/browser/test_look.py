@@ -232,7 +232,6 @@ def test_opened_files_are_whole(look: tuple[Page, list[str]], tmp_path: Path) ->
     assert at_every_size(page, opened) == []
 
 
-@pytest.mark.timeout(240)
 def test_work_on_a_rig_is_whole_while_it_runs_and_when_it_is_done(look: tuple[Page, list[str]]) -> None:
     page, logged = look
     go(page, "live/compensate")
@@ -246,7 +245,6 @@ def test_work_on_a_rig_is_whole_while_it_runs_and_when_it_is_done(look: tuple[Pa
     assert found + taken(logged) == []
 
 
-@pytest.mark.timeout(300)
 def test_an_optimisation_is_whole_while_it_runs_and_when_it_is_done(look: tuple[Page, list[str]]) -> None:
     page, logged = look
     go(page, "optimize")
@@ -302,7 +300,6 @@ def seated(page: Page, study: str, text: str) -> Timer:
     return timer
 
 
-@pytest.mark.timeout(300)
 def test_the_screens_of_a_timing_study_are_whole(look: tuple[Page, list[str]]) -> None:
     page, logged = look
     go(page, "home")
@@ -327,7 +324,6 @@ def test_the_screens_of_a_timing_study_are_whole(look: tuple[Page, list[str]]) -
     assert found + taken(logged) == []
 
 
-@pytest.mark.timeout(300)
 def test_what_lies_on_the_table_is_asked_for_on_a_whole_screen(look: tuple[Page, list[str]]) -> None:
     page, logged = look
     go(page, "home")

@@ -86,7 +86,6 @@ class Wire:
 
 @pytest.mark.parametrize("study", [{"items": 6, "rounds": 6, "reference": True}], indirect=True)
 @pytest.mark.parametrize("input_method", ["mouse", "touch"])
-@pytest.mark.timeout(400)
 def test_36_trials_are_answered_and_kept_and_no_message_names_what_a_label_hides(
     study: Study, page: Page, browser: Browser, studio: RunningStudio, input_method: InputMethod
 ) -> None:

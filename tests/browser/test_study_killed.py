@@ -10,7 +10,6 @@ from contextlib import suppress
 from threading import Timer
 from typing import TYPE_CHECKING
 
-import pytest
 from playwright.sync_api import Error
 
 from fdvv.study.admin.study import Study
@@ -116,7 +115,6 @@ class Seated:
         assert self.study.verify() == ()
 
 
-@pytest.mark.timeout(500)
 def test_no_answer_is_lost_when_the_page_is_killed_twenty_times(
     page: Page, studio: RunningStudio, browser: Browser, record_property: Callable[[str, object], None]
 ) -> None:

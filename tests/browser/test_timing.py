@@ -43,7 +43,6 @@ def timer(study: TimingStudy, page: Page, context: BrowserContext) -> Timer:
     return found
 
 
-@pytest.mark.timeout(240)
 def test_a_whole_experiment_is_done_by_keyboard_and_every_press_is_kept(
     study: TimingStudy, timer: Timer
 ) -> None:
@@ -83,7 +82,6 @@ def wait_for_round(timer: Timer, number: int) -> None:
     timer.page.wait_for_selector(f".line >> text=Press {number + 1} of {PRESSES}")
 
 
-@pytest.mark.timeout(300)
 def test_a_studio_killed_in_training_and_in_validation_costs_no_round_that_was_kept(
     study: TimingStudy, page: Page, timer: Timer, studio: RunningStudio, context: BrowserContext
 ) -> None:

@@ -25,7 +25,6 @@ def test_spoilt_copies_of_the_shipped_example_are_refused_or_right() -> None:
 
 @pytest.mark.slow
 @pytest.mark.shared
-@pytest.mark.timeout(900)
 def test_a_thousand_spoilt_files_of_every_kind(shared_data: Path) -> None:
     found = run(1000, shared_data)
     check(found)
@@ -33,7 +32,6 @@ def test_a_thousand_spoilt_files_of_every_kind(shared_data: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.shared
-@pytest.mark.timeout(900)
 def test_ways_that_no_gate_was_made_for_are_refused_but_for_one_in_fifty(shared_data: Path) -> None:
     """What remains are decibels, slow drift and small bursts."""
     found = run(410, shared_data, ways=WAYS["second"])

@@ -321,7 +321,7 @@ def takes_in(path: Path) -> Recording:
     return Recording("nothing")
 
 
-@pytest.mark.parametrize("kills", [1, pytest.param(200, marks=[pytest.mark.slow, pytest.mark.timeout(1200)])])
+@pytest.mark.parametrize("kills", [1, pytest.param(200, marks=pytest.mark.slow)])
 def test_a_capture_killed_at_any_moment_loses_no_take_and_goes_on_to_the_same_recording(
     fdvv: Run, tmp_path: Path, kills: int
 ) -> None:

@@ -105,7 +105,6 @@ def test_a_refusal_names_the_force_in_the_unit(fdvv: Run, switch: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(600)
 @pytest.mark.parametrize("unit", ["gf", "N"])
 def test_the_demonstration_and_a_capture(fdvv: Run, unit: str, tmp_path: Path) -> None:
     shown(fdvv, unit, "demo", "--output", "demo")

@@ -53,7 +53,6 @@ def test_a_check_lists_all_that_is_wrong_and_fails() -> None:
     assert json.loads(invoke("check", "small", "--json").stdout)["ok"] is False
 
 
-@pytest.mark.timeout(300)
 def test_a_study_is_simulated_unsealed_analysed_and_exported() -> None:
     freeze()
     simulated = invoke("simulate", "small", "--people", "3")

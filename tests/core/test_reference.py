@@ -48,7 +48,6 @@ def test_the_compiled_tick_equals_the_readable_one(block: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(1800)
 @pytest.mark.parametrize("block", range(20))
 def test_the_compiled_tick_equals_the_readable_one_over_a_million_ticks(block: int) -> None:
     for seed in range(50):

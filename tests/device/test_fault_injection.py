@@ -272,7 +272,6 @@ def test_a_sanitised_build_finds_nothing_wrong_under_attack(tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(600)
 @pytest.mark.parametrize("seed", range(10, 20))
 def test_a_long_siege_does_no_harm(seed: int) -> None:
     siege = Siege(LibraryBoard, seed)

@@ -23,7 +23,6 @@ def test_the_rig_of_a_new_package_can_be_opened_and_marks_what_to_replace(tmp_pa
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
 def test_a_new_package_passes_its_own_tests(tmp_path: Path) -> None:
     write_package("my-rig", tmp_path / "new")
     environment = os.environ | {"PYTHONPATH": str(tmp_path / "new" / "src")}

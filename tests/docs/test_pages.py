@@ -127,7 +127,6 @@ def test_shown_commands_and_their_options_exist() -> None:
     assert "frezze" in _problem("fdvv study frezze x")
 
 
-@pytest.mark.timeout(300)
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=() if name in FAST else pytest.mark.slow) for name in _showing()]
 )

@@ -195,7 +195,6 @@ class Page(HTMLParser):
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(900)
 def test_the_site_builds_without_warnings_its_links_resolve_and_it_loads_nothing_from_outside(
     tmp_path: Path,
 ) -> None:

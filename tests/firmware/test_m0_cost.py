@@ -61,7 +61,6 @@ def test_a_transition_that_does_not_hold_stays_within_its_cycles(built: tuple[by
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(600)
 def test_no_tick_is_late_in_uploading_and_pressing_for_long() -> None:
     load = BOARD.run_load(_m0.build(_m0.CONTROLLER), LOAD_TICKS, BOARD.rate_settings(250, 25))
     say(f"{load}")

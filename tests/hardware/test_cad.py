@@ -22,7 +22,6 @@ KERNEL_WARNINGS = pytest.mark.filterwarnings("ignore")
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
 @KERNEL_WARNINGS
 def test_exports_made_again_are_the_same_bytes(tmp_path: Path) -> None:
     from fdvv_rig.cad.export import export_parts
@@ -35,7 +34,6 @@ def test_exports_made_again_are_the_same_bytes(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
 @KERNEL_WARNINGS
 @settings(
     max_examples=3,

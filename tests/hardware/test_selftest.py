@@ -147,7 +147,6 @@ def test_a_person_is_asked_for_every_gauge_and_weight() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(120)
 @pytest.mark.parametrize("fault", RIG_FAULTS)
 def test_the_part_that_is_wrong_is_named(fault: str) -> None:
     _, found = trial(fault, seed=7)
@@ -156,7 +155,6 @@ def test_the_part_that_is_wrong_is_named(fault: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(120)
 @pytest.mark.parametrize("spec", ["twin", "host"])
 def test_every_board_with_the_firmware_in_it_is_tested_alike(spec: str) -> None:
     ran: list[tuple[str, int, int]] = []

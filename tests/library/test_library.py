@@ -234,7 +234,6 @@ def deadly(tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(180)
 def test_a_file_that_ends_its_reader_is_refused_and_costs_no_other(
     deadly: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -267,7 +266,6 @@ if __name__ == "__main__":
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(180)
 def test_a_build_killed_at_random_moments_loses_nothing(tmp_path: Path) -> None:
     source = write_folder(tmp_path / "many", {f"{i // 6}/switch {i:02}.csv": 0.5 * i for i in range(36)})
     script, library = tmp_path / "run.py", tmp_path / "library"

@@ -170,7 +170,6 @@ def test_a_killed_run_loses_no_finished_trial_and_asks_the_same_next_design(
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(120)
 @pytest.mark.parametrize(("engine", "seed", "kills"), [("random", 5, 90), ("sobol", 6, 70), ("gp", 8, 20)])
 def test_no_finished_trial_is_lost_at_two_hundred_random_moments(
     tmp_path: Path, engine: str, seed: int, kills: int

@@ -146,7 +146,6 @@ def test_python_looks_for_the_library_that_is_built(build: ModuleType) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
 @pytest.mark.parametrize("target", TARGETS)
 def test_the_c_compiles_without_a_warning_for_every_system(
     build: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, zig: list[str], target: str
@@ -167,7 +166,6 @@ def test_the_c_compiles_without_a_warning_for_every_system(
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
 def test_fits_and_presses_of_pips_compiler_are_those_of_the_systems(
     build: ModuleType, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, zig: list[str]
 ) -> None:
@@ -186,7 +184,6 @@ def test_fits_and_presses_of_pips_compiler_are_those_of_the_systems(
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
 @pytest.mark.parametrize(
     ("target", "emulator"),
     [

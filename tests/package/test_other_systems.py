@@ -92,7 +92,6 @@ def test_every_module_imports_and_journals_lock_without_what_only_posix_has(tmp_
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
 def test_the_demo_runs_without_what_only_posix_has(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     ran = on_windows(WORKS, tmp_path, "demo", first="import matplotlib.pyplot")

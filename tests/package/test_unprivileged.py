@@ -21,7 +21,6 @@ from tests.package.conftest import Packages
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.timeout(300),
     pytest.mark.skipif(os.name != "posix" or os.geteuid() != 0, reason="only root can become another user"),
     pytest.mark.skipif(shutil.which("setpriv") is None, reason="setpriv (util-linux) is not installed"),
 ]

@@ -16,7 +16,7 @@ from tests.package.conftest import REPOSITORY, Builder, Packages, clean_environm
 
 from fdvv._native.structures import HEADERS
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.slow
 
 NEEDED = (
     "_native/libfdvv.so",

@@ -23,7 +23,7 @@ from fdvv.sweep.sweep import RESULTS, run_sweep
 from tests.support.catalog_rows import write_folder
 
 HOW_TO = Path(__file__).resolve().parents[2] / "docs" / "how-to" / "sweep-on-a-cluster.md"
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(240)]
+pytestmark = pytest.mark.slow
 
 
 def commands() -> list[list[str]]:

@@ -12,7 +12,6 @@ WORSE_ratio = 1.5
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(600)
 def test_a_weak_and_a_strong_rig_render_as_well_as_the_default_one() -> None:
     seeds = (700, 701)
     usual = float(np.median([judged(Rig(), seed) for seed in seeds]))

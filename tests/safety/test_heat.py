@@ -151,7 +151,6 @@ def report(done: int, result: Result, start: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(7200)
 def test_many_random_minutes_leave_the_model_hotter(library: ctypes.CDLL) -> None:
     """By hand with FDVV_ROUNDS=150000: a million minutes, in 12 of the processor."""
     scenes = int(os.environ.get("FDVV_ROUNDS", "8000"))
@@ -163,7 +162,6 @@ def test_many_random_minutes_leave_the_model_hotter(library: ctypes.CDLL) -> Non
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(14_400)
 @pytest.mark.skipif("FDVV_ROUNDS" not in os.environ, reason="by hand: FDVV_ROUNDS=100000, a million minutes")
 def test_many_random_minutes_with_power_cuts_leave_no_coil_beyond_the_limit(library: ctypes.CDLL) -> None:
     scenes = int(os.environ["FDVV_ROUNDS"])

@@ -57,7 +57,6 @@ def report(folder: Path, name: str) -> tuple[float, float]:
     return lines, branches
 
 
-@pytest.mark.timeout(120)
 def test_every_line_is_run_and_nothing_is_undefined(tmp_path: Path) -> None:
     # what is thought out alone: coverage is not left to chance
     library = build(tmp_path, *SANITISED, "--coverage", "-O0")
@@ -83,6 +82,5 @@ def test_the_sanitiser_sees_a_byte_read_beyond_an_image(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(600)
 def test_nothing_is_undefined_in_the_long_tests_either(tmp_path: Path) -> None:
     run_on(build(tmp_path, *SANITISED))

@@ -12,7 +12,7 @@ from fdvv.stats.ordinal_fit import OrdinalPoint, gathered, log_likelihood
 from fdvv.units import FloatArray
 from tests.stats.golden import golden
 
-SLOW = (pytest.mark.slow, pytest.mark.timeout(900))
+SLOW = pytest.mark.slow
 
 
 def some_ratings(
@@ -50,7 +50,6 @@ def test_it_agrees_with_ordinals_clmm() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(900)
 def test_it_agrees_with_ordinals_clmm_on_200_studies() -> None:
     compared(golden("ordinal"))
 
@@ -78,7 +77,6 @@ def test_with_a_slope_it_agrees_with_ordinals_clmm() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(900)
 def test_with_a_slope_it_agrees_with_ordinals_clmm_on_all_studies() -> None:
     compared_slopes(golden("ordinal_slope", least=25))
 

@@ -93,7 +93,7 @@ def test_what_cannot_be_tested_is_refused(call: Any, reason: str) -> None:
         call()
 
 
-SLOW = (pytest.mark.slow, pytest.mark.timeout(900))
+SLOW = pytest.mark.slow
 
 ZEROS: Any = (("wilcoxon", "wilcox"), ("pratt", "pratt"))
 """What we call each way with zeros, and what SciPy calls it."""

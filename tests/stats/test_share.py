@@ -21,7 +21,7 @@ from fdvv.stats.share import (
 )
 from tests.stats.golden import EVERY, golden
 
-SLOW = (pytest.mark.slow, pytest.mark.timeout(900))
+SLOW = pytest.mark.slow
 
 
 def some_counts(sets: int = 200) -> tuple[Any, Any]:
@@ -173,7 +173,6 @@ def test_intervals_hold_the_share_and_mirror(n: int, part: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(900)
 @pytest.mark.parametrize("spread", [0.0, 0.05, 0.2])
 def test_intervals_over_people_hold_the_truth_about_as_often_as_they_say(spread: float) -> None:
     random = np.random.default_rng(9)

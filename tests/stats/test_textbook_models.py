@@ -42,7 +42,6 @@ def fit_of(ratings: Any, person: Any, x: Any, slope: bool, nodes: int) -> Ordina
     return fitted(gathered(category, person, x[:, None], 0 if slope else None), nodes)
 
 
-@pytest.mark.timeout(900)
 @pytest.mark.parametrize("slope", [False, True])
 @pytest.mark.parametrize("part", range(5))
 def test_the_error_of_an_ordinal_effect_is_in_the_inverse_of_the_hessian(part: int, slope: bool) -> None:
@@ -117,7 +116,6 @@ def timed(seed: int) -> textbook.Rows:
     return rows
 
 
-@pytest.mark.timeout(900)
 def test_the_same_of_whole_analyses_with_gaps_and_uneven_rounds(tmp_path: Path) -> None:
     tested = 0
     for seed in range(DRAWS):

@@ -121,7 +121,6 @@ def test_over_people_it_agrees_with_ordinals_mixed_model(monkeypatch: pytest.Mon
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(900)
 def test_over_people_it_agrees_with_ordinals_mixed_model_on_200_studies(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -74,7 +74,6 @@ def test_calls_refuse_what_they_cannot_use(person: httpx2.Client) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(900)
 def test_calls_refuse_what_they_cannot_use_many_times(person: httpx2.Client) -> None:
     found = ask_all(person, rounds=300, seed=2)
     sys.stdout.write(f"{found.total()} drawn questions to {len(CALLS)} calls: {dict(found)}\n")

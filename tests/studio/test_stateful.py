@@ -213,7 +213,6 @@ def test_calls_and_messages_with_known_ids_cause_no_internal_error(page: Page) -
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(4 * 3600)
 def test_many_calls_and_messages_reach_nearly_every_call_and_leak_nothing(
     page: Page, studio: RunningStudio
 ) -> None:

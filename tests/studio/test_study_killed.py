@@ -138,7 +138,6 @@ def kill_studio(project: Project, studios: Hatchery, port: int, after: int, afte
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(400)
 @pytest.mark.parametrize("seed", range(8))
 def test_no_answer_is_lost_when_the_studio_is_killed_at_256_random_moments(
     tmp_path: Path, studios: Hatchery, port: int, seed: int, record_property: Callable[[str, object], None]
@@ -151,7 +150,6 @@ def test_no_answer_is_lost_when_the_studio_is_killed_at_256_random_moments(
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(400)
 @pytest.mark.parametrize("seed", range(8))
 def test_no_answer_is_lost_when_the_page_is_killed_at_256_random_moments(
     tmp_path: Path,

@@ -52,7 +52,7 @@ def test_what_was_written_is_read_back(tmp_path: Path, key: bytes) -> None:
 
 
 @KEYS
-@pytest.mark.parametrize("apart", [61, pytest.param(1, marks=[pytest.mark.slow, pytest.mark.timeout(600)])])
+@pytest.mark.parametrize("apart", [61, pytest.param(1, marks=pytest.mark.slow)])
 def test_a_changed_byte_anywhere_is_noticed(tmp_path: Path, key: bytes, apart: int) -> None:
     path = written(tmp_path, key)
     for file in (path, head_path(path)):

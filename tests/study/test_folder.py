@@ -51,7 +51,7 @@ def test_a_study_that_nobody_changed_is_whole(study: Study) -> None:
     study.require_whole()
 
 
-@pytest.mark.parametrize("places", [2, pytest.param(150, marks=[pytest.mark.slow, pytest.mark.timeout(600)])])
+@pytest.mark.parametrize("places", [2, pytest.param(150, marks=pytest.mark.slow)])
 def test_a_changed_byte_of_any_file_is_noticed(study: Study, places: int) -> None:
     files = all_files(study.folder)
     assert len(files) == 17

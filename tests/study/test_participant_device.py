@@ -83,7 +83,6 @@ def run_with_kills(folder: Path, kills: int, seed: int, rounds: int) -> Particip
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(600)
 def test_a_session_survives_the_deaths_of_its_devices(
     tmp_path: Path, record_property: Callable[[str, object], None]
 ) -> None:

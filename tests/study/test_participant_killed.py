@@ -166,7 +166,6 @@ def test_a_killed_session_loses_no_answer_and_meets_no_trial_again(tmp_path: Pat
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(600)
 @pytest.mark.parametrize("seed", range(5))
 def test_no_answer_is_lost_at_five_hundred_random_moments(
     tmp_path: Path, seed: int, record_property: Callable[[str, object], None]
@@ -223,7 +222,6 @@ def test_a_device_may_go_away_at_any_moment_of_a_session(tmp_path: Path) -> None
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(600)
 def test_no_answer_is_lost_when_the_device_goes_away_five_hundred_times(
     tmp_path: Path, record_property: Callable[[str, object], None]
 ) -> None:

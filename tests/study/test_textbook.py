@@ -145,7 +145,6 @@ def check_choices(found: ChoiceResult, rows: textbook.Rows) -> None:
         assert_allclose(found.d[-1].tau, -(low + high) / 2, atol=1e-9)
 
 
-@pytest.mark.timeout(600)
 @pytest.mark.parametrize("part", range(10))
 def test_choices_and_ratings_of_two(part: int, tmp_path: Path) -> None:
     likelihoods = 0

@@ -324,7 +324,6 @@ def test_whoever_works_on_it_the_rows_are_the_same_to_the_bit(
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(180)
 def test_a_cell_that_ends_its_process_is_a_failed_row(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -352,7 +351,6 @@ if __name__ == "__main__":
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
 def test_a_sweep_killed_at_random_moments_loses_nothing(tmp_path: Path, write: Callable[[str], Path]) -> None:
     plan = write(
         'measure = "press"\n[factors]\nbutton = ["mx-clear", "mx-red"]\nrepeat = 15\n[settings]\npresses = 1'

@@ -50,7 +50,6 @@ def test_a_few_observers_are_found_within_the_errors_that_are_claimed() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(1200)
 def test_intervals_hold_95_percent_of_observers_drawn_from_the_prior() -> None:
     errors, held, claimed = measured(range(1000, 1150), 54)
     assert 0.93 <= held.mean() <= 0.97

@@ -152,13 +152,11 @@ def check_kills(folder: Path, seed: int, longest_s: float, most: int) -> int:
     return lives
 
 
-@pytest.mark.timeout(300)
 def test_a_killed_session_keeps_every_press_it_acknowledged(tmp_path: Path) -> None:
     assert check_kills(tmp_path / "study", 1, 0.1, 120) >= 4
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(900)
 def test_no_press_is_lost_at_many_random_moments(tmp_path: Path) -> None:
     """The wait before each end is short, or a quick machine is done with its presses after few of them."""
     assert check_kills(tmp_path / "study", 2, 0.01, 12) >= 25

@@ -21,7 +21,6 @@ from tests.support.timing import SMALL, frozen
 from tests.timing.test_participant import TAPPING
 
 
-@pytest.mark.timeout(300)
 def test_a_whole_study_of_simulated_people_ends_in_a_report(tmp_path: Path) -> None:
     study = frozen(tmp_path / "study", SMALL.replace("rounds = 1", "rounds = 2"))
     found = simulate_timing(study, 3)

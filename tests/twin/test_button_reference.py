@@ -48,7 +48,6 @@ def test_a_fast_press_agrees_with_the_adaptive_solver(name: str, sensor: ForceSe
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(300)
 @pytest.mark.parametrize("name", button_names())
 @pytest.mark.parametrize(("method", "rtol"), [("DOP853", 1e-8), ("Radau", 1e-7)])
 def test_every_button_agrees_with_two_adaptive_solvers(name: str, method: str, rtol: float) -> None:

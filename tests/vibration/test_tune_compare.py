@@ -118,7 +118,6 @@ def test_each_velocity_has_answers_of_its_own() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(180)
 def test_chosen_pairs_find_the_best_more_often_than_pairs_by_chance() -> None:
     likes = [0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 1.0, 0.2]
     chosen = drawn = 0
