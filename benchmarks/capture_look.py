@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv.bench.plan import CapturePlan
 from fdvv.bench.take_check import quick_look
 from fdvv.recording.types import Stage
 from fdvv.twin.capture.bench import CaptureBench
@@ -29,9 +28,9 @@ def asked_again(name: str, person: Participant, velocity_mm_s: float) -> int:
     """Count the presses of one kind, button and pace that are not taken for good."""
     button, random = load_button(name), np.random.default_rng(21)
     bench = CaptureBench(button, CaptureRig(), Finger(), ForceSensor(), person, random)
-    plan = CapturePlan(travel_mm=float(mm_from_m(button.curve.travel_m)))
+    travel_mm = float(mm_from_m(button.curve.travel_m))
     takes = (bench.take(n, Stage.PRESS, velocity_mm_s).take for n in range(1, PRESSES + 1))
-    return sum(not quick_look(take, plan).ok for take in takes)
+    return sum(not quick_look(take, travel_mm).ok for take in takes)
 
 
 def main() -> None:

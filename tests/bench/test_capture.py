@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from fdvv.bench.capture import CaptureGuide, TakeDone, TakeRequest, capture_session
-from fdvv.bench.plan import CapturePlan, Outcome, Step, settle
+from fdvv.bench.plan import Outcome, Step, capture_duration_s, capture_steps, settle
+from fdvv.bench.settings import CaptureSettings
 from fdvv.bench.take_check import TakeCheck, quick_look
 from fdvv.device.bench import BenchInfo, CaptureDevice, Cue, open_bench
 from fdvv.errors import DeviceError, InputError, ModelError
@@ -25,7 +26,7 @@ from fdvv.twin.files import load_button
 from fdvv.twin.finger import Finger
 from fdvv.twin.rig import ForceSensor
 
-SMALL = CapturePlan(paces_mm_s=(50.0, 100.0), presses=3)
+SMALL = CaptureSettings(paces_mm_s=(50.0, 100.0), presses=3)
 
 
 def same(a: Recording, b: Recording) -> bool:
@@ -45,24 +46,24 @@ def same(a: Recording, b: Recording) -> bool:
 
 
 def test_the_procedure_is_rest_probe_and_fifteen_presses_at_each_of_four_paces() -> None:
-    steps = CapturePlan().steps()
+    steps = capture_steps(CaptureSettings())
     assert [s.stage for s in steps[:2]] == [Stage.REST, Stage.PROBE]
     assert [s.velocity_mm_s for s in steps[2:]] == [v for v in (50.0, 100.0, 150.0, 200.0) for _ in range(15)]
     assert all(s.stage is Stage.PRESS for s in steps[2:])
-    assert CapturePlan(probe=False).steps()[1] == Step(Stage.PRESS, 50.0)
+    assert capture_steps(CaptureSettings(probe=False))[1] == Step(Stage.PRESS, 50.0)
 
 
 def test_shuffled_blocks_hold_each_pace_once_in_an_order_that_the_seed_repeats() -> None:
-    plan = CapturePlan(shuffled=True, seed=4)
-    velocities = [s.velocity_mm_s for s in plan.steps()[2:]]
+    plan = CaptureSettings(shuffled=True, seed=4)
+    velocities = [s.velocity_mm_s for s in capture_steps(plan)[2:]]
     assert all(sorted(velocities[i : i + 4]) == [50, 100, 150, 200] for i in range(0, 60, 4))  # type: ignore[type-var]
-    assert velocities != [s.velocity_mm_s for s in CapturePlan(shuffled=True, seed=5).steps()[2:]]
-    assert plan.steps() == CapturePlan(shuffled=True, seed=4).steps()
+    assert velocities != [s.velocity_mm_s for s in capture_steps(CaptureSettings(shuffled=True, seed=5))[2:]]
+    assert capture_steps(plan) == capture_steps(CaptureSettings(shuffled=True, seed=4))
 
 
 def test_the_session_takes_a_person_less_than_five_minutes() -> None:
     """Sixty presses, the probe, the bench at rest, and one press in seven made again."""
-    assert 150 < CapturePlan().duration_s(4.0, repeated=9) < 300
+    assert 150 < capture_duration_s(CaptureSettings(), 4.0, repeated=9) < 300
 
 
 @pytest.mark.parametrize(
@@ -79,7 +80,7 @@ def test_the_session_takes_a_person_less_than_five_minutes() -> None:
 )
 def test_an_impossible_plan_is_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(ModelError):
-        CapturePlan(**wrong)
+        CaptureSettings(**wrong)
 
 
 def test_a_take_counts_for_the_first_open_step_of_its_kind_and_enough_tries_settle_it() -> None:
@@ -103,8 +104,7 @@ def looked_at(kinds: tuple[str, ...], count: int = 20, velocity_mm_s: float = 10
     bench = CaptureBench(
         load_button("mx-clear"), CaptureRig(), Finger(), ForceSensor(), person, np.random.default_rng(3)
     )
-    plan = CapturePlan(travel_mm=4.0)
-    return [quick_look(bench.take(n, Stage.PRESS, velocity_mm_s).take, plan) for n in range(1, count + 1)]
+    return [quick_look(bench.take(n, Stage.PRESS, velocity_mm_s).take, 4.0) for n in range(1, count + 1)]
 
 
 @pytest.mark.parametrize("velocity_mm_s", [50.0, 100.0, 150.0, 200.0])
@@ -144,7 +144,7 @@ def test_the_measured_pace_of_a_press_is_the_true_one() -> None:
         trace = made.truth.trace
         assert trace is not None
         true = mean_speed_mm_s(trace.t_s, trace.displacement_mm, 4.0)
-        ratios.append(quick_look(made.take, CapturePlan(travel_mm=4.0)).achieved_mm_s / true)
+        ratios.append(quick_look(made.take, 4.0).achieved_mm_s / true)
     assert np.median(ratios) == pytest.approx(1.0, abs=0.05)
     assert np.abs(np.array(ratios) - 1).max() < 0.25
 
@@ -176,14 +176,14 @@ NOTHING = Take(1, (stream("f", FORCE, np.zeros(50)),), (), Stage.PRESS, 50.0)
     ],
 )  # fmt: skip
 def test_a_take_that_shows_nothing_is_not_good(take: Take, words: str) -> None:
-    check = quick_look(take, CapturePlan())
+    check = quick_look(take)
     assert not check.ok
     assert words in check.reason
 
 
 def test_where_cameras_record_for_themselves_the_force_alone_tells_a_press() -> None:
     force_cN = np.concatenate([np.full(20, 9.0), np.linspace(10, 150, 10), np.full(20, 9.0)])
-    check = quick_look(replace(NOTHING, streams=(stream("f", FORCE, force_cN),)), CapturePlan())
+    check = quick_look(replace(NOTHING, streams=(stream("f", FORCE, force_cN),)))
     assert check.ok
     assert np.isnan(check.achieved_mm_s)
 
@@ -230,7 +230,7 @@ def test_a_press_that_stays_bad_is_asked_for_so_often_and_then_done_without(tmp_
             pass
 
     done = list[TakeDone]()
-    plan = CapturePlan(paces_mm_s=(50.0,), presses=2, probe=False, repeats=2)
+    plan = CaptureSettings(paces_mm_s=(50.0,), presses=2, probe=False, repeats=2)
     result = capture_session(Hopeless(), tmp_path / "a", "x", plan, CaptureGuide(done=done.append))
     assert len(result.recording.takes) == 1 + 2 * 3
     assert [d.missed for d in done] == [False, False, False, True, False, False, True]
@@ -289,7 +289,7 @@ def test_a_finished_session_asks_for_nothing_more(tmp_path: Path) -> None:
 def test_a_larger_plan_goes_on_with_what_is_missing(tmp_path: Path) -> None:
     path = tmp_path / "a"
     capture_session(open_bench("twin", "mx-clear", "steady"), path, "mx-clear", SMALL)
-    more = replace(SMALL, paces_mm_s=(50.0, 100.0, 200.0), presses=4)
+    more = SMALL.replace(paces_mm_s=(50.0, 100.0, 200.0), presses=4)
     found = capture_session(open_bench("twin", "mx-clear", "steady"), path, "mx-clear", more)
     assert [(p.good + p.missed, p.wanted) for p in found.velocities] == [(4, 4)] * 3
 
@@ -310,7 +310,7 @@ def test_the_cue_tells_contact_and_bottom_in_the_time_of_the_stroke(tmp_path: Pa
             cues.append(cue)
             return super().take(number, stage, velocity_mm_s, cue)
 
-    plan = CapturePlan(paces_mm_s=(200.0,), presses=1, probe=False, travel_mm=4.0)
+    plan = CaptureSettings(paces_mm_s=(200.0,), presses=1, probe=False, travel_mm=4.0)
     bench = open_bench("twin", "mx-clear")
     capture_session(Watched(bench, 0, AssertionError()), tmp_path / "a", "mx-clear", plan)
     assert cues[0].events == ()

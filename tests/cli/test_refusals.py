@@ -122,7 +122,8 @@ REFUSED = {
     "a rig nested too deeply": (("compensate", "mx-blue", "--rig", "deep.toml"), "TOML that is nested"),
     "a device in place of a file": (("fit", "/dev/zero"), "/dev/zero: whole file: is a device or a pipe"),
     "a rig that is no TOML": (("compensate", "mx-blue", "--rig", "rig.toml"), "column 6: not valid TOML"),
-    "a speed twice": (("compensate", "mx-blue", "--velocity", "50", "--velocity", "50"), "a speed repeats"),
+    "a speed twice": (
+        ("compensate", "mx-blue", "--velocity", "50", "--velocity", "50"), "must differ, got 50.0"),
     "the paper's presses for another method": (
         ("compensate", "mx-blue", "--presses", "3"), "--presses: option: belongs to the method paper"),
     "the paper's law printed by another method": (

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.bench.plan import CapturePlan, Outcome, Step, cue_events, cue_length_s, settle
+from fdvv.bench.plan import Outcome, Step, capture_steps, cue_events, cue_length_s, settle
+from fdvv.bench.settings import CaptureSettings
 from fdvv.bench.take_check import TakeCheck, quick_look
 from fdvv.device.bench import CaptureDevice, Cue, show_nothing
 from fdvv.errors import DeviceError
@@ -122,13 +123,13 @@ class Progress:
     judged : step and check of every take.
     """
 
-    plan: CapturePlan
+    plan: CaptureSettings
     outcomes: tuple[Outcome, ...]
     judged: tuple[tuple[Step, TakeCheck], ...] = ()
 
     def after(self, take: Take) -> Progress:
         step = Step(take.stage, take.velocity_mm_s)
-        check = quick_look(take, replace(self.plan, travel_mm=self.travel_mm))
+        check = quick_look(take, self.travel_mm, self.plan.pace_ratio)
         outcomes = settle(self.outcomes, step, check.ok, self.plan.repeats)
         return replace(self, outcomes=outcomes, judged=(*self.judged, (step, check)))
 
@@ -168,7 +169,7 @@ def capture_session(
     device: CaptureDevice,
     path: Path,
     name: str,
-    plan: CapturePlan | None = None,
+    plan: CaptureSettings | None = None,
     guide: CaptureGuide | None = None,
 ) -> CaptureResult:
     """Record a button by the plan, into a new file or one that is resumed.
@@ -179,10 +180,10 @@ def capture_session(
     Raises InputError on a file of another button, bench or person, DeviceError if the bench fails and
     KeyboardInterrupt on Ctrl-C; the last two say how to resume. OSError if the file cannot be written.
     """
-    plan, guide, info = plan or CapturePlan(), guide or CaptureGuide(), device.facts()
+    plan, guide, info = plan or CaptureSettings(), guide or CaptureGuide(), device.facts()
     about = Recording(name, bench=info.bench, person=info.person, simulated=info.simulated)
     with RecordingLog(path, about) as log:
-        state = Progress(plan, tuple(Outcome(step) for step in plan.steps()))
+        state = Progress(plan, tuple(Outcome(step) for step in capture_steps(plan)))
         for take in log.recording.takes:
             state = state.after(take)
         for text in (*(f"warning: {warning}" for warning in log.warnings), *_resume_notice(state, log)):

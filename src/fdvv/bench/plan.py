@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.errors import ModelError
+from fdvv.bench.settings import CaptureSettings
 from fdvv.recording.types import Stage
 
 BETWEEN_s = 1.2
@@ -31,54 +30,24 @@ class Step:
     velocity_mm_s: float | None = None
 
 
-@dataclass(frozen=True)
-class CapturePlan:
-    """The procedure of a capture.
+def capture_steps(settings: CaptureSettings) -> tuple[Step, ...]:
+    """Return the steps: rest, probe, and the presses pace by pace.
 
-    Attributes
-    ----------
-    paces_mm_s : mean velocities, in the order in which they are recorded.
-    presses : at each velocity.
-    probe : lead the cap slowly down and back first.
-    shuffled : in blocks that hold each velocity once, in an order drawn from seed, not one after another.
-    repeats : how often a bad press is repeated before the session continues without it.
-    pace_ratio : largest relative error of a press's velocity.
-    travel_mm : of the button, for the cue and to detect incomplete presses; None: as the probe measures.
+    Shuffled they come in blocks that hold each pace once, in an order drawn from the seed.
     """
+    first = [Step(Stage.REST), *([Step(Stage.PROBE, PROBE_mm_s)] if settings.probe else [])]
+    paces, presses = settings.paces_mm_s, settings.presses
+    if not settings.shuffled:
+        return (*first, *(Step(Stage.PRESS, v) for v in paces for _ in range(presses)))
+    random = np.random.default_rng(settings.seed)
+    blocks = [random.permutation(len(paces)) for _ in range(presses)]
+    return (*first, *(Step(Stage.PRESS, paces[i]) for block in blocks for i in block))
 
-    paces_mm_s: tuple[float, ...] = (50.0, 100.0, 150.0, 200.0)
-    presses: int = 15
-    probe: bool = True
-    shuffled: bool = False
-    seed: int = 0
-    repeats: int = 3
-    pace_ratio: float = 0.35
-    travel_mm: float | None = None
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "paces_mm_s", tuple(float(v) for v in self.paces_mm_s))
-        paces = self.paces_mm_s
-        if not paces or not all(math.isfinite(v) and v > 0 for v in paces) or len(set(paces)) != len(paces):
-            raise ModelError(f"paces_mm_s must be different speeds above 0, got {paces}")
-        if self.presses < 1 or self.repeats < 0:
-            raise ModelError(f"presses must be at least 1, repeats 0, got {self.presses} and {self.repeats}")
-        if not 0 < self.pace_ratio <= 1:
-            raise ModelError(f"pace_ratio must be above 0 and at most 1, got {self.pace_ratio}")
-        if self.travel_mm is not None and not (math.isfinite(self.travel_mm) and self.travel_mm > 0):
-            raise ModelError(f"travel_mm must be above 0, got {self.travel_mm}")
-
-    def steps(self) -> tuple[Step, ...]:
-        first = [Step(Stage.REST), *([Step(Stage.PROBE, PROBE_mm_s)] if self.probe else [])]
-        if not self.shuffled:
-            return (*first, *(Step(Stage.PRESS, v) for v in self.paces_mm_s for _ in range(self.presses)))
-        random = np.random.default_rng(self.seed)
-        blocks = [random.permutation(len(self.paces_mm_s)) for _ in range(self.presses)]
-        return (*first, *(Step(Stage.PRESS, self.paces_mm_s[i]) for block in blocks for i in block))
-
-    def duration_s(self, travel_mm: float, repeated: int = 0) -> float:
-        """Estimate how long the capture takes, with ``repeated`` presses again at the slowest velocity."""
-        steps = [*self.steps(), *[Step(Stage.PRESS, min(self.paces_mm_s))] * repeated]
-        return sum(cue_length_s(step.velocity_mm_s, travel_mm) + BETWEEN_s for step in steps)
+def capture_duration_s(settings: CaptureSettings, travel_mm: float, repeated: int = 0) -> float:
+    """Estimate how long a capture takes, with ``repeated`` presses again at the slowest pace."""
+    steps = [*capture_steps(settings), *[Step(Stage.PRESS, min(settings.paces_mm_s))] * repeated]
+    return sum(cue_length_s(step.velocity_mm_s, travel_mm) + BETWEEN_s for step in steps)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fdvv.bench.plan import CapturePlan
 from fdvv.recording.types import Quantity, Stage, Take
 from fdvv.units import FloatArray
 
@@ -49,16 +48,19 @@ class TakeCheck:
     reason: str = ""
 
 
-def quick_look(take: Take, plan: CapturePlan) -> TakeCheck:
-    """Check a take by its own clock and the plan, whose travel_mm is None while it is unknown."""
+def quick_look(take: Take, travel_mm: float | None = None, pace_ratio: float = 0.35) -> TakeCheck:
+    """Check a take by its own clock.
+
+    travel_mm : of the button, None while it is unknown. pace_ratio : by which a press may miss its pace.
+    """
     if take.stage is Stage.REST:
         return _rest(take)
     if take.stage is Stage.PROBE:
-        return _probe(take, plan)
+        return _probe(take, travel_mm)
     found = _displacement(take)
     if isinstance(found, TakeCheck):
         return found if take.of(Quantity.MARKER) or take.of(Quantity.DISPLACEMENT) else _felt(take, found)
-    return _press(take.velocity_mm_s, *found, plan)
+    return _press(take.velocity_mm_s, *found, travel_mm, pace_ratio)
 
 
 def _felt(take: Take, unseen: TakeCheck) -> TakeCheck:
@@ -80,25 +82,25 @@ def _rest(take: Take) -> TakeCheck:
     return TakeCheck(not touched, reason=reason)
 
 
-def _probe(take: Take, plan: CapturePlan) -> TakeCheck:
+def _probe(take: Take, travel_mm: float | None) -> TakeCheck:
     displacements, forces = take.of(Quantity.DISPLACEMENT), take.of(Quantity.FORCE)
     if not displacements or not forces:
         found = _displacement(take)
-        return found if isinstance(found, TakeCheck) else _deep(float(found[1].max()), plan)
+        return found if isinstance(found, TakeCheck) else _deep(float(found[1].max()), travel_mm)
     displacement, force = displacements[0], forces[0]
     turn = int(np.argmax(displacement.values))
     force_cN = np.interp(displacement.t_s, force.t_s, force.values)
     loaded = np.flatnonzero(force_cN[: turn + 1] > force_cN[:10].mean() + 3.0)
     if not loaded.size:
         return TakeCheck(False, reason="the probe felt no force; lead it down until the stop")
-    return _deep(float(displacement.values[turn] - displacement.values[loaded[0]]), plan)
+    return _deep(float(displacement.values[turn] - displacement.values[loaded[0]]), travel_mm)
 
 
-def _deep(travel_mm: float, plan: CapturePlan) -> TakeCheck:
-    wanted_mm = plan.travel_mm or FELT_mm
-    short = f"stopped at {travel_mm:.1f} of {wanted_mm:.1f} mm; press down to the stop"
-    reason = short if travel_mm < wanted_mm - SHORT_mm else ""
-    return TakeCheck(not reason, travel_mm=travel_mm, reason=reason)
+def _deep(depth_mm: float, travel_mm: float | None) -> TakeCheck:
+    wanted_mm = travel_mm or FELT_mm
+    short = f"stopped at {depth_mm:.1f} of {wanted_mm:.1f} mm; press down to the stop"
+    reason = short if depth_mm < wanted_mm - SHORT_mm else ""
+    return TakeCheck(not reason, travel_mm=depth_mm, reason=reason)
 
 
 def _displacement(take: Take) -> tuple[FloatArray, FloatArray] | TakeCheck:
@@ -141,17 +143,21 @@ def _along(position_mm: FloatArray) -> FloatArray:
 
 
 def _press(
-    requested_mm_s: float | None, t_s: FloatArray, down_mm: FloatArray, plan: CapturePlan
+    requested_mm_s: float | None,
+    t_s: FloatArray,
+    down_mm: FloatArray,
+    travel_mm: float | None,
+    pace_ratio: float,
 ) -> TakeCheck:
     # one frame that shows too much must not make a press
     smooth = np.median(np.stack([down_mm[:-2], down_mm[1:-1], down_mm[2:]]), axis=0)
     depth_mm = float(smooth.max())
     if depth_mm < FELT_mm:
         return TakeCheck(False, travel_mm=depth_mm, reason="no press was seen; press when the bar goes down")
-    deep = _deep(depth_mm, plan)
+    deep = _deep(depth_mm, travel_mm)
     if not deep.ok:
         return deep
-    level_mm = min(plan.travel_mm or depth_mm, depth_mm) - 0.05
+    level_mm = min(travel_mm or depth_mm, depth_mm) - 0.05
     end = int(np.argmax(down_mm > level_mm))
     start = int(np.flatnonzero(np.append(0.0, down_mm[:end]) <= START_mm)[-1])
     begun_s = _crossing_s(t_s, down_mm, start - 1, START_mm)
@@ -159,7 +165,7 @@ def _press(
     achieved = (level_mm - START_mm) / max(done_s - begun_s, 1e-4)
     stroke = slice(max(start - 1, 0), end + 1)
     reason = _fault(t_s[stroke], down_mm[stroke], smooth, achieved)
-    reason = reason or _off_velocity(achieved, requested_mm_s, plan)
+    reason = reason or _off_velocity(achieved, requested_mm_s, pace_ratio)
     return TakeCheck(not reason, achieved, depth_mm, reason)
 
 
@@ -177,8 +183,8 @@ def _fault(t_s: FloatArray, stroke_mm: FloatArray, smooth_mm: FloatArray, achiev
     return ""
 
 
-def _off_velocity(achieved_mm_s: float, requested_mm_s: float | None, plan: CapturePlan) -> str:
-    if requested_mm_s is None or abs(achieved_mm_s / requested_mm_s - 1) <= plan.pace_ratio:
+def _off_velocity(achieved_mm_s: float, requested_mm_s: float | None, pace_ratio: float) -> str:
+    if requested_mm_s is None or abs(achieved_mm_s / requested_mm_s - 1) <= pace_ratio:
         return ""
     way, remedy = ("slow", "faster") if achieved_mm_s < requested_mm_s else ("fast", "slower")
     return f"too {way}, {achieved_mm_s:.0f} instead of {requested_mm_s:g} mm/s; press {remedy}"

@@ -114,12 +114,9 @@ def _sketch(model: FDVVModel, stroke: Stroke) -> tuple[int, ...]:
 def button_figures(model: FDVVModel) -> ButtonFigures:
     """Return what a model is compared by."""
     bump, back = bump_of(model, Stroke.PRESS), bump_of(model, Stroke.RELEASE)
-    return ButtonFigures(
-        model.travel_mm,
-        *((bump.peak_mm, bump.valley_mm, bump.drop_cN) if bump else (None, None, None)),
-        back.drop_cN if back else None,
-        sketch_of(model),
-    )
+    peak_mm, valley_mm, drop_cN = (bump.peak_mm, bump.valley_mm, bump.drop_cN) if bump else (None, None, None)
+    release_drop_cN = back.drop_cN if back else None
+    return ButtonFigures(model.travel_mm, peak_mm, valley_mm, drop_cN, release_drop_cN, sketch_of(model))
 
 
 def distances(parts: FloatArray) -> FloatArray:

@@ -14,8 +14,10 @@ import click
 from fdvv import extras
 from fdvv._version import __version__
 from fdvv.cli import ui
+from fdvv.cli.settings import refused_option
 from fdvv.errors import BuildError, DeviceError, FdvvError, InputError, WorkerError
 from fdvv.force_text import UNITS, shown_in
+from fdvv.settings import SettingError
 
 COMMANDS = {
     "assign": ("fdvv.cli.models", "Assign a curve, or a segment of one, to press or release of a model."),
@@ -156,6 +158,9 @@ def main() -> NoReturn:
         _stop(2, _usage(error))
     except click.ClickException as error:
         _stop(2, error.format_message())
+    except SettingError as error:
+        refused = refused_option(error)
+        _stop(2, str(refused), refused)
     except FdvvError as error:
         _stop(1 if isinstance(error, BuildError | DeviceError | WorkerError) else 2, str(error), error)
     except OSError as error:

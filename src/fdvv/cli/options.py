@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, fields, replace
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from fdvv.device.remote import Remote
     from fdvv.model.noticeable import Jnds
     from fdvv.parallel.executor import Executor
+    from fdvv.rendering.settings import CompensateSettings
     from fdvv.vibration.exciter import KnownExciter
 
 
@@ -118,26 +118,11 @@ def opened_jnds(path: Path | None) -> Jnds:
     return load_jnds(path) if path else LITERATURE
 
 
-RIG_AWARE, PAPER = "rig-aware", "paper"
-ROUNDS = {RIG_AWARE: 3, PAPER: 4}
-PRESSES = 12
-
 sensor_option = ui.option(
     "--sensor", type=ui.FILE, help="TOML file of the force sensor's data sheet, where it is not ours."
 )
 
-method_options = ui.options(
-    ui.option("--method", type=click.Choice(list(ROUNDS)), default=RIG_AWARE, help="How to learn."),
-    ui.option(
-        "--rounds", type=click.IntRange(0, 20),
-        help=f"Presses per velocity once the rig is known, {ROUNDS[RIG_AWARE]} by default; with the paper's "
-             f"law runs averaged, {ROUNDS[PAPER]}.",
-    ),
-    ui.option(
-        "--presses", type=click.IntRange(1, 100),
-        help=f"With the paper's law, per round and velocity; {PRESSES} by default.",
-    ),
-    ui.option("--literal", is_flag=True, help="The paper's law exactly as printed."),
+knowledge_options = ui.options(
     ui.option("--rig-known", type=ui.FILE, help="The *.rig.json that was learned from this rig before."),
     ui.option("--prior", type=ui.FILE, help="TOML file of what is known of the rig before any press."),
     sensor_option,
@@ -146,68 +131,28 @@ method_options = ui.options(
 
 
 def law_of(
-    method: str,
-    rounds: int | None,
-    presses: int | None,
-    literal: bool,
+    settings: CompensateSettings,
     rig_known: Path | None,
     save_rig: Path | None,
-    prior: Path | None = None,
-    sensor: Path | None = None,
+    prior: Path | None,
+    sensor: Path | None,
 ) -> PaperLaw | RigAware:
-    """Make the method that was asked for. InputError on an option of the other one, or on a file."""
-    from fdvv.compensation.identification.rig_file import load_learned_rig
-    from fdvv.compensation.paper import PaperLaw
-    from fdvv.compensation.rig_aware import RigAware
-
-    rounds = ROUNDS[method] if rounds is None else rounds
-    if method == RIG_AWARE:
-        _refuse({"--presses": presses, "--literal": literal}, PAPER)
-        if prior and rig_known:
-            remedy = "leave one of them out"
-            raise InputError("--prior", "option", "says what --rig-known FILE holds already", remedy)
-        law = RigAware(rounds, load_learned_rig(rig_known) if rig_known else None)
-        return _with_knowledge(law, prior, sensor)
-    own = {"--rig-known": rig_known, "--save-rig": save_rig, "--prior": prior, "--sensor": sensor}
-    _refuse({**own, "--rounds 0": rounds == 0}, RIG_AWARE)
-    make = PaperLaw.literal if literal else PaperLaw
-    return make(rounds=rounds, presses_per_round=presses or PRESSES)
-
-
-def _with_knowledge(law: RigAware, prior: Path | None, sensor: Path | None) -> RigAware:
-    """Return a method with what files say of the rig and of its force sensor."""
+    """Return the method with what files say of the rig and of its force sensor. SettingError, InputError."""
     from fdvv.compensation.identification.prior_file import load_prior, load_sensor
+    from fdvv.compensation.identification.rig_file import load_learned_rig
 
+    settings.check_known(rig_known=rig_known, save_rig=save_rig, prior=prior, sensor=sensor)
+    if prior and rig_known:
+        raise InputError(
+            "--prior", "option", "says what --rig-known FILE holds already", "leave one of them out"
+        )
+    law: Any = settings.law(load_learned_rig(rig_known) if rig_known else None)
     if prior:
         law = replace(law, prior=load_prior(prior))
     if sensor:
         sheet = load_sensor(sensor)
         law = replace(law, sensor=sheet.sensor, cell=sheet.cell)
-    return law
-
-
-def _refuse(options: dict[str, object], other: str) -> None:
-    for name, value in options.items():
-        if value:
-            reason = f"belongs to the method {other}"
-            raise InputError(name, "option", reason, f"add --method {other}, or leave {name} out")
-
-
-class Paces(click.ParamType[tuple[float, ...]]):
-    name = "mm/s,..."
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, ...]:
-        if isinstance(value, tuple):
-            return value
-        try:
-            found = tuple(float(part) for part in value.split(","))
-        except ValueError:
-            self.fail(f"{value!r} must be speeds with commas between them, as 50,100", param, ctx)
-        if not all(math.isfinite(v) and 20 <= v <= 500 for v in found) or len(set(found)) != len(found):
-            self.fail(f"{value!r} must be different speeds of 20 to 500 mm/s", param, ctx)
-        return found
+    return law  # type: ignore[no-any-return]
 
 
 device_option = ui.option("--device", "spec", default="host", help="See fdvv device.")

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from contextlib import closing
 from pathlib import Path
-from typing import Any
 
 import click
 
 from fdvv.bench.capture import CaptureGuide, CaptureResult, capture_session
 from fdvv.bench.model import process_recording
-from fdvv.bench.plan import CapturePlan
+from fdvv.bench.settings import CaptureSettings
 from fdvv.cli import ui
 from fdvv.cli.bench.capture_view import COLUMNS, capture_view, cells, progress_row
-from fdvv.cli.options import Paces
+from fdvv.cli.settings import settings_options
 from fdvv.device.bench import open_bench
 from fdvv.model.file import MODEL_SUFFIX, save_model
 from fdvv.recording.file import RECORDING_SUFFIX
@@ -25,25 +24,7 @@ TWIN_BUTTON = "mx-clear"
 @click.argument("recording", type=ui.PATH)
 @ui.option("--button", help=f"Its name; on the twin a shipped one or a TOML file, {TWIN_BUTTON} by default.")
 @ui.option("--device", "spec", default="twin", help="twin (simulated, with its participant) or serial:PORT.")
-@ui.option(
-    "--paces", "paces_mm_s", type=Paces(), default="50,100,150,200", help="Mean speeds of the stroke down."
-)
-@ui.option("--presses", type=click.IntRange(1, 200), default=15, help="Per pace.")
-@ui.option("--probe/--no-probe", default=True, help="Lead the cap slowly down and back first.")
-@ui.option("--shuffle", is_flag=True, help="Ask for the paces mixed instead of one after the other.")
-@ui.option(
-    "--repeats", type=click.IntRange(0, 20), default=3, help="How often a bad press is asked for again."
-)
-@ui.option(
-    "--pace-tolerance", "pace_ratio", type=ui.PART, default=0.35, help="By which a press may miss its pace."
-)
-@ui.option(
-    "--travel",
-    "travel_mm",
-    type=ui.Finite(min=0.5, max=10),
-    help="Of the button, mm; by default from the probe.",
-)
-@ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the twin; order of --shuffle.")
+@settings_options(CaptureSettings)
 @ui.option(
     "--participant",
     type=click.Choice(["steady", "careful", "typical", "clumsy"]),
@@ -58,13 +39,12 @@ def capture(
     recording: Path,
     button: str | None,
     spec: str,
-    seed: int,
+    settings: CaptureSettings,
     participant: str,
     watch: bool,
     player: str | None,
     output: Path | None,
     as_json: bool,
-    **options: Any,
 ) -> None:
     """Record a button: a guided session of presses at several paces.
 
@@ -78,16 +58,14 @@ def capture(
     """
     ui.check_output(recording, RECORDING_SUFFIX)
     ui.check_output(output, MODEL_SUFFIX)
-    shuffled = options.pop("shuffle")
-    plan = CapturePlan(**options, shuffled=shuffled, seed=seed)
     twin = spec == "twin"
-    device = open_bench(spec, button or TWIN_BUTTON, participant, seed, watch)
+    device = open_bench(spec, button or TWIN_BUTTON, participant, settings.seed, watch)
     name = (button and Path(button).name.removesuffix(".toml")) or (
         TWIN_BUTTON if twin else recording.name.removesuffix(RECORDING_SUFFIX)
     )
     with closing(device), capture_view(watch or not twin, as_json, player) as view:
         guide = CaptureGuide(view.cue, view.done, view.notice)
-        result = capture_session(device, recording, name, plan, guide)
+        result = capture_session(device, recording, name, settings, guide)
     warnings: tuple[str, ...] = ()
     if output:
         model = process_recording(result.path)

@@ -10,9 +10,10 @@ import click
 
 from fdvv.bench.html import capture_html
 from fdvv.bench.model import RecordedModel, capture_report, process_recording
+from fdvv.bench.settings import CaptureSettings
 from fdvv.bench.vibration import recorded_vibrations
 from fdvv.cli import ui
-from fdvv.cli.options import Paces
+from fdvv.cli.settings import setting_type
 from fdvv.force_text import ForceTitle
 from fdvv.model.file import MODEL_SUFFIX, save_model
 from fdvv.preprocess.process import Settings
@@ -32,7 +33,7 @@ from fdvv.report.report import write_report
 @ui.option(
     "--paces",
     "paces_mm_s",
-    type=Paces(),
+    type=setting_type(CaptureSettings, "paces_mm_s"),
     help="For presses of a log, which have no pace: each takes the nearest.",
 )
 @ui.option(

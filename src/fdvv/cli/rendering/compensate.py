@@ -13,13 +13,14 @@ from fdvv.cli import ui
 from fdvv.cli.options import (
     exciter_option,
     jnds_option,
+    knowledge_options,
     law_of,
-    method_options,
     opened_exciter,
     opened_jnds,
     sensor_option,
 )
 from fdvv.cli.rendering.session import Pressing, beside, session_options
+from fdvv.cli.settings import settings_options
 from fdvv.compensation.identification.prior_file import check_range
 from fdvv.compensation.identification.rig_file import save_rig as keep
 from fdvv.compensation.method import Tuning
@@ -31,16 +32,24 @@ from fdvv.rendering.evaluation.verdict import headline
 from fdvv.rendering.evaluation.vibration_presses import Playback
 from fdvv.rendering.probe import ProbeResult
 from fdvv.rendering.probe import probe as judge
+from fdvv.rendering.settings import CompensateSettings, ProbeSettings
 
 
 @click.command()
 @click.argument("button")
 @session_options
-@method_options
+@settings_options(CompensateSettings)
+@knowledge_options
 @ui.option("-o", "--output", type=ui.PATH, help="The *.actuation.json to write.")
 @ui.json_option
 def compensate(
-    button: str, pressing: Pressing, save_rig: Path | None, output: Path | None, as_json: bool, **options: Any
+    button: str,
+    pressing: Pressing,
+    settings: CompensateSettings,
+    save_rig: Path | None,
+    output: Path | None,
+    as_json: bool,
+    **files: Path | None,
 ) -> None:
     """Learn the actuation that makes a rig feel like a model.
 
@@ -57,13 +66,13 @@ def compensate(
     """
     ui.check_output(output, ".actuation.json")
     ui.check_output(save_rig, ".rig.json")
-    law = law_of(**options, save_rig=save_rig)
+    law, speeds = law_of(settings, save_rig=save_rig, **files), settings.velocities_mm_s
     model, pressing = open_button(button), pressing.on_recommended_rig()
-    if options["sensor"]:
-        check_range(options["sensor"], model, pressing.velocities_mm_s)
-    session = pressing.session(beside(output, button, "session"))
+    if files["sensor"]:
+        check_range(files["sensor"], model, speeds)
+    session = pressing.session(settings, beside(output, button, "session"))
     with pressing.guided(session, as_json) as (found, view, guide):
-        result = learn(found, model, pressing.velocities_mm_s, law, view.done, session, guide)
+        result = learn(found, model, speeds, law, view.done, session, guide)
     if output:
         save_actuation(result, output)
     if save_rig and result.learned_rig:
@@ -77,13 +86,7 @@ def compensate(
 @click.argument("button")
 @click.argument("actuation", required=False, type=ui.FILE)
 @session_options
-@ui.option("--presses", type=click.IntRange(1, 200), default=10, help="Per velocity.")
-@ui.option(
-    "--vibration-presses",
-    "vibrating",
-    type=click.IntRange(0, 200),
-    help="Per velocity with the model's vibrations, where there is an exciter; by default as many.",
-)
+@settings_options(ProbeSettings)
 @exciter_option
 @sensor_option
 @jnds_option
@@ -102,8 +105,7 @@ def probe(
     button: str,
     actuation: Path | None,
     pressing: Pressing,
-    presses: int,
-    vibrating: int | None,
+    settings: ProbeSettings,
     exciter: Path | None,
     sensor: Path | None,
     jnds_from: Path | None,
@@ -125,21 +127,22 @@ def probe(
     ui.check_output(figure, *ui.FIGURES)
     ui.check_output(report, ".html")
     jnds = opened_jnds(jnds_from)
-    playback = Playback(presses if vibrating is None else vibrating, opened_exciter(exciter))
-    model, pressing = open_button(button), pressing.on_recommended_rig()
-    sheet = check_range(sensor, model, pressing.velocities_mm_s) if sensor else None
+    playback = Playback(settings.vibrating, opened_exciter(exciter))
+    model, pressing, speeds = open_button(button), pressing.on_recommended_rig(), settings.velocities_mm_s
+    sheet = check_range(sensor, model, speeds) if sensor else None
     learned = load_actuation(actuation) if actuation else None
     method = learned.method if learned else "not compensated"
     if learned and learned.model_name != model.name:
         ui.print_warnings([f"{actuation} was learned for {learned.model_name}, not for {model.name}"])
-    session, speeds = pressing.session(beside(actuation, button, "probe-session")), pressing.velocities_mm_s
+    session = pressing.session(settings, beside(actuation, button, "probe-session"))
     with pressing.guided(session, as_json) as (found, view, guide):
         fit_cell(found, sheet.cell if sheet else None)
         surface = learned.surface if learned else uncompensated(found, model, speeds)
         tuning = learned.outcome.tuning if learned else Tuning()
         about = (method, session, guide, tuning, playback if playback.presses else None)
         known = learned.known_rig if learned else None
-        result = judge(found, model, surface, speeds, presses, view.done, *about, known_rig=known, jnds=jnds)
+        pressed = (found, model, surface, speeds, settings.presses, view.done)
+        result = judge(*pressed, *about, known_rig=known, jnds=jnds)
     document = {**result.to_dict(), **_receipt(result)}
     _draw(result, figure, report)
     if as_json:

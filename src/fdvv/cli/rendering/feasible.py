@@ -11,6 +11,7 @@ from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.options import closing
 from fdvv.cli.rendering.session import Pressing, beside, session_options
+from fdvv.cli.settings import settings_options
 from fdvv.compensation.identification.rig_file import load_rig
 from fdvv.force_text import ForceTitle, force_text, force_unit
 from fdvv.model.model import FDVVModel
@@ -18,6 +19,7 @@ from fdvv.rendering.actuation_file import load_actuation
 from fdvv.rendering.feasibility import feasibility, feasible_curves
 from fdvv.rendering.probe import ProbeResult, probe
 from fdvv.rendering.session import Session
+from fdvv.rendering.settings import FeasibleSettings
 
 NO_RIG = (
     "fdvv feasible needs --rig-known FILE.rig.json, what was learned from presses on this rig: "
@@ -31,16 +33,16 @@ NO_RIG = (
     "--rig-known", type=ui.FILE, help="*.rig.json of this rig, as fdvv compensate --save-rig writes it."
 )
 @session_options
+@settings_options(FeasibleSettings)
 @ui.option("--actuation", type=ui.FILE, help="Also press this *.actuation.json and show what was measured.")
-@ui.option("--presses", type=click.IntRange(1, 200), default=5, help="Per velocity, to measure.")
 @ui.option("--figure", type=ui.PATH, help="Draw every curve into this .svg, .png or .pdf.")
 @ui.json_option
 def feasible(
     button: str,
     rig_known: Path | None,
     pressing: Pressing,
+    settings: FeasibleSettings,
     actuation: Path | None,
-    presses: int,
     figure: Path | None,
     as_json: bool,
 ) -> None:
@@ -56,11 +58,11 @@ def feasible(
         return
     model, known = open_button(button), load_rig(rig_known)
     pressing = pressing.on_recommended_rig()
-    session = pressing.session(beside(actuation, button, "feasible"))
-    measured = _measure(session, pressing, model, actuation, presses, as_json) if actuation else None
+    session = pressing.session(settings, beside(actuation, button, "feasible"))
+    measured = _measure(session, pressing, settings, model, actuation, as_json) if actuation else None
     with closing(session.open_device(pressing.device)) as found:
-        settings, info = found.settings(), found.info()
-    report = feasibility(model, known, settings, pressing.velocities_mm_s, measured, info)
+        on_device, info = found.settings(), found.info()
+    report = feasibility(model, known, on_device, settings.velocities_mm_s, measured, info)
     if figure:
         from fdvv.rendering.figures import plot_feasibility
 
@@ -72,13 +74,18 @@ def feasible(
 
 
 def _measure(
-    session: Session, pressing: Pressing, model: FDVVModel, actuation: Path, presses: int, as_json: bool
+    session: Session,
+    pressing: Pressing,
+    settings: FeasibleSettings,
+    model: FDVVModel,
+    actuation: Path,
+    as_json: bool,
 ) -> ProbeResult:
     """Probe a learned table on the device."""
-    learned = load_actuation(actuation)
+    learned, speeds = load_actuation(actuation), settings.velocities_mm_s
     with pressing.guided(session, as_json) as (found, view, guide):
         return probe(
-            *(found, model, learned.surface, pressing.velocities_mm_s, presses, view.done, learned.method),
+            *(found, model, learned.surface, speeds, settings.presses, view.done, learned.method),
             *(session, guide, learned.outcome.tuning),
         )
 

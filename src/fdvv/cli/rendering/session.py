@@ -22,6 +22,7 @@ from fdvv.device.open import pressed_by_person
 from fdvv.force_text import ForceTitle, force_number, force_text, force_unit
 from fdvv.rendering.session import MANIFEST, Session, read_manifest
 from fdvv.rendering.session_run import Guide, PressDone, PressRequest, VelocityProgress
+from fdvv.rendering.settings import PressSettings
 from fdvv.twin.files import FIRST_RIG, shipped_rigs
 
 if TYPE_CHECKING:
@@ -139,15 +140,12 @@ def recommended_for(device: str) -> Path | None:
 
 @dataclass(frozen=True)
 class Pressing:
-    """The device that presses, the speeds, and where the presses are kept."""
+    """The device that presses, and where the presses are kept."""
 
     device: str
     rig: Path | None
     finger: Path | None
-    seed: int
-    velocities_mm_s: tuple[float, ...]
     folder: Path | None
-    pace_ratio: float
     verbose: bool = False
 
     def on_recommended_rig(self) -> Pressing:
@@ -162,12 +160,13 @@ class Pressing:
             return False
         return "rig_toml_sha256" not in read_manifest(self.folder / MANIFEST).device
 
-    def session(self, default: Path) -> Session:
+    def session(self, settings: PressSettings, default: Path) -> Session:
         """Choose where presses are kept; default is the folder for a person's. InputError if it cannot be."""
         folder = self.folder or (default if pressed_by_person(self.device) else None)
         if folder:
             ui.check_folder(folder)
-        return Session(folder, self.seed, self.rig, self.finger, AcceptanceLimits(pace_ratio=self.pace_ratio))
+        limits = AcceptanceLimits(pace_ratio=settings.pace_ratio)
+        return Session(folder, settings.seed, self.rig, self.finger, limits)
 
     @contextmanager
     def guided(self, session: Session, as_json: bool) -> Iterator[tuple[Device, LineView | TableView, Guide]]:
@@ -185,16 +184,10 @@ session_options = packed(
     ui.option("--device", default="twin", help="'twin' is simulated; see fdvv device."),
     ui.option("--rig", type=ui.RIG, help="Of the twin: a TOML file or a name, recommended unless you say."),
     ui.option("--finger", type=ui.FILE, help="TOML file of the twin's finger."),
-    ui.option("--seed", type=ui.COUNT, default=0, help="Repeats the twin."),
-    ui.speeds_option("--velocity", "velocities_mm_s", help="mm/s; repeatable."),
     ui.option(
         "--session", "folder", type=ui.PATH,
         help="Folder that keeps every press; name it again to continue where it stopped. Presses by a person "
              "are always kept, beside the result if no folder is named.",
-    ),
-    ui.option(
-        "--pace-tolerance", "pace_ratio", type=ui.PART, default=0.35,
-        help="Part by which a press may miss its speed and still be used.",
     ),
     ui.verbose_option,
 )  # fmt: skip

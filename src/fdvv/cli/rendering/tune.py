@@ -13,18 +13,18 @@ from fdvv.cli import ui
 from fdvv.cli.cue import show_cue
 from fdvv.cli.options import closing, exciter_option, opened_exciter
 from fdvv.cli.rendering.session import Pressing, beside, session_options
+from fdvv.cli.settings import settings_options
 from fdvv.compensation.method import UNTUNED
 from fdvv.device.open import pressed_by_person
 from fdvv.errors import InputError
 from fdvv.model.file import MODEL_SUFFIX, save_model
 from fdvv.rendering.actuation_file import load_actuation
 from fdvv.rendering.session_run import Guide, PressRequest
+from fdvv.rendering.settings import TuneSettings
 from fdvv.rendering.tune_candidates import candidates_for, simulated_observer
 from fdvv.rendering.tune_vibration import TuneSetup
 from fdvv.rendering.tune_vibration import tune_vibration as ask
-from fdvv.vibration.templates import TemplateGrid
-from fdvv.vibration.tune import Preferred, Question, Rating
-from fdvv.vibration.tune_compare import Comparing
+from fdvv.vibration.tune import Preferred, Question
 
 RATE = "how close to the real button, 1 (not at all) to 7 (the same); r presses again"
 
@@ -86,24 +86,7 @@ def _prompt(text: str, choices: list[str]) -> str:
     default=True,
     help="Which of two is closer to the real button, or each by itself, 1 to 7.",
 )
-@ui.option("--comparisons", type=click.IntRange(1, 1000), help="Per velocity at most.  [default: 3 each]")
-@ui.option("--repeats", type=click.IntRange(2, 20), default=3, help="Of each rating.")
-@ui.option(
-    "--frequency-ratio",
-    "frequency_ratios",
-    type=ui.Finite(min=0.1, max=10),
-    multiple=True,
-    default=(1.0,),
-    help="Of the measured frequency; repeatable.",
-)
-@ui.option(
-    "--gain-ratio",
-    "gain_ratios",
-    type=ui.Finite(min=0.05, max=20),
-    multiple=True,
-    default=(1.0, 2.0),
-    help="Of the measured strength; repeatable.",
-)
+@settings_options(TuneSettings, leave_out=("asking",))
 @exciter_option
 @ui.option(
     "--simulated-observer",
@@ -117,14 +100,12 @@ def tune(
     button: str,
     actuation: Path | None,
     pressing: Pressing,
+    settings: TuneSettings,
     compare: bool,
-    comparisons: int | None,
-    repeats: int,
     exciter: Path | None,
     simulated: bool,
     output: Path | None,
     as_json: bool,
-    **ratios: Any,
 ) -> None:
     """Tune the vibration of a button's press with a person.
 
@@ -138,7 +119,7 @@ def tune(
     _check_observer(pressing.device, simulated)
     model, known = open_button(button), opened_exciter(exciter)
     learned = load_actuation(actuation) if actuation else None
-    grid = TemplateGrid(**ratios)
+    grid, settings = settings.grid(), settings.replace(asking="compare" if compare else "rate")
     setup = TuneSetup(
         learned.surface if learned else None,
         known,
@@ -147,15 +128,17 @@ def tune(
         learned.outcome.tuning if learned else UNTUNED,
     )
     pressing = pressing.on_recommended_rig()
-    session, speeds = pressing.session(beside(output, button, "tune-session")), pressing.velocities_mm_s
+    session, speeds = (
+        pressing.session(settings, beside(output, button, "tune-session")),
+        settings.velocities_mm_s,
+    )
     view = TuneView(not simulated, as_json)
     answer = view.answer
     if simulated:
         candidates = candidates_for(model, sorted(speeds), grid, known)
-        answer = simulated_observer(candidates, pressing.seed).answer
-    method = Comparing(comparisons, seed=pressing.seed) if compare else Rating(repeats, pressing.seed)
+        answer = simulated_observer(candidates, settings.seed).answer
     with closing(session.open_device(pressing.device)) as found:
-        result = ask(found, model, speeds, method, answer, setup, session, view.guide)
+        result = ask(found, model, speeds, settings.question(), answer, setup, session, view.guide)
     if output:
         save_model(result.model, output)
     _print({**result.to_dict(), "receipt": result.receipt.to_dict()}, as_json)
