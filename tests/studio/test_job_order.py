@@ -14,6 +14,7 @@ from fdvv.library.catalog import Catalog
 from fdvv.model.file import model_from_json
 from fdvv.model.jnd_file import FILE_NAME as JNDS_FILE
 from fdvv.model.jnd_file import save_jnds
+from fdvv.studio.jobs.check import lock_name, simulates
 from fdvv.studio.jobs.file import RESULT_FOLDERS, result_file, result_names, rig_name
 from fdvv.studio.jobs.inputs import inputs_of
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order
@@ -40,6 +41,7 @@ WRONG: list[tuple[Order, str]] = [
     (learning(device="replay:/etc/passwd"), "there is no"),
     (learning(rig="../default"), "rig"),
     (learning(known_rig="../../x"), "none of this name"),
+    (learning(known_rig="x"), "none of this name"),
     (learning(velocities_mm_s=()), "velocities"),
     (learning(velocities_mm_s=(50.0, 50.0)), "velocities"),
     (learning(velocities_mm_s=(float("nan"),)), "velocities"),
@@ -47,7 +49,7 @@ WRONG: list[tuple[Order, str]] = [
     (learning(rounds=0), "rounds"),
     (learning(rounds=21), "rounds"),
     (learning(pace_ratio=0.0), "pace ratio"),
-    (learning(method="paper", known_rig="x"), "none of this name"),
+    (learning(method="paper", known_rig="x"), "belongs to the method rig-aware"),
     (tuning(actuation="../x"), "none of this name"),
     (tuning(gain_ratios=()), "gain_ratios"),
     (tuning(asking="rate", repeats=1), "repeats"),
@@ -87,11 +89,14 @@ def test_an_order_takes_copies_of_all_that_it_works_on(tmp_path: Path) -> None:
     found = checked(learning(rig="paper", known_rig="twin-paper"), tmp_path)
     assert set(found.files) == {"button.fdvv.json", "rig.toml", "known.rig.json"}
     assert model_from_json(found.files["button.fdvv.json"]).name == "mx-clear"
-    assert (found.device, found.simulated, found.title) == ("twin", True, "Compensate mx-clear on twin")
+    assert found.title == "Compensate mx-clear on twin"
 
 
-def test_a_bench_is_another_device_than_the_rig_of_the_same_name(tmp_path: Path) -> None:
-    assert checked(CaptureOrder("x"), tmp_path).device != checked(learning(), tmp_path).device
+def test_a_bench_is_another_device_than_the_rig_of_the_same_name() -> None:
+    bench, rig = CaptureOrder("x"), learning()
+    assert (lock_name(bench), lock_name(rig)) == ("the capture bench twin", "twin")
+    assert simulates(bench)
+    assert simulates(rig)
 
 
 def test_what_is_kept_is_found_by_name_among_what_is_there(tmp_path: Path) -> None:

@@ -103,7 +103,7 @@ def test_work_that_is_stopped_goes_on_where_it_stopped(jobs: Jobs) -> None:
     assert (row.state, row.resumable) == ("cancelled", True)
     made = row.done
     assert 0 < made < PRESSES
-    jobs.resume("0001")
+    jobs.resume("0001", DEVICES)
     row = follower.over()
     assert (row.state, follower.learned_from) == ("done", PRESSES)
     used = [event.done for event in follower.events if pressed(event) and not event.skipped]
@@ -169,7 +169,7 @@ def test_a_process_that_is_killed_loses_nothing_that_was_reported(jobs: Jobs) ->
     assert (row.state, row.resumable) == ("failed", True)
     assert "status -9" in row.line
     made = row.done
-    jobs.resume("0001")
+    jobs.resume("0001", DEVICES)
     row = follower.over()
     assert (row.state, follower.learned_from) == ("done", PRESSES)
     assert made > 0
@@ -208,7 +208,7 @@ def test_work_of_a_studio_that_was_killed_is_found_and_gone_on_with(tmp_path: Pa
     jobs = studio.part(Jobs)
     row = jobs.job("0001").row
     assert (row.state, row.line, row.resumable) == ("cancelled", BROKEN_OFF, True)
-    follower = Follower(jobs, jobs.resume("0001").job)
+    follower = Follower(jobs, jobs.resume("0001", DEVICES).job)
     assert (follower.over().state, follower.learned_from) == ("done", PRESSES)
     studio.close()
 

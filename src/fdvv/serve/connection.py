@@ -32,7 +32,7 @@ from fdvv.serve import messages as m
 from fdvv.serve.rig import RigClient, RigOwnership
 from fdvv.serve.runs import Runs
 from fdvv.studio.contract import error_line
-from fdvv.studio.jobs.inputs import RIGS
+from fdvv.studio.jobs.check import RIGS
 
 HELLO_s = 5.0
 """Within so long a client says hello."""

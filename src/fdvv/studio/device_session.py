@@ -29,7 +29,7 @@ from fdvv.studio.contract import Message, Tell
 from fdvv.studio.device_findings import CellCheck, cell_check, press_seen
 from fdvv.studio.device_thread import DeviceThread, KeyChange, mode_of
 from fdvv.studio.devices import DeviceLocks, require_listed
-from fdvv.studio.jobs.inputs import RIGS, check_speeds
+from fdvv.studio.jobs.check import RIGS, check_speeds
 from fdvv.studio.studio import Studio
 from fdvv.twin.files import FIRST_RIG, current_rig_name, load_rig
 

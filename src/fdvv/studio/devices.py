@@ -48,11 +48,23 @@ class DeviceLocks:
             return self._holders.get(device, "")
 
 
+LOCAL = ("twin", "host", "emulated")
+"""Devices that need no more than this machine."""
+
+
+def may_be_listed(device: str) -> bool:
+    """Return whether a device is of a kind that the studio lists, be it there now or not.
+
+    None of these runs what a file says: the name of one can stand in a file without being trusted.
+    """
+    kind, _, where = device.partition(":")
+    return device in LOCAL or (kind == "serial" and bool(where))
+
+
 def available_devices() -> tuple[tuple[tuple[str, str], ...], str]:
     """Return every available device with its description, and why serial ports cannot be listed, if so."""
     emulator = BUILT_ELF.is_file() and "emulated" in installed("devices")
-    names = ("twin", "host", *(["emulated"] if emulator else []))
-    found = tuple((name, KINDS[name]) for name in names)
+    found = tuple((name, KINDS[name]) for name in LOCAL if emulator or name != "emulated")
     try:
         return (*found, *((f"serial:{path}", about) for path, about in serial_ports())), ""
     except BuildError as error:

@@ -9,9 +9,9 @@ from fdvv.errors import FdvvError
 from fdvv.model.file import builtin_names
 from fdvv.studio.contract import ChannelKind, Empty, Message, Tell, call
 from fdvv.studio.devices import DeviceLocks, available_devices, device_names
+from fdvv.studio.jobs.check import BENCH, RIGS
 from fdvv.studio.jobs.events import JobEvent
 from fdvv.studio.jobs.file import JobRow, result_names
-from fdvv.studio.jobs.inputs import BENCH, RIGS
 from fdvv.studio.jobs.jobs import Jobs
 from fdvv.studio.jobs.orders import Order
 from fdvv.studio.studio import Studio
@@ -196,7 +196,7 @@ def start(jobs: Jobs, ask: StartJob) -> JobRow:
 
 @call("jobs.resume")
 def resume(jobs: Jobs, ask: JobAsk) -> JobRow:
-    return jobs.resume(ask.job)
+    return jobs.resume(ask.job, device_names())
 
 
 @call("jobs.cancel")

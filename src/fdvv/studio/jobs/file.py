@@ -6,7 +6,8 @@ inputs are copies, so that an edit of a button does not change a job in progress
 
 from __future__ import annotations
 
-import re
+import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import chain, count
@@ -18,19 +19,21 @@ import msgspec
 from fdvv.device.open import pressed_by_person
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_records
-from fdvv.io.documents import Kind, pretty, read_document
-from fdvv.io.files import read_limited, write_atomic
+from fdvv.io.documents import Kind, pretty, read_record
+from fdvv.io.files import write_atomic
 from fdvv.model.jnd_file import FILE_NAME as JNDS_NAME
 from fdvv.studio.contract import Message
+from fdvv.studio.jobs.check import check_count, check_order
 from fdvv.studio.jobs.events import JobEvent
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, KindName, Order
 from fdvv.twin.files import current_rig_name
 
-JOB, EVENTS = "job.json", "events.jsonl"
+JOBS, JOB, EVENTS = "jobs", "job.json", "events.jsonl"
 REMEDY = "put the job's folder elsewhere, or begin the work anew"
 KIND = Kind("fdvv-job", 1, "a job", REMEDY)
 JOURNAL = JournalKind({"event": Any}, REMEDY)
-LARGEST_bytes = 1_000_000
+LARGEST_bytes, LARGEST_EVENTS_bytes = 1_000_000, 500_000_000
+COUNTED = ("run", "done", "total", "events")
 
 
 class JobRecord(Message):
@@ -87,11 +90,33 @@ class JobFolder:
     def save(self, record: JobRecord) -> None:
         write_atomic(self.path / JOB, pretty(msgspec.to_builtins(record)) + "\n")
 
+    def read(self) -> JobRecord:
+        """Read the job, unchecked. InputError on a damaged one, and on one whose folder holds a link."""
+        require_own_files(self.path)
+        try:
+            return read_record(self.path / JOB, KIND, JobRecord, LARGEST_bytes)
+        except InputError as error:
+            raise InputError(error.source, self._place(error), error.reason, error.remedy) from error
+
+    def check(self, record: JobRecord) -> None:
+        """Refuse what could not have been ordered: anyone may have written the file. InputError."""
+        try:
+            check_order(record.order)
+            for name in COUNTED:
+                check_count(name, getattr(record, name))
+        except InputError as error:
+            remedy = f"begin the work anew, and {error.remedy}"
+            raise InputError(self.path / JOB, self._place(error), error.reason, remedy) from error
+
     def load(self) -> JobRecord:
-        path = self.path / JOB
-        text = read_limited(path, LARGEST_bytes, REMEDY)
-        decode = msgspec.json.Decoder(JobRecord).decode
-        return read_document(text, path, KIND, decode, lambda _: None)
+        """Read the job and check it. InputError."""
+        record = self.read()
+        self.check(record)
+        return record
+
+    def _place(self, error: InputError) -> str:
+        """Name the file in the project beside the place in it: pages get no paths."""
+        return f"{JOBS}/{self.path.name}/{JOB}, {error.place}"
 
     def open_journal(self) -> Journal:
         """Open the events to append to them; an incomplete last record is cut off. InputError, OSError."""
@@ -104,11 +129,46 @@ class JobFolder:
     def events(self) -> list[JobEvent]:
         """Read all events; none if there is no file. InputError on a damaged one."""
         path = self.path / EVENTS
+        if path.is_file() and path.stat().st_size > LARGEST_EVENTS_bytes:
+            reason = f"larger than {LARGEST_EVENTS_bytes // 1_000_000} MB"
+            raise InputError(path, f"{self.path.name}/{EVENTS}", reason, REMEDY)
         records = read_records(path, JOURNAL) if path.is_file() else ()
         try:
             return [msgspec.convert(record["event"], JobEvent) for record, _ in records]
         except msgspec.ValidationError as error:
             raise InputError(path, "event", str(error), REMEDY) from error
+
+
+def require_own_files(folder: Path) -> None:
+    """Refuse a job's folder that is, or holds, a link or a pipe: work would read and write elsewhere.
+
+    InputError, OSError.
+    """
+    project, inside = folder.parent.parent, [folder]
+    _require_no_links(project, (folder.parent, folder))
+    while inside:
+        for entry in list(os.scandir(inside.pop())):
+            if entry.is_dir(follow_symlinks=False):
+                inside.append(Path(entry.path))
+            elif not entry.is_file(follow_symlinks=False):
+                raise _link_error(project, Path(entry.path))
+
+
+def require_own_folders(project: Path) -> None:
+    """Refuse links where a project keeps jobs, and what they make. InputError."""
+    results = (place.folder for place in RESULT_FOLDERS.values())
+    _require_no_links(project, [project / name for name in (JOBS, *results)])
+
+
+def _require_no_links(project: Path, folders: Iterable[Path]) -> None:
+    for folder in folders:
+        if folder.is_symlink():
+            raise _link_error(project, folder)
+
+
+def _link_error(project: Path, path: Path) -> InputError:
+    place, remedy = path.relative_to(project), "put what it stands for in its place, or delete it"
+    return InputError(path, place.as_posix(), "is a link, or no file", remedy)
 
 
 def utc_now() -> str:
@@ -157,10 +217,6 @@ class JobRow(Message):
     left_s: float | None = None
 
 
-NAME = re.compile(r"[^\W_][\w .+()-]{0,79}")
-"""Of what comes out: it becomes part of a file's name."""
-
-
 @dataclass(frozen=True)
 class ResultFolder:
     """A folder of the project and how its files end; fresh: a name that is there already is not taken."""
@@ -182,14 +238,6 @@ RESULT_FOLDERS = {
 }
 
 
-def check_name(name: str) -> str:
-    """Return a name that is valid in a file's name; InputError on any other."""
-    if not NAME.fullmatch(name) or name.endswith((".", " ")):
-        reason = f"cannot be {name[:80]!r}"
-        raise InputError("name", "name", reason, "use letters, digits, spaces and . + - ( ), 80 at most")
-    return name
-
-
 def result_names(project: Path, kind: str) -> tuple[str, ...]:
     place = RESULT_FOLDERS[kind]
     found = (project / place.folder).glob(f"*{place.suffix}")
@@ -204,11 +252,13 @@ def result_file(project: Path, kind: str, name: str) -> Path:
 
 
 def publish(project: Path, folder: JobFolder, order: Order) -> tuple[JobResult, ...]:
-    """Copy what a job made into its places in the project. OSError.
+    """Copy what a job made into its places in the project. InputError where a link leads elsewhere, OSError.
 
     A table, what was measured of it and what a rig has taught replace those of the same name; buttons and
     recordings never do.
     """
+    require_own_folders(project)
+    require_own_files(folder.path)
     files = {kind: folder.result(kind) for kind in RESULT_FOLDERS} | {"recording": folder.recording}
     names = dict.fromkeys(RESULT_FOLDERS, order.name) | {"rig": rig_name(order)}
     made = {kind: file.read_bytes() for kind, file in files.items() if file.exists()}

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
+import re
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -16,12 +16,13 @@ from fdvv.errors import FdvvError, InputError
 from fdvv.eventlog import Journal
 from fdvv.io.files import write_atomic
 from fdvv.studio.contract import Watchers, error_line, message_of
-from fdvv.studio.devices import DeviceLocks
+from fdvv.studio.devices import DeviceLocks, require_listed
+from fdvv.studio.jobs.check import lock_name, simulates
 from fdvv.studio.jobs.events import JobEnded, JobEvent
-from fdvv.studio.jobs.file import JOB, JobFolder, JobRecord, JobRow, publish, utc_now
-from fdvv.studio.jobs.inputs import BENCH, Inputs, inputs_of
-from fdvv.studio.jobs.orders import CaptureOrder, Order, kind_of
-from fdvv.studio.jobs.process import JobStart
+from fdvv.studio.jobs.file import JOBS, JobFolder, JobRecord, JobRow, publish, require_own_folders, utc_now
+from fdvv.studio.jobs.inputs import Inputs, inputs_of
+from fdvv.studio.jobs.orders import Order, kind_of
+from fdvv.studio.jobs.process import CONNECT, JobStart
 from fdvv.studio.jobs.progress import JobProgress
 from fdvv.studio.jobs.time_left import left_s
 from fdvv.studio.studio import Studio
@@ -36,13 +37,14 @@ BROKEN_OFF = "the studio ended meanwhile; what was made is kept"
 class LiveJob:
     """A job of this studio. Any thread may ask; all changes are made under the lock.
 
-    name : of the job. folder, record : of it.
+    name : of the job. folder, record : of it. refusal : why it can never run; None of what was ordered.
     """
 
     def __init__(self, name: str, folder: JobFolder, record: JobRecord) -> None:
         self.name, self.folder, self.record = name, folder, record
         self.lock = threading.RLock()
         self.start: JobStart | None = None
+        self.refusal: InputError | None = None
         self.progress = JobProgress(record.state, record.line, record.done, record.total)
         self._events: list[JobEvent] | None = None
         self._began_s = time.monotonic()
@@ -67,12 +69,13 @@ class LiveJob:
                 job=self.name,
                 kind=kind_of(record.order),
                 device=record.order.device,
+                simulated=simulates(record.order),
                 state=progress.state if record.state in UNFINISHED else record.state,
                 now=progress.now,
                 done=progress.done,
                 total=progress.total,
                 events=record.events if self._events is None else len(self._events),
-                resumable=record.state in ("cancelled", "failed"),
+                resumable=record.state in ("cancelled", "failed") and self.refusal is None,
                 button=getattr(record.order, "button", ""),
                 stage=progress.stage,
                 left_s=self._left_s(),
@@ -82,8 +85,16 @@ class LiveJob:
         if self.record.state not in UNFINISHED:
             return None
         progress, elapsed_s = self.progress, time.monotonic() - self._began_s
-        ratio = min(1.0, progress.done / progress.total) if progress.total else 0.0
+        # events of the disk may count anything
+        done = max(0, min(progress.done, progress.total))
+        ratio = done / progress.total if progress.total else 0.0
         return round(left_s(self.record.order, progress.stage, ratio, elapsed_s), 1)
+
+    def refuse(self, error: InputError) -> None:
+        """Show why a job can never run; on the disk it stays as it is."""
+        self.refusal = error
+        if self.record.state != "done":
+            self.record = msgspec.structs.replace(self.record, state="failed", line=error_line(error))
 
     def begin(self) -> None:
         """Open the journal to append to it. InputError if another process is at work on the job, OSError."""
@@ -130,7 +141,7 @@ class LiveJob:
         return end
 
 
-JOBS, MOST_JOBS = "jobs", 10_000
+MOST_JOBS, NUMBER = 10_000, re.compile(r"[0-9]{4,9}")
 ANSWERS = ("first", "second", "neither", "again", *map(str, range(1, 8)))
 
 
@@ -146,14 +157,24 @@ class Jobs:
         self._locks = studio.part(DeviceLocks)
         self._lock = threading.RLock()
         self.watchers = Watchers[JobRow]()
-        self._jobs = {job.name: job for job in _jobs_on_disk(self._folder)}
+        self._jobs: dict[str, LiveJob] = {}
+        self._damaged: dict[str, str] = {}
+        for path in _folders(self._folder)[-MOST_JOBS:]:
+            # one that is damaged stays on the disk, and is no reason to have none at all
+            try:
+                self._jobs[path.name] = _job_on_disk(path)
+            except (FdvvError, OSError) as error:
+                self._damaged[path.name] = error_line(error)
 
     def rows(self) -> tuple[JobRow, ...]:
         with self._lock:
             return tuple(job.row for job in reversed(self._jobs.values()))
 
     def job(self, name: str) -> LiveJob:
+        """Find a job by its name. InputError where there is none, FdvvError that says what is damaged."""
         with self._lock:
+            if name in self._damaged:
+                raise FdvvError(self._damaged[name])
             if name not in self._jobs:
                 raise InputError("job", "job", f"there is no job {name[:20]!r}", "choose one of the list")
             return self._jobs[name]
@@ -161,23 +182,28 @@ class Jobs:
     def start(self, order: Order, devices: tuple[str, ...]) -> JobRow:
         """Begin a job. devices : that there are. InputError on an order that cannot be done; OSError."""
         inputs = inputs_of(order, self._studio.catalog, self._studio.project, devices)
+        require_own_folders(self._studio.project)
         with self._lock:
-            names = [path.name for path in self._folder.iterdir()] if self._folder.is_dir() else []
-            name = f"{max((int(n) for n in names if n.isdecimal()), default=0) + 1:04d}"
-            with self._locks.acquired(inputs.device, f"job {int(name)}, {inputs.title}"):
+            name = f"{max((int(path.name) for path in _folders(self._folder)), default=0) + 1:04d}"
+            with self._locks.acquired(lock_name(order), f"job {int(name)}, {inputs.title}"):
                 job = self._jobs[name] = self._made(name, order, inputs)
-        self._run(job, inputs.device)
+        self._run(job)
         return job.row
 
-    def resume(self, name: str) -> JobRow:
-        """Resume a job that was stopped or failed. InputError if it cannot, OSError."""
+    def resume(self, name: str, devices: tuple[str, ...]) -> JobRow:
+        """Resume a job that was stopped or failed, checked as an order. devices : that there are.
+
+        InputError if it cannot, OSError.
+        """
         job = self.job(name)
+        require_own_folders(self._studio.project)
         with self._lock:
             if not job.row.resumable:
-                raise InputError("job", "job", f"is {job.row.state}", "begin another one")
-            device = _device_of(job.record)
-            self._locks.acquire(device, f"job {int(name)}, {job.record.title}")
-        self._run(job, device)
+                raise job.refusal or InputError("job", "job", f"is {job.row.state}", "begin another one")
+            job.record = job.folder.load()
+            require_listed("device", job.record.order.device, devices, CONNECT)
+            self._locks.acquire(lock_name(job.record.order), f"job {int(name)}, {job.record.title}")
+        self._run(job)
         return job.row
 
     def cancel(self, name: str) -> JobRow:
@@ -217,12 +243,13 @@ class Jobs:
         folder.path.mkdir(parents=True)
         for file, content in inputs.files.items():
             write_atomic(folder.path / file, content)
-        record = JobRecord("fdvv-job", 1, order, inputs.title, inputs.simulated, utc_now())
+        record = JobRecord("fdvv-job", 1, order, inputs.title, simulates(order), utc_now())
         folder.save(record)
         return LiveJob(name, folder, record)
 
-    def _run(self, job: LiveJob, device: str) -> None:
-        """Start a process for a job; the device stays locked until the process has ended."""
+    def _run(self, job: LiveJob) -> None:
+        """Start a process for a job; its device stays locked until the process has ended."""
+        device = lock_name(job.record.order)
         try:
             with job.lock:
                 job.begin()
@@ -260,30 +287,22 @@ class Jobs:
         self.watchers.tell(job.row)
 
 
-def _jobs_on_disk(folder: Path) -> list[LiveJob]:
-    """Find the jobs of a project; one that was under way when its studio ended is over for now."""
-    if not folder.is_dir():
-        return []
-    found = []
-    for path in sorted(folder.iterdir())[-MOST_JOBS:]:
-        if path.name.isdecimal() and (path / JOB).is_file():
-            # one that is damaged stays on the disk, and is no reason to have none at all
-            with contextlib.suppress(FdvvError):
-                found.append(_job_on_disk(path))
-    return found
+def _folders(folder: Path) -> list[Path]:
+    """List the folders of jobs, the oldest first; none where the whole is a link."""
+    paths = folder.iterdir() if folder.is_dir() and not folder.is_symlink() else ()
+    return sorted(path for path in paths if NUMBER.fullmatch(path.name))
 
 
 def _job_on_disk(path: Path) -> LiveJob:
+    """Open a job; one that was under way when its studio ended is over for now. InputError, OSError."""
     folder = JobFolder(path)
-    job = LiveJob(path.name, folder, folder.load())
+    job = LiveJob(path.name, folder, folder.read())
+    try:
+        folder.check(job.record)
+    except InputError as error:
+        job.refuse(error)
     if job.record.state in UNFINISHED:
         for event in job.events:
             job.progress = job.progress.after(event)
         job.settle(state="cancelled", line=BROKEN_OFF, ended=utc_now())
     return job
-
-
-def _device_of(record: JobRecord) -> str:
-    """Name the device of a job as the device locks name it."""
-    bench = isinstance(record.order, CaptureOrder) and record.simulated
-    return BENCH + record.order.device if bench else record.order.device

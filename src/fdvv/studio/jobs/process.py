@@ -24,12 +24,14 @@ import msgspec
 
 from fdvv.errors import DeviceError, FdvvError
 from fdvv.studio.contract import error_line
+from fdvv.studio.devices import device_names, require_listed
 from fdvv.studio.jobs.events import JobEnded, JobEvent
 from fdvv.studio.jobs.file import JobFolder
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, ProbeOrder, TuneOrder
 from fdvv.studio.jobs.work import Work
 
 STOPPED = "stopped; what was made is kept"
+CONNECT = "connect it and resume, or begin the work anew"
 PATIENCE_s = 5.0
 """So long may letting go take before the process ends as it is; the device's own watch ends its force."""
 
@@ -80,6 +82,7 @@ WORK = {
 
 def work_on(work: Work) -> None:
     order = work.folder.load().order
+    require_listed("device", order.device, device_names(), CONNECT)
     resolve_name(WORK[type(order)])(work, order)
 
 
