@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from fdvv.rendering.settings import CompensateSettings, TuneSettings
 from fdvv.studio.jobs.events import JobEvent, PressEvent
 from fdvv.studio.jobs.file import JobRow
 from fdvv.studio.jobs.jobs import Jobs
@@ -17,31 +18,22 @@ PRESSES = 60
 """Of long_learning."""
 
 
-def learning(**changed: Any) -> CompensateOrder:
+def learning(settings: dict[str, Any] | None = None, **changed: Any) -> CompensateOrder:
     """A short job: one speed, few presses."""
-    about: dict[str, Any] = {
-        "button": "builtin:mx-clear",
-        "name": "clear",
-        "velocities_mm_s": (100.0,),
-        "rounds": 1,
-        "probe_presses": 1,
-    }
+    short = CompensateSettings(**{"velocities_mm_s": (100.0,), "rounds": 1, **(settings or {})})
+    about = {"button": "builtin:mx-clear", "name": "clear", "settings": short, "probe_presses": 1}
     return CompensateOrder(**{**about, **changed})
 
 
 def long_learning(**changed: Any) -> CompensateOrder:
     """A job that takes many presses, so that it can be stopped on its way."""
-    return learning(method="paper", rounds=2, presses=PRESSES // 2, probe_presses=0, **changed)
+    return learning({"method": "paper", "rounds": 2, "presses": PRESSES // 2}, **changed)
 
 
-def tuning(**changed: Any) -> TuneOrder:
+def tuning(settings: dict[str, Any] | None = None, **changed: Any) -> TuneOrder:
     """A short tuning."""
-    about: dict[str, Any] = {
-        "button": "builtin:mx-clear",
-        "name": "clear tuned",
-        "velocities_mm_s": (100.0,),
-        "comparisons": 2,
-    }
+    short = TuneSettings(**{"velocities_mm_s": (100.0,), "comparisons": 2, **(settings or {})})
+    about = {"button": "builtin:mx-clear", "name": "clear tuned", "settings": short}
     return TuneOrder(**{**about, **changed})
 
 

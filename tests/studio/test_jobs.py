@@ -13,6 +13,7 @@ from typing import TypeGuard
 
 import pytest
 
+from fdvv.bench.settings import CaptureSettings
 from fdvv.errors import InputError
 from fdvv.model.file import load_model
 from fdvv.rendering.actuation_file import load_actuation
@@ -215,7 +216,7 @@ def test_work_of_a_studio_that_was_killed_is_found_and_gone_on_with(tmp_path: Pa
 
 @pytest.mark.slow
 def test_a_capture_becomes_a_button_of_the_persons_own(studio: Studio, jobs: Jobs) -> None:
-    order = CaptureOrder("my clear", paces_mm_s=(50.0, 100.0), presses=3)
+    order = CaptureOrder("my clear", settings=CaptureSettings(paces_mm_s=(50.0, 100.0), presses=3))
     row = Follower(jobs, jobs.start(order, DEVICES).job).over()
     assert row.state == "done", row.line
     model = studio.catalog.model("own:my clear")

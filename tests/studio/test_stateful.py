@@ -60,9 +60,9 @@ PROBE = {
     "button": "builtin:mx-clear",
     "name": "p",
     "device": "host",
-    "velocities_mm_s": [100.0],
+    "settings": {"velocities_mm_s": [100.0], "presses": 1},
 }
-TUNE = {**PROBE, "type": "tune", "device": "twin", "observer": "person"}
+TUNE = {**PROBE, "type": "tune", "device": "twin", "observer": "person", "settings": {}}
 PRESS = "displacement_mm,force_cN\n" + "".join(f"{i / 50},{min(i, 40) + i / 5}\n" for i in range(200))
 CREATED: dict[str, tuple[dict[str, object], ...]] = {
     "optimize.create": (
@@ -72,7 +72,7 @@ CREATED: dict[str, tuple[dict[str, object], ...]] = {
             for engine in ("preference", "preference-line")
         ),
     ),
-    "jobs.start": ({"order": {**PROBE, "presses": 1}}, {"order": TUNE}),
+    "jobs.start": ({"order": PROBE}, {"order": TUNE}),
     "device.connect": ({"device": "host"},),
     "press.trace": (
         {"name": "t", "text": json.dumps({"t_s": [0, 1, 2, 3], "displacement_mm": [0, 1, 2, 3]})},

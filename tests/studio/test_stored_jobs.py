@@ -13,6 +13,7 @@ import pytest
 
 from fdvv.errors import FdvvError, InputError
 from fdvv.model.file import load_builtin, save_model
+from fdvv.rendering.settings import ProbeSettings
 from fdvv.studio.contract import error_line
 from fdvv.studio.jobs.events import QuestionAnswered
 from fdvv.studio.jobs.file import RESULT_FOLDERS, JobFolder, JobRecord, publish, utc_now
@@ -24,7 +25,7 @@ from fdvv.studio.studio import Studio
 from tests.studio.jobs import DEVICES, learning, tuning
 
 Mutate = Callable[[dict[str, Any]], None]
-ORDER = ProbeOrder("builtin:mx-clear", "clear", velocities_mm_s=(100.0,), presses=1)
+ORDER = ProbeOrder("builtin:mx-clear", "clear", settings=ProbeSettings(velocities_mm_s=(100.0,), presses=1))
 RIG_FILE = "from pathlib import Path\nPath(__file__).with_name('it ran').touch()\n"
 
 
@@ -48,7 +49,7 @@ def store(project: Path, order: Order, **record: Any) -> JobFolder:
     folder = JobFolder(project / "jobs" / "0001")
     folder.path.mkdir(parents=True)
     save_model(load_builtin("mx-clear"), folder.button)
-    stored = JobRecord("fdvv-job", 1, order, "a job", True, utc_now(), state="cancelled", run=1)
+    stored = JobRecord("fdvv-job", 2, order, "a job", True, utc_now(), state="cancelled", run=1)
     folder.save(msgspec.structs.replace(stored, **record))
     return folder
 
@@ -90,6 +91,10 @@ def of_order(**changed: Any) -> Mutate:
     return lambda content: content["order"].update(changed)
 
 
+def of_settings(**changed: Any) -> Mutate:
+    return lambda content: content["order"]["settings"].update(changed)
+
+
 def of_record(**changed: Any) -> Mutate:
     return lambda content: content.update(changed)
 
@@ -113,15 +118,17 @@ HOSTILE: list[tuple[Mutate, str]] = [
     (of_order(button="b" * 100_000), "none of this name"),
     (of_order(actuation="../measured/x"), "none of this name"),
     (of_order(rig="../../secret"), "there is no '../../secret'"),
-    (of_order(seed=10**40), "seed: cannot be 10000000000000000000;"),
-    (of_order(seed=-1), "seed: cannot be -1"),
-    (of_order(seed=True), "$.order.seed"),
-    (of_order(presses=10**9), "presses: cannot be"),
-    (of_order(presses="1"), "$.order.presses"),
-    (of_order(velocities_mm_s=[100.0] * 50_000), "velocities: cannot be"),
-    (of_order(velocities_mm_s=[1e300]), "velocities: cannot be"),
-    (of_order(velocities_mm_s=100.0), "$.order.velocities_mm_s"),
-    (of_order(pace_ratio=-1.0), "pace ratio: cannot be"),
+    (of_settings(seed=10**40), "$.order.settings"),
+    (of_settings(seed=-1), "$.order.settings.seed"),
+    (of_settings(seed=True), "$.order.settings.seed"),
+    (of_settings(presses=10**9), "$.order.settings.presses"),
+    (of_settings(presses="1"), "$.order.settings.presses"),
+    (of_settings(velocities_mm_s=[100.0] * 50_000), "$.order.settings.velocities_mm_s"),
+    (of_settings(velocities_mm_s=[50.0, 50.0]), "velocities_mm_s must differ"),
+    (of_settings(velocities_mm_s=[1e300]), "$.order.settings.velocities_mm_s"),
+    (of_settings(velocities_mm_s=100.0), "$.order.settings.velocities_mm_s"),
+    (of_settings(pace_ratio=-1.0), "$.order.settings.pace_ratio"),
+    (of_order(settings="all"), "$.order.settings"),
     (of_order(type="shell"), "$.order.type"),
     (of_order(run="rm"), "$.order"),
     (of_record(order="rig:rig.py:X"), "$.order"),
@@ -182,12 +189,12 @@ def test_a_job_that_is_refused_is_listed_with_the_reason_and_left_as_it_is(state
 
 
 def test_a_job_that_is_done_stays_so(project: Path) -> None:
-    mutate(project, of_order(presses=500))
+    mutate(project, of_order(name="a/b"))
     mutate(project, of_record(state="done"))
     jobs = Studio(project).part(Jobs)
     (row,) = jobs.rows()
     assert (row.state, row.line, row.resumable) == ("done", "", False)
-    with pytest.raises(InputError, match="presses: cannot be 500"):
+    with pytest.raises(InputError, match="name: cannot be"):
         jobs.resume("0001", DEVICES)
 
 

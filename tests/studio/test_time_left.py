@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from fdvv.rendering.settings import CompensateSettings
 from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order, ProbeOrder, TuneOrder
 from fdvv.studio.jobs.time_left import expected, left_s
 
@@ -33,7 +34,7 @@ def test_a_machine_that_is_slower_takes_longer_for_the_rest_too() -> None:
     ("order", "longer"),
     [
         (ORDER, CompensateOrder("b", "n", device="serial:/dev/ttyACM0")),
-        (ORDER, CompensateOrder("b", "n", method="paper")),
+        (ORDER, CompensateOrder("b", "n", settings=CompensateSettings(method="paper"))),
         (ProbeOrder("b", "n"), ProbeOrder("b", "n", actuation="learned")),
         (CaptureOrder("n"), CaptureOrder("n", watch=True)),
         (TuneOrder("b", "n", observer="simulated observer"), TuneOrder("b", "n")),

@@ -15,6 +15,7 @@ from fdvv.model.noticeable import LITERATURE
 from fdvv.project.measured_bands import measured_button
 from fdvv.rendering.compensate import uncompensated
 from fdvv.rendering.probe import probe
+from fdvv.rendering.settings import ProbeSettings
 from fdvv.studio.jobs.events import CurveIntended, JobEvent, JobOutcome, PressEvent
 from fdvv.studio.jobs.file import JobFolder, JobRecord, publish, utc_now
 from fdvv.studio.jobs.orders import Order, ProbeOrder
@@ -25,12 +26,15 @@ from fdvv.twin.files import load_rig, rig_to_toml
 from tests.studio.jobs import learning, tuning
 from tests.support.jnds import as_literature, record_of
 
+AT_100 = (100.0,)
+JUDGED_ONCE = ProbeSettings(velocities_mm_s=AT_100, presses=1)
+
 
 def work_of(order: Order, path: Path, tell: Any) -> Work:
     folder = JobFolder(path)
     path.mkdir(exist_ok=True)
     save_model(load_builtin("mx-clear"), folder.button)
-    folder.save(JobRecord("fdvv-job", 1, order, "a job", True, utc_now()))
+    folder.save(JobRecord("fdvv-job", 2, order, "a job", True, utc_now()))
     return Work(folder, 1, tell, lambda _number: "first")
 
 
@@ -58,14 +62,14 @@ def test_measured_presses_are_reported_and_stored_as_the_editor_reads_them(tmp_p
 
 def test_what_was_learned_is_judged_beside_the_same_presses_without_compensation(tmp_path: Path) -> None:
     events: list[JobEvent] = []
-    order = learning(rounds=2, probe_presses=3)
+    order = learning({"rounds": 2}, probe_presses=3)
     work = work_of(order, tmp_path / "job", events.append)
     work.folder.rig.write_text(rig_to_toml(load_rig("recommended")))
     assert ended(work).state == "done"
     stages = [e.stage for e in events if isinstance(e, PressEvent)]
     assert [stages.count(stage) for stage in ("baseline", "probe")] == [3, 3]
     outcome = next(e for e in events if isinstance(e, JobOutcome) and e.stage == "probe")
-    device = TwinDevice(load_rig("recommended"), seed=order.seed + PROBE_SEED)
+    device = TwinDevice(load_rig("recommended"), seed=order.settings.seed + PROBE_SEED)
     model = load_builtin("mx-clear")
     alone = probe(device, model, uncompensated(device, model, [100.0]), [100.0], 3).curves
     for found, bare in zip(outcome.noticed, alone, strict=True):
@@ -81,7 +85,7 @@ def test_what_was_learned_is_judged_beside_the_same_presses_without_compensation
 
 def test_a_job_judges_by_the_jnds_that_lie_in_its_folder_and_says_whose(tmp_path: Path) -> None:
     events: list[JobEvent] = []
-    order = ProbeOrder("builtin:mx-clear", "clear", velocities_mm_s=(100.0,), presses=2)
+    order = ProbeOrder("builtin:mx-clear", "clear", settings=ProbeSettings(velocities_mm_s=AT_100, presses=2))
     work = work_of(order, tmp_path / "job", events.append)
     save_jnds(record_of(as_literature("force", 50.0)), work.folder.jnds)
     assert ended(work).state == "done"
@@ -99,8 +103,8 @@ def test_a_job_judges_by_the_jnds_that_lie_in_its_folder_and_says_whose(tmp_path
 @pytest.mark.parametrize(
     ("order", "stages"),
     [
-        (learning(probe_presses=0, method="paper", presses=2), ["baseline", "compensate", "probe"]),
-        (ProbeOrder("builtin:mx-clear", "clear", velocities_mm_s=(100.0,), presses=1), ["probe"]),
+        (learning({"method": "paper", "presses": 2}), ["baseline", "compensate", "probe"]),
+        (ProbeOrder("builtin:mx-clear", "clear", settings=JUDGED_ONCE), ["probe"]),
     ],
     ids=["learning without held-out presses", "a probe of the button's own force"],
 )
@@ -120,7 +124,7 @@ def test_a_table_that_is_judged_is_compared_with_none(tmp_path: Path) -> None:
     events: list[JobEvent] = []
     learned = work_of(learning(), tmp_path / "learned", lambda _event: None)
     assert ended(learned).state == "done"
-    order = ProbeOrder("builtin:mx-clear", "clear", velocities_mm_s=(100.0,), presses=1, actuation="clear")
+    order = ProbeOrder("builtin:mx-clear", "clear", settings=JUDGED_ONCE, actuation="clear")
     work = work_of(order, tmp_path / "job", events.append)
     work.folder.actuation.write_bytes(learned.folder.result("actuation").read_bytes())
     assert ended(work).state == "done"

@@ -71,6 +71,15 @@ class CompensateSettings(PressSettings):
         else:
             self._refuse("rig-aware", rounds=self.rounds == 0)
 
+    @property
+    def round_count(self) -> int:
+        return ROUNDS[self.method] if self.rounds is None else self.rounds
+
+    @property
+    def press_count(self) -> int:
+        """Presses per round and velocity with the paper's law."""
+        return PRESSES if self.presses is None else self.presses
+
     def check_known(self, **files: object) -> None:
         """Check what is known of the rig, by the names of the files. SettingError."""
         if self.method == "paper":
@@ -81,11 +90,10 @@ class CompensateSettings(PressSettings):
         from fdvv.compensation.paper import PaperLaw
         from fdvv.compensation.rig_aware import RigAware
 
-        rounds = ROUNDS[self.method] if self.rounds is None else self.rounds
         if self.method == "rig-aware":
-            return RigAware(rounds, known)
+            return RigAware(self.round_count, known)
         make = PaperLaw.literal if self.literal else PaperLaw
-        return make(rounds=rounds, presses_per_round=self.presses or PRESSES)
+        return make(rounds=self.round_count, presses_per_round=self.press_count)
 
     def _refuse(self, other: str, **values: object) -> None:
         for name, value in values.items():

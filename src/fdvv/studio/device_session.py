@@ -24,12 +24,13 @@ from fdvv.program.program import Program
 from fdvv.program.surface import Limits
 from fdvv.protocol.tables import Fault
 from fdvv.rendering.compensate import CompensationResult
+from fdvv.rendering.settings import PressSettings
 from fdvv.rendering.tuning import tune
 from fdvv.studio.contract import Message, Tell
 from fdvv.studio.device_findings import CellCheck, cell_check, press_seen
 from fdvv.studio.device_thread import DeviceThread, KeyChange, mode_of
 from fdvv.studio.devices import DeviceLocks, require_listed
-from fdvv.studio.jobs.check import RIGS, check_speeds
+from fdvv.studio.jobs.check import RIGS
 from fdvv.studio.studio import Studio
 from fdvv.twin.files import FIRST_RIG, current_rig_name, load_rig
 
@@ -190,7 +191,7 @@ class DeviceSession:
     def upload(self, ask: DeviceUpload, model: FDVVModel, learned: CompensationResult | None) -> DeviceStatus:
         """Make a button the device's program, with what was learned for it or its own force. FdvvError."""
         held = self.held()
-        check_speeds(ask.velocities_mm_s)
+        PressSettings(velocities_mm_s=tuple(ask.velocities_mm_s))
         button = UploadedButton(model, learned, sorted(ask.velocities_mm_s))
         held.do(lambda: button.put(held))
         self._button = button
@@ -207,7 +208,7 @@ class DeviceSession:
     def press(self, velocity_mm_s: float) -> DeviceStatus:
         """Make one simulated press and send it to all subscribers. DeviceError, InputError."""
         held = self.held()
-        check_speeds((velocity_mm_s,))
+        PressSettings(velocities_mm_s=(velocity_mm_s,))
         jnds = self._studio.jnds  # a broken file is said before anything moves
         if not held.device.info().simulated:
             raise DeviceError("a person presses this device; arm it and press")

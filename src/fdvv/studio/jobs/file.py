@@ -19,18 +19,18 @@ import msgspec
 from fdvv.device.open import pressed_by_person
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_records
-from fdvv.io.documents import Kind, pretty, read_record
-from fdvv.io.files import write_atomic
+from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.files import read_limited, write_atomic
 from fdvv.model.jnd_file import FILE_NAME as JNDS_NAME
 from fdvv.studio.contract import Message
 from fdvv.studio.jobs.check import check_count, check_order
 from fdvv.studio.jobs.events import JobEvent
-from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, KindName, Order
+from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, KindName, Order, nest_settings
 from fdvv.twin.files import current_rig_name
 
 JOBS, JOB, EVENTS = "jobs", "job.json", "events.jsonl"
 REMEDY = "put the job's folder elsewhere, or begin the work anew"
-KIND = Kind("fdvv-job", 1, "a job", REMEDY)
+KIND = Kind("fdvv-job", 2, "a job", REMEDY, oldest=1)
 JOURNAL = JournalKind({"event": Any}, REMEDY)
 LARGEST_bytes, LARGEST_EVENTS_bytes = 1_000_000, 500_000_000
 COUNTED = ("run", "done", "total", "events")
@@ -45,7 +45,7 @@ class JobRecord(Message):
     """
 
     format: Literal["fdvv-job"]
-    version: Literal[1]
+    version: Literal[1, 2]
     order: Order
     title: str
     simulated: bool
@@ -93,8 +93,10 @@ class JobFolder:
     def read(self) -> JobRecord:
         """Read the job, unchecked. InputError on a damaged one, and on one whose folder holds a link."""
         require_own_files(self.path)
+        path = self.path / JOB
         try:
-            return read_record(self.path / JOB, KIND, JobRecord, LARGEST_bytes)
+            text = read_limited(path, LARGEST_bytes, REMEDY)
+            return read_document(text, path, KIND, _decode, lambda _place: None)
         except InputError as error:
             raise InputError(error.source, self._place(error), error.reason, error.remedy) from error
 
@@ -137,6 +139,13 @@ class JobFolder:
             return [msgspec.convert(record["event"], JobEvent) for record, _ in records]
         except msgspec.ValidationError as error:
             raise InputError(path, "event", str(error), REMEDY) from error
+
+
+def _decode(text: bytes) -> JobRecord:
+    content = msgspec.json.decode(text)
+    if content["version"] == 1 and isinstance(content.get("order"), dict):
+        content["order"] = nest_settings(content["order"])
+    return msgspec.convert(content, JobRecord)
 
 
 def require_own_files(folder: Path) -> None:

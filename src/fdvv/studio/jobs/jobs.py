@@ -243,7 +243,7 @@ class Jobs:
         folder.path.mkdir(parents=True)
         for file, content in inputs.files.items():
             write_atomic(folder.path / file, content)
-        record = JobRecord("fdvv-job", 1, order, inputs.title, simulates(order), utc_now())
+        record = JobRecord("fdvv-job", 2, order, inputs.title, simulates(order), utc_now())
         folder.save(record)
         return LiveJob(name, folder, record)
 

@@ -5,14 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fdvv.device.open import pressed_by_person
-from fdvv.studio.jobs.orders import (
-    CaptureOrder,
-    CompensateOrder,
-    Order,
-    ProbeOrder,
-    TuneOrder,
-    judging_presses,
-)
+from fdvv.studio.jobs.orders import CaptureOrder, CompensateOrder, Order, ProbeOrder, TuneOrder
 
 START_s, DESIGN_s = 1.5, 3.0
 """A process starts, the parts it needs are imported; a rig is identified and its controller designed."""
@@ -37,30 +30,32 @@ def expected(order: Order) -> tuple[Part, ...]:
     """Return the parts of a job in their order, and how long each may take."""
     press_s = PERSON_s if pressed_by_person(order.device) else STEP_s.get(order.device.partition(":")[0], 1.0)
     match order:
-        case CompensateOrder():
-            speeds = len(order.velocities_mm_s)
-            paper = order.rounds * order.presses * speeds
-            aware = order.rounds * speeds + (0 if order.known_rig else IDENTIFY_presses)
-            learned_s = paper * press_s if order.method == "paper" else DESIGN_s + aware * press_s
-            judged_s = judging_presses(order) * speeds * press_s
+        case CompensateOrder(settings=settings):
+            speeds = len(settings.velocities_mm_s)
+            paper = settings.round_count * settings.press_count * speeds
+            aware = settings.round_count * speeds + (0 if order.known_rig else IDENTIFY_presses)
+            learned_s = paper * press_s if settings.method == "paper" else DESIGN_s + aware * press_s
+            judged_s = order.probe_presses * speeds * press_s
             return (
                 Part("baseline", START_s + judged_s),
                 Part("compensate", learned_s),
                 Part("probe", judged_s),
             )
-        case ProbeOrder():
-            judged_s = order.presses * len(order.velocities_mm_s) * press_s
+        case ProbeOrder(settings=settings):
+            judged_s = settings.presses * len(settings.velocities_mm_s) * press_s
             before = (Part("baseline", judged_s),) if order.actuation else ()
             return *before, Part("probe", START_s + judged_s)
-        case CaptureOrder():
+        case CaptureOrder(settings=settings):
             take_s = PERSON_s if order.watch or pressed_by_person(order.device) else STEP_s["twin"]
-            takes = 1 + order.probe + order.presses * len(order.paces_mm_s)
+            takes = 1 + settings.probe + settings.presses * len(settings.paces_mm_s)
             return Part("capture", START_s + takes * take_s), Part("process", DESIGN_s)
-        case TuneOrder():
-            kinds = 1 + len(order.frequency_ratios) * len(order.gain_ratios)
-            asked = kinds * order.repeats if order.asking == "rate" else order.comparisons or 3 * kinds
+        case TuneOrder(settings=settings):
+            kinds = 1 + len(settings.frequency_ratios) * len(settings.gain_ratios)
+            rated = settings.asking == "rate"
+            asked = kinds * settings.repeats if rated else settings.comparisons or 3 * kinds
             answer_s = ANSWER_s if order.observer == "person" else 0.0
-            return (Part("tune", START_s + asked * len(order.velocities_mm_s) * (answer_s + 2 * press_s)),)
+            asked_s = asked * len(settings.velocities_mm_s) * (answer_s + 2 * press_s)
+            return (Part("tune", START_s + asked_s),)
 
 
 def left_s(order: Order, stage: str, done_ratio: float, elapsed_s: float) -> float:

@@ -29,7 +29,7 @@ from fdvv.rendering.session_run import Guide, PressDone
 from fdvv.studio.contract import message_of
 from fdvv.studio.jobs import events
 from fdvv.studio.jobs.file import JobFolder
-from fdvv.studio.jobs.orders import RigOrder
+from fdvv.studio.jobs.orders import CompensateOrder, ProbeOrder, TuneOrder
 from fdvv.studio.rounding import DIGITS, finite_or_none, finite_row, rounded
 
 PressStage = Literal["compensate", "baseline", "probe"]
@@ -88,11 +88,14 @@ class Work:
         return load_actuation(self.folder.actuation) if self.folder.actuation.exists() else None
 
     @contextmanager
-    def session(self, order: RigOrder, folder: Path, seed: int) -> Iterator[tuple[Device, Session]]:
+    def session(
+        self, order: CompensateOrder | ProbeOrder | TuneOrder, folder: Path, seed: int
+    ) -> Iterator[tuple[Device, Session]]:
         """Open the device of an order for a session in a folder; it is closed at the end."""
         rig = self.folder.rig if self.folder.rig.exists() else None
         others = (self.folder.baseline, self.folder.session, self.folder.probe)
-        session = Session(folder, seed, rig, None, AcceptanceLimits(pace_ratio=order.pace_ratio), others)
+        limits = AcceptanceLimits(pace_ratio=order.settings.pace_ratio)
+        session = Session(folder, seed, rig, None, limits, others)
         device: Any = session.open_device(order.device)
         try:
             yield device, session

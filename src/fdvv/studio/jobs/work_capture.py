@@ -10,7 +10,7 @@ from typing import Literal
 
 from fdvv.bench.capture import CaptureGuide, TakeDone, TakeRequest, VelocityProgress, capture_session
 from fdvv.bench.model import process_recording
-from fdvv.bench.plan import CapturePlan, cue_events, cue_length_s
+from fdvv.bench.plan import cue_events, cue_length_s
 from fdvv.device.bench import open_bench, show_nothing
 from fdvv.model.file import save_model
 from fdvv.recording.types import Stage
@@ -21,23 +21,19 @@ from fdvv.studio.jobs.work import Work
 from fdvv.studio.rounding import DIGITS, finite_or_none
 
 StepName = Literal["rest", "probe", "press"]
-PLANNED = ("paces_mm_s", "presses", "probe", "shuffled", "seed", "repeats", "pace_ratio")
-"""What an order says of the plan, by the same names."""
-
 STEPS: dict[Stage, StepName] = {Stage.REST: "rest", Stage.PROBE: "probe", Stage.PRESS: "press"}
 
 
 def capture(work: Work, order: CaptureOrder) -> None:
     """Record what the plan asks for, and process it into a model."""
-    plan = CapturePlan(**{name: getattr(order, name) for name in PLANNED})
-    bench = open_bench(order.device, order.switch, order.participant, order.seed, order.watch)
+    bench = open_bench(order.device, order.switch, order.participant, order.settings.seed, order.watch)
     with closing(bench):
         info = bench.facts()
         work.begin(info)
         work.tell(events.StageEvent("capture", "recording the button"))
         paced = order.watch or not info.simulated
         guide = CaptureGuide(_cue(work, paced), lambda done: work.tell(_take(done)), work.notice)
-        capture_session(bench, work.folder.recording, order.name, plan, guide)
+        capture_session(bench, work.folder.recording, order.name, order.settings, guide)
     _process(work, order)
 
 

@@ -25,7 +25,7 @@ from fdvv.rendering.evaluation.vibration_presses import Playback
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session import Session
 from fdvv.studio.jobs.events import JobOutcome, StageEvent
-from fdvv.studio.jobs.orders import CompensateOrder, ProbeOrder, RigOrder, judging_presses
+from fdvv.studio.jobs.orders import CompensateOrder, ProbeOrder
 from fdvv.studio.jobs.work import Work, curve_noticed, curve_progress
 
 PROBE_SEED = 1
@@ -34,27 +34,27 @@ PROBE_SEED = 1
 
 def learn(work: Work, order: CompensateOrder) -> None:
     """Press without compensation, learn, keep what was learned, and judge it on fresh presses."""
-    model, presses = load_model(work.folder.button), judging_presses(order)
-    before = _baseline(work, order, model, order.seed + PROBE_SEED, presses)
-    with work.session(order, work.folder.session, order.seed) as (device, session):
+    model, presses, seed = load_model(work.folder.button), order.probe_presses, order.settings.seed
+    before = _baseline(work, order, model, seed + PROBE_SEED, presses)
+    with work.session(order, work.folder.session, seed) as (device, session):
         work.tell(StageEvent("compensate", "learning what makes the rig feel like the button"))
         report_press, guide = work.pressed(model.travel_mm, "compensate"), work.guide(order.device)
-        law, speeds = _law(work, order), order.velocities_mm_s
+        law, speeds = _law(work, order), order.settings.velocities_mm_s
         result = compensate(device, model, speeds, law, report_press, session, guide)
     _keep(work, result)
-    with work.session(order, work.folder.probe, order.seed + PROBE_SEED) as pressed:
+    with work.session(order, work.folder.probe, seed + PROBE_SEED) as pressed:
         _probe(work, order, pressed, model, _table(result), presses, before)
 
 
 def judge(work: Work, order: ProbeOrder) -> None:
     """Judge a learned table, or the model's own force, on fresh presses."""
-    model, learned = load_model(work.folder.button), work.learned()
-    before = _baseline(work, order, model, order.seed, order.presses) if learned else ()
-    with work.session(order, work.folder.probe, order.seed) as (device, session):
+    model, learned, settings = load_model(work.folder.button), work.learned(), order.settings
+    before = _baseline(work, order, model, settings.seed, settings.presses) if learned else ()
+    with work.session(order, work.folder.probe, settings.seed) as (device, session):
         if not learned:
             _begin(work, device, model, order)
         table = _table(learned) if learned else _uncompensated(device, model, order)
-        _probe(work, order, (device, session), model, table, order.presses, before)
+        _probe(work, order, (device, session), model, table, settings.presses, before)
 
 
 class _Table(NamedTuple):
@@ -70,12 +70,12 @@ def _table(learned: CompensationResult) -> _Table:
     return _Table(learned.surface, learned.method, learned.outcome.tuning, learned.known_rig)
 
 
-def _uncompensated(device: Device, model: FDVVModel, order: RigOrder) -> _Table:
-    return _Table(uncompensated(device, model, order.velocities_mm_s), "not compensated", Tuning())
+def _uncompensated(device: Device, model: FDVVModel, order: CompensateOrder | ProbeOrder) -> _Table:
+    return _Table(uncompensated(device, model, order.settings.velocities_mm_s), "not compensated", Tuning())
 
 
 def _baseline(
-    work: Work, order: RigOrder, model: FDVVModel, seed: int, presses: int
+    work: Work, order: CompensateOrder | ProbeOrder, model: FDVVModel, seed: int, presses: int
 ) -> tuple[ProbeCurve, ...]:
     """Press without compensation as often as what is judged, a simulated person in the same way."""
     with work.session(order, work.folder.baseline, seed) as (device, session):
@@ -83,13 +83,13 @@ def _baseline(
         work.tell(StageEvent("baseline", "pressing without compensation, to compare"))
         surface, method, tuning, _ = _uncompensated(device, model, order)
         about = (work.pressed(model.travel_mm, "baseline"), method, session, work.guide(order.device), tuning)
-        speeds, jnds = order.velocities_mm_s, work.jnds
+        speeds, jnds = order.settings.velocities_mm_s, work.jnds
         return probe(device, model, surface, speeds, presses, *about, jnds=jnds).curves
 
 
 def _probe(
     work: Work,
-    order: RigOrder,
+    order: CompensateOrder | ProbeOrder,
     pressed: tuple[Device, Session],
     model: FDVVModel,
     table: _Table,
@@ -100,7 +100,7 @@ def _probe(
     surface, method, tuning, known = table
     work.tell(StageEvent("probe", "judging on fresh presses, in true displacement"))
     report_press, guide = work.pressed(model.travel_mm, "probe"), work.guide(order.device)
-    speeds = order.velocities_mm_s
+    speeds = order.settings.velocities_mm_s
     about = (method, session, guide, tuning, Playback(presses), known)
     result = probe(device, model, surface, speeds, presses, report_press, *about, jnds=work.jnds)
     report = {**result.to_dict(), "button": order.button}
@@ -126,12 +126,10 @@ def _keep(work: Work, result: CompensationResult) -> None:
 
 
 def _law(work: Work, order: CompensateOrder) -> PaperLaw | RigAware:
-    if order.method == "paper":
-        return PaperLaw(rounds=order.rounds, presses_per_round=order.presses)
     known = work.folder.known_rig
-    return RigAware(order.rounds, load_learned_rig(known) if known.exists() else None)
+    return order.settings.law(load_learned_rig(known) if known.exists() else None)
 
 
-def _begin(work: Work, device: Device, model: FDVVModel, order: RigOrder) -> None:
+def _begin(work: Work, device: Device, model: FDVVModel, order: CompensateOrder | ProbeOrder) -> None:
     work.begin(device.info())
-    work.intended(model, order.velocities_mm_s)
+    work.intended(model, order.settings.velocities_mm_s)

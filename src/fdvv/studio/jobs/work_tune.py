@@ -14,9 +14,7 @@ from fdvv.studio.jobs import events
 from fdvv.studio.jobs.orders import TuneOrder
 from fdvv.studio.jobs.work import Work
 from fdvv.studio.rounding import DIGITS, finite_or_none, rounded
-from fdvv.vibration.templates import TemplateGrid
-from fdvv.vibration.tune import Preferred, Question, Rating
-from fdvv.vibration.tune_compare import Comparing
+from fdvv.vibration.tune import Preferred, Question
 from fdvv.vibration.wave import vibration_samples
 
 WAVE_Hz, QUIET_s = 8000, 0.005
@@ -27,18 +25,18 @@ def tune(work: Work, order: TuneOrder) -> None:
     """Press and ask until nothing is left to ask, and keep the best in a model."""
     model, learned = load_model(work.folder.button), work.learned()
     surface, tuning = (learned.surface, learned.outcome.tuning) if learned else (None, UNTUNED)
-    grid = TemplateGrid(order.frequency_ratios, order.gain_ratios)
-    candidates = candidates_for(model, sorted(order.velocities_mm_s), grid)
-    with work.session(order, work.folder.session, order.seed) as (device, session):
+    settings, speeds = order.settings, order.settings.velocities_mm_s
+    candidates = candidates_for(model, sorted(speeds), settings.grid())
+    with work.session(order, work.folder.session, settings.seed) as (device, session):
         work.begin(device.info())
         work.tell(events.StageEvent("tune", f"answers of a {order.observer}"))
         result = tune_vibration(
             device,
             model,
-            order.velocities_mm_s,
-            _method(order),
+            speeds,
+            settings.question(),
             _answerer(work, order, candidates),
-            TuneSetup(surface, None, grid, order.observer, tuning),
+            TuneSetup(surface, None, settings.grid(), order.observer, tuning),
             session,
             work.guide(order.device),
             lambda progress: work.tell(_answered(progress)),
@@ -49,15 +47,9 @@ def tune(work: Work, order: TuneOrder) -> None:
     work.tell(events.JobOutcome("tune", sentence, result.answers, 0, result.simulated, rankings=rankings))
 
 
-def _method(order: TuneOrder) -> Rating | Comparing:
-    if order.asking == "rate":
-        return Rating(order.repeats, order.seed)
-    return Comparing(order.comparisons or None, seed=order.seed)
-
-
 def _answerer(work: Work, order: TuneOrder, candidates: tuple[Candidates, ...]) -> Any:
     if order.observer != "person":
-        return simulated_observer(candidates, order.seed).answer
+        return simulated_observer(candidates, order.settings.seed).answer
 
     def answer(question: Question) -> int | Preferred | None:
         found = candidates[question.place]
