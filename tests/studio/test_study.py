@@ -17,7 +17,7 @@ from starlette.testclient import TestClient, WebSocketTestSession
 from fdvv.errors import InputError
 from fdvv.studio.api.study import StudyScreen
 from fdvv.studio.participant.messages import StudyResume
-from fdvv.studio.studies import Studies
+from fdvv.studio.studies import DEVICE_SUFFIX, Studies
 from fdvv.studio.studio import Studio
 from fdvv.study.admin.study import Study
 from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE, frozen_study, names_in, plan_text
@@ -367,6 +367,19 @@ def test_a_device_on_the_table_renders_a_study_and_is_nobody_elses_meanwhile(
     # kept beside the study: after a restart nobody is led to another button
     assert Studies(own_studio).device(NAME) == "host"
     assert study.verify() == ()
+
+
+def test_a_device_that_a_file_defines_is_not_run_from_a_studys_folder(
+    study: Study, ask: Callable[..., Any], client: TestClient
+) -> None:
+    rig, there = study.folder.parent / "rig.py", study.folder.with_suffix(DEVICE_SUFFIX)
+    rig.write_text("from pathlib import Path\nPath(__file__).with_name('it ran').touch()\n")
+    there.write_text(f"rig:{rig}:X\n")
+    with client.websocket_connect(LIVE) as line:
+        screen = Screen(line)
+        screen.say("sit", study=NAME, seat=ask("seat")["seat"], holder=screen.holder, language="en")
+        assert "device: there is no 'rig:" in screen.hear("card")["error"]
+    assert not rig.with_name("it ran").exists()
 
 
 def test_a_person_is_withdrawn_and_deleted_while_they_sit_there(

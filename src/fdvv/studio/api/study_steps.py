@@ -10,7 +10,7 @@ from fdvv.errors import DeviceError, InputError
 from fdvv.program.program import Signal
 from fdvv.studio.api.press_frames import DIGITS, ShakeSignal
 from fdvv.studio.contract import Message, Tell, message_of
-from fdvv.studio.devices import DeviceLocks
+from fdvv.studio.devices import DeviceLocks, device_names, require_listed
 from fdvv.studio.participant.messages import StudyBroke
 from fdvv.studio.studies import TWIN, Studies
 from fdvv.studio.studio import Studio
@@ -185,6 +185,8 @@ class StudyStages:
         """Open what the operator chose. InputError where it is used elsewhere, DeviceError."""
         device = self._studies.device(study.folder.name)
         if device not in (TWIN, self._locked):
+            # the file that names it may come from somebody else
+            require_listed("device", device, device_names(), "ask who leads the study")
             self.release()
             self._locks.acquire(device, f"the study {study.folder.name}")
             self._locked = device
