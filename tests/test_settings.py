@@ -10,6 +10,8 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
+from tools.make_record_reference import settings_tables
+from tools.make_studio_types import settings_reference
 
 from fdvv.bench.settings import CaptureSettings
 from fdvv.cli.settings import settings_options
@@ -23,6 +25,7 @@ from fdvv.rendering.settings import (
     TuneSettings,
 )
 from fdvv.settings import SettingError, Settings, about, settings_of
+from fdvv.studio.jobs.orders import SETTINGS
 
 EVERY = (CaptureSettings, CompensateSettings, FeasibleSettings, ProbeSettings, TuneSettings)
 
@@ -47,7 +50,9 @@ def test_every_setting_says_what_it_is(kind: type[Settings]) -> None:
     assert all(setting.help for setting in settings_of(kind))
 
 
-def test_a_parameter_is_one_line_and_reaches_command_message_and_schema() -> None:
+def test_a_parameter_is_one_line_and_reaches_command_message_schema_page_and_document(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     class Learn(CompensateSettings):
         patience: Annotated[int, about("Rounds without gain before it ends.", ge=1, le=9)] = 3
 
@@ -61,6 +66,9 @@ def test_a_parameter_is_one_line_and_reaches_command_message_and_schema() -> Non
         msgspec.json.decode(b'{"patience": 10}', type=Learn)
     with pytest.raises(ModelError, match="patience must be 1 to 9, got 10"):
         Learn(patience=10)
+    monkeypatch.setitem(SETTINGS, "compensate", Learn)
+    assert '"patience": {' in settings_reference()
+    assert "Rounds without gain before it ends." in settings_tables()
 
 
 @given(st.integers(-10, 300))

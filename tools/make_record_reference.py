@@ -13,8 +13,12 @@ from tools.markdown import escaped, slug, table
 from tools.record_docs import FieldDoc, describe
 from tools.record_types import fields, in_words, reached
 
+from fdvv.cli.settings import option_name
+from fdvv.settings import Setting, settings_of
+from fdvv.studio.jobs.orders import SETTINGS
 from fdvv.studio.parts import load_parts
 
+COLUMNS = ("setting", "option", "allowed", "default", "meaning")
 MAX_DEFAULT = 60
 """A longer default is shown as an ellipsis."""
 
@@ -50,6 +54,26 @@ def message_tables() -> str:
         "## Records\n",
     ]
     return "\n".join([*parts, *(_record(record) for record in messages())])
+
+
+def settings_tables() -> str:
+    """Return a table for the settings of each use case: what they mean and allow, in every door."""
+    return "\n".join(
+        f"## {name.capitalize()}\n\n{table(COLUMNS, [_setting_row(one) for one in settings_of(kind)])}"
+        for name, kind in SETTINGS.items()
+    )
+
+
+def _setting_row(setting: Setting) -> tuple[str, str, str, str, str]:
+    several = f"1 to {setting.longest} of " if setting.several else ""
+    default = f"`{json.dumps(setting.default)}`"
+    return (
+        f"`{setting.name}`",
+        f"`{option_name(setting)}`",
+        several + setting.allowed,
+        default,
+        escaped(setting.help),
+    )
 
 
 @cache

@@ -83,6 +83,7 @@ def from_code(name: str) -> str:
         return _toctree("", [f"{page}.md" for page in site_api.command_pages()], "cli/", hidden=False)
     makers = {
         "files": make_record_reference.files_tables,
+        "settings": make_record_reference.settings_tables,
         "studio-messages": make_record_reference.message_tables,
         "protocol": make_protocol_reference.rig_tables,
         "strip-protocol": make_protocol_reference.strip_tables,

@@ -34,7 +34,9 @@ class CaptureSettings(Settings):
     shuffled: Annotated[
         bool, about("Ask for the paces mixed instead of one after the other.", option="--shuffle")
     ] = False
-    repeats: Annotated[int, about("How often a bad press is asked for again.", ge=0, le=20)] = 3
+    repeats: Annotated[
+        int, about("How often a bad press is asked for again.", label="Retries of a bad press", ge=0, le=20)
+    ] = 3
     pace_ratio: Annotated[
         PaceRatio,
         about("By which a press may miss its pace.", option="--pace-tolerance", label="Speed tolerance"),
@@ -43,4 +45,7 @@ class CaptureSettings(Settings):
         Annotated[float, Meta(ge=0.5, le=10)] | None,
         about("Of the button, mm; by default from the probe.", option="--travel"),
     ] = None
-    seed: Annotated[int, about("Repeats the twin; order of --shuffle.", ge=0, le=2**31)] = 0
+    seed: Annotated[
+        int,
+        about("Repeats the twin; order of --shuffle.", label="Seed of the simulation", ge=0, le=2**31),
+    ] = 0

@@ -131,9 +131,10 @@ class TuneSettings(PressSettings):
         about("Which of two is closer to the real button, or each by itself, 1 to 7."),
     ] = "compare"
     comparisons: Annotated[
-        Annotated[int, Meta(ge=1, le=1000)] | None, about("Per velocity at most; 3 each by default.")
+        Annotated[int, Meta(ge=1, le=1000)] | None,
+        about("Per velocity at most; 3 each by default.", label="Maximum questions"),
     ] = None
-    repeats: Annotated[int, about("Of each rating.", ge=2, le=20)] = 3
+    repeats: Annotated[int, about("Of each rating.", label="Ratings of each", ge=2, le=20)] = 3
     frequency_ratios: Annotated[
         tuple[Annotated[float, Meta(ge=0.1, le=10)], ...],
         about(

@@ -4,3 +4,4 @@ export * from "./call";
 export * from "./clock";
 export * from "./live";
 export type * from "./messages";
+export * from "./settings";

@@ -1,1 +1,1 @@
-import{Dr as e,Er as t,Kr as n,Pt as r,_r as i,di as a,ii as o,qn as s,ri as c,zr as l}from"./shared.js";function u(u,d){o(d,!0);let f=s(d,`tooltip`,3,!1);r.create(l(()=>f()));var p=e(),m=n(p);i(m,()=>d.children??a),t(u,p),c()}export{u as t};
+import{Br as e,Dr as t,Ft as n,Jn as r,Or as i,ai as a,fi as o,ii as s,qr as c,vr as l}from"./shared.js";function u(u,d){a(d,!0);let f=r(d,`tooltip`,3,!1);n.create(e(()=>f()));var p=i(),m=c(p);l(m,()=>d.children??o),t(u,p),s()}export{u as t};

@@ -1,18 +1,23 @@
 /** What is typed into forms, read and checked. */
 
-const MOST_mm_s = 500;
-const MOST_SPEEDS = 12;
+import type { Setting } from "../../net";
 
 /** Read speeds with spaces or commas between them; a line of text says what is wrong. */
-export function speedsOf(text: string, least_mm_s: number): readonly number[] | string {
+export function speedsOf(text: string, setting: Setting): readonly number[] | string {
+  const { least, most, longest } = setting;
   const parts = text.split(/[\s,;]+/).filter(Boolean);
   const speeds = parts.map(Number);
-  if (!speeds.length || speeds.length > MOST_SPEEDS) return `enter 1 to ${MOST_SPEEDS} speeds`;
-  if (!speeds.every((v) => Number.isFinite(v) && v >= least_mm_s && v <= MOST_mm_s)) {
-    return `use numbers from ${least_mm_s} to ${MOST_mm_s} mm/s`;
+  if (!speeds.length || speeds.length > (longest ?? 1)) return `enter 1 to ${longest} speeds`;
+  if (!speeds.every((v) => Number.isFinite(v) && v >= (least ?? 0) && v <= (most ?? 0))) {
+    return `use numbers from ${least} to ${most} mm/s`;
   }
   if (new Set(speeds).size !== speeds.length) return "a speed is listed twice";
   return speeds;
+}
+
+/** What a form of settings begins with. */
+export function defaultsOf<T>(settings: Readonly<Record<string, Setting>>): T {
+  return Object.fromEntries(Object.entries(settings).map(([name, one]) => [name, one.default])) as T;
 }
 
 /** Name what comes out of work on a button, as a file may be named. */

@@ -1,17 +1,18 @@
 import { describe, expect, it } from "vitest";
+import { settings } from "../../../src/net";
 import { nameFor, speedsOf } from "../../../src/pages/live/fields";
 
 describe("speeds in one field", () => {
   it("are read with commas, spaces or both", () => {
     for (const text of ["50,100", " 50  100 ", "50, 100,", "50;100"])
-      expect(speedsOf(text, 5)).toEqual([50, 100]);
+      expect(speedsOf(text, settings.probe.velocities_mm_s)).toEqual([50, 100]);
   });
 
   it("are refused in words a person understands", () => {
-    expect(speedsOf("", 5)).toMatch(/1 to 12/);
-    expect(speedsOf("50,fast", 5)).toMatch(/5 to 500 mm\/s/);
-    expect(speedsOf("10", 20)).toMatch(/20 to 500/);
-    expect(speedsOf("50,50.0", 5)).toMatch(/twice/);
+    expect(speedsOf("", settings.probe.velocities_mm_s)).toMatch(/1 to 16/);
+    expect(speedsOf("50,fast", settings.probe.velocities_mm_s)).toMatch(/5 to 500 mm\/s/);
+    expect(speedsOf("10", settings.capture.paces_mm_s)).toMatch(/20 to 500/);
+    expect(speedsOf("50,50.0", settings.probe.velocities_mm_s)).toMatch(/twice/);
   });
 });
 
