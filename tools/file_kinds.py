@@ -35,12 +35,12 @@ from fdvv.study.files.layout import Frozen
 from fdvv.study.files.log_head import LogHead
 from fdvv.study.files.people import LockedSchedule, Schedule, SealedTrial
 from fdvv.study.files.seal import KeyHolderFile
-from fdvv.study.plan.events import Event
 from fdvv.study.plan.plan import StudyPlan
+from fdvv.study.plan.session import SessionState
 from fdvv.sweep.plan import SweepPlan
 from fdvv.task.rounds import TaskRound, TrialRated
-from fdvv.timing.plan.events import TimingEvent
 from fdvv.timing.plan.plan import TimingPlan
+from fdvv.timing.plan.session import TimingState
 from fdvv.vibration.exciter import ExciterRecord, KnownExciter
 from fdvv_rig.selftest.receipt import SelftestReceipt
 
@@ -69,8 +69,8 @@ class FileKind:
 
 
 def members(record: Any) -> tuple[type[Any], ...]:
-    """Return the members of a union, or the record itself."""
-    return typing.get_args(record) or (record,)
+    """Return the records of a tuple, the members of a union, or the record itself."""
+    return record if isinstance(record, tuple) else typing.get_args(record) or (record,)
 
 
 FILES = (
@@ -197,7 +197,7 @@ FILES = (
             "schedule.json": LockedSchedule,
             "decrypted": Schedule,
             "sealed.jsonl": SealedTrial,
-            "session.jsonl": Event,
+            "session.jsonl": SessionState.kinds(),
         },
     ),
     FileKind(
@@ -205,7 +205,7 @@ FILES = (
         "`session.jsonl`",
         "The chained event log of a participant in a timing study; its other files are those of every study "
         "([when what is written](../explanation/timing-studies.md)).",
-        {"session.jsonl": TimingEvent},
+        {"session.jsonl": TimingState.kinds()},
     ),
     FileKind(
         "Code book",

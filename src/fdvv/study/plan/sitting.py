@@ -120,10 +120,15 @@ class SittingState(ABC, Generic[F]):
     skipped: frozenset[int] = frozenset()
 
     @classmethod
+    def kinds(cls) -> tuple[type[SessionEvent], ...]:
+        """Return the kinds of events that a log of such a session may hold."""
+        return cls.beginning, *cls.handlers
+
+    @classmethod
     def event_of(cls, record: dict[str, Any]) -> SessionEvent:
         """Read a record of a session's log. ModelError where it is none."""
         ((word, body),) = record.items()
-        kinds = {kind.word: kind for kind in (cls.beginning, *cls.handlers)}
+        kinds = {kind.word: kind for kind in cls.kinds()}
         try:
             return msgspec.convert(body, kinds[word])
         except (KeyError, msgspec.ValidationError) as error:
