@@ -28,6 +28,14 @@ NAMES: Mapping[str, tuple[str, ...]] = {
 }
 """Headings by role, likeliest first, without case, blanks and marks."""
 
+TRIALS = ("trial", "trialnumber", "trialno")
+"""Headings of the rounds that number trials; the others may number something that holds several."""
+PARTS = (
+    *("session", "day", "week", "visit", "phase", "stage", "part", "half", "set", "list", "practice", "hand"),
+    *(name for role in ("round", "item", "stimulus") for name in NAMES[role]),
+)
+"""Headings of what divides a study: trials may be numbered anew in each part."""
+
 RATINGS = ("rating", "score", "realism", "quality", "similarity", "likert", "mos", "rate", "value")
 """Headings of a rating where a row is one rating; another column of numbers is one if it is the only one."""
 
@@ -37,17 +45,28 @@ Rows = Sequence[Sequence[str]]
 
 
 @dataclass(frozen=True)
+class RepeatedTrial:
+    """Two rows of one trial: their places, the earlier first, and the headings that say which trial it is."""
+
+    first: int
+    again: int
+    heads: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Inferred:
     """A map with what was inferred in it.
 
     Attributes
     ----------
     guessed : the heading by role, of what nobody had said. unused : headings that serve nothing.
+    repeat : two rows of one trial; None if there are none.
     """
 
     column_map: ColumnMap
     guessed: Mapping[str, str] = field(default_factory=dict)
     unused: tuple[str, ...] = ()
+    repeat: RepeatedTrial | None = None
 
 
 def infer(heads: Sequence[str], rows: Rows, column_map: ColumnMap) -> Inferred:
@@ -63,10 +82,11 @@ def infer(heads: Sequence[str], rows: Rows, column_map: ColumnMap) -> Inferred:
     table.choices()
     for role in ("correct", "excluded"):
         table.by_name(role)
+    repeat = table.find_repeat()
     table.rounds()
     columns = {**column_map.columns, **table.guessed}
     unused = tuple(head for head in heads if head and head not in table.used)
-    return Inferred(replace(column_map, columns=columns, codes=table.codes), table.guessed, unused)
+    return Inferred(replace(column_map, columns=columns, codes=table.codes), table.guessed, unused, repeat)
 
 
 class _Table:
@@ -161,15 +181,20 @@ class _Table:
                     self.codes[word] = EQUAL
 
     def rounds(self) -> None:
-        for head in self.named(NAMES["round"]) if "round" not in self.roles else []:
-            if all(re.fullmatch(r"\d+(\.0*)?", word) for word in self.words(head)) and self._pairs(head):
+        for head in self._counts():
+            if self._pairs(head):
                 self.take("round", head)
                 return
 
+    def _counts(self) -> list[str]:
+        """Return the columns that may count rounds, likeliest first; none where the round is known."""
+        named = self.named(NAMES["round"]) if "round" not in self.roles else []
+        words = {head: self.words(head) for head in named}
+        return [h for h in named if words[h] and all(re.fullmatch(r"\d+(\.0*)?", w) for w in words[h])]
+
     def _pairs(self, head: str) -> bool:
         """Whether a column tells the trials of a person and item apart and joins what belongs to one."""
-        roles = [self.roles[r] for r in ("person", "item", "stimulus") if r in self.roles]
-        columns = [self.cells(name) for name in (*roles, head)]
+        columns = [self.cells(name) for name in (*self._headings("person", "item", "stimulus"), head)]
         keys = Counter(zip(*columns, strict=True))
         if not keys or max(keys.values()) > 1:
             return False
@@ -178,9 +203,59 @@ class _Table:
         trials = Counter((*key[:-2], key[-1]) for key in keys)
         return max(trials.values()) > 1
 
+    def _headings(self, *roles: str) -> list[str]:
+        return [self.roles[role] for role in roles if role in self.roles]
+
+    def find_repeat(self) -> RepeatedTrial | None:
+        """Find two rows of one person, item, stimulus and number, in one part of the study.
+
+        What most people have may be no slip: then the numbers are anew in each of another column's words, as
+        of a condition, or a number holds several rows.
+        """
+        counts = self._counts()
+        if not counts or "person" not in self.roles:
+            return None
+        free = [head for head in self.heads if head and head not in self.used and head not in counts]
+        parts = [head for head in free if _stem(head) in PARTS]
+        trial = [*counts, *self._headings("person", "item", "stimulus"), *parts]
+        repeats = self._repeats(trial)
+        if self._are_frequent(repeats):
+            numbered = any(_plain(head) in TRIALS for head in counts)
+            others = [head for head in free if head not in parts and len(self.words(head)) <= MOST_STIMULI]
+            longer = [[*trial, head] for head in others if numbered]
+            fewest = min(longer, key=lambda key: len(self._repeats(key)), default=trial)
+            if not self._are_frequent(self._repeats(fewest)):
+                repeats, trial = self._repeats(fewest), fewest
+            elif self._are_designed(repeats, numbered):
+                return None
+        return RepeatedTrial(*repeats[0], tuple(trial)) if repeats else None
+
+    def _repeats(self, key: Sequence[str]) -> list[tuple[int, int]]:
+        """Return the places of rows that agree with an earlier one, after its place; key[0] numbers rows."""
+        first: dict[tuple[str, ...], int] = {}
+        rows = enumerate(zip(*map(self.cells, (*key, *self._headings("excluded"))), strict=True))
+        found = [(first.setdefault(cells, place), place) for place, cells in rows if cells[0]]
+        return [(before, place) for before, place in found if before != place]
+
+    def _are_frequent(self, repeats: Sequence[tuple[int, int]]) -> bool:
+        """Whether most people have repeats."""
+        people = self.cells(self.roles["person"])
+        return 2 * len({people[place] for _, place in repeats}) > len(set(people))
+
+    def _are_designed(self, repeats: Sequence[tuple[int, int]], numbered: bool) -> bool:
+        """Whether a number holds several rows: no copies, and in most trials if it is called a trial's."""
+        trials, several = len(self.rows) - len(repeats), len({before for before, _ in repeats})
+        copied = all(self.rows[before] == self.rows[place] for before, place in repeats)
+        return not copied and (not numbered or 2 * several > trials)
+
 
 def _plain(head: str) -> str:
     return re.sub(r"[^a-z0-9]", "", head.lower())
+
+
+def _stem(head: str) -> str:
+    """Return a heading as _plain does, without the word for a number at its end."""
+    return re.sub(r"(?<=.)(id|no|nr|num|number|index)$", "", _plain(head))
 
 
 def _parted(head: str) -> tuple[str, str, str]:

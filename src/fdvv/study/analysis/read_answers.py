@@ -15,7 +15,7 @@ from fdvv.io.files import read_limited
 from fdvv.io.text import decode_lines, sniff_separator
 from fdvv.study.analysis.code_book import ANSWERS_FILE, CODE_BOOK_FILE, read_code_book, unescaped
 from fdvv.study.analysis.columns import CHANGES, NO, TIMING, YES, ColumnMap, Layout, Row, layout_of, places_of
-from fdvv.study.analysis.infer_columns import Inferred, infer
+from fdvv.study.analysis.infer_columns import Inferred, RepeatedTrial, infer
 from fdvv.study.plan.answers import Answers
 from fdvv.study.plan.trial import EQUAL
 from fdvv.units import FloatArray
@@ -45,7 +45,7 @@ class _Trial:
     time_s: float = np.nan
     excluded: str = ""
     ratings: dict[tuple[str, str], float] = field(default_factory=dict)
-    stimuli: set[str] = field(default_factory=set)
+    lines: dict[str, int] = field(default_factory=dict)
     refused: int = 0
 
 
@@ -96,6 +96,8 @@ def read_table(path: Path, columns: ColumnMap | None = None) -> AnswersTable:
             raise InputError(path, f"line {line}", reason, "check separators and quotes")
     places_of(heads, column_map, book, path)
     found = Inferred(column_map) if book else infer(heads, [cells for _, cells in rows], column_map)
+    if found.repeat:
+        raise _repeat_error(path, heads, rows, found.repeat)
     layout = layout_of(heads, found.column_map, book, path)
     answers = _read(path, heads, rows, found.column_map, layout, decimal_comma=mark != ",")
     names = {role: heads[place] for role, place in layout.roles.items()}
@@ -105,6 +107,19 @@ def read_table(path: Path, columns: ColumnMap | None = None) -> AnswersTable:
         for stimulus, place in places.items()
     }
     return AnswersTable(answers, {} if book else names, frozenset(found.guessed), found.unused)
+
+
+def _repeat_error(
+    path: Path, heads: Sequence[str], rows: Sequence[tuple[int, list[str]]], trial: RepeatedTrial
+) -> InputError:
+    """Say which two lines are one trial, and in what they differ."""
+    (first, before), (line, again) = rows[trial.first], rows[trial.again]
+    other = ", ".join(head for head, a, b in zip(heads, before, again, strict=True) if a != b)
+    which = ", ".join(f"{head} {again[heads.index(head)]}" for head in trial.heads)
+    how = f"with another {other}" if other else "word for word"
+    reason = f"is the trial of line {first} once more, {how}: {which}"
+    remedy = "delete one of them, or tell them apart in a column called button, block or session"
+    return InputError(path, f"line {line}", reason, remedy)
 
 
 def _read(
@@ -127,7 +142,7 @@ def _read(
     found = list(trials.values())
     for trial in found:
         # nothing in it was chosen, and somebody said so of all
-        if not trial.choice and trial.refused > 1 and trial.refused == len(trial.stimuli):
+        if not trial.choice and trial.refused > 1 and trial.refused == len(trial.lines):
             trial.choice = EQUAL
     stimuli = _stimuli(path, column_map, layout, found)
     return _answers(found, replace(column_map, simulated=simulated), stimuli, layout, path)
@@ -156,16 +171,18 @@ def _take(
     # a round of a staircase or of thresholds has many trials
     step = any(not np.isnan(row.number(roles.get(name))) for name in ("ratio", *CHANGES))
     key = (person, item, seen if np.isnan(number) else int(number), row.line if step else 0)
-    if key in trials and not layout.long:
-        reason = f"{person} has a second row of {item}, round {key[2]}"
-        raise InputError(row.path, f"line {row.line}", reason, "give every trial of a person its own round")
     trial = trials.setdefault(key, _Trial(*key[:3]))
+    if stimulus in trial.lines:
+        which = f"{item}, {stimulus}" if stimulus else item
+        reason = f"{person} has a second row of {which}, round {key[2]}, after line {trial.lines[stimulus]}"
+        remedy = "delete one of them, or give every trial of a person its own round"
+        raise InputError(row.path, f"line {row.line}", reason, remedy)
+    trial.lines[stimulus] = row.line
     _fill(row, layout, trial, stimulus)
 
 
 def _fill(row: Row, layout: Layout, trial: _Trial, stimulus: str) -> None:
     roles = layout.roles
-    trial.stimuli.add(stimulus)
     _choose(row, layout, trial, stimulus)
     for name in ("correct", "ratio", "time_s"):
         if name in roles:
@@ -176,10 +193,7 @@ def _fill(row: Row, layout: Layout, trial: _Trial, stimulus: str) -> None:
     trial.excluded = _reason(row.cells[roles["excluded"]]) if "excluded" in roles else trial.excluded
     for rating, places in layout.ratings.items():
         for named, place in places.items():
-            key = (rating, named or stimulus)
-            if key in trial.ratings:
-                raise row.wrong(place, f"{key[1]} is rated twice in one trial", "tell the rounds apart")
-            trial.ratings[key] = row.number(place)
+            trial.ratings[rating, named or stimulus] = row.number(place)
 
 
 def _choose(row: Row, layout: Layout, trial: _Trial, stimulus: str) -> None:
