@@ -15,7 +15,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # without bytecode every test process compiles all it imports: 20 s to collect the tests alone
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo lock quick test test-slow test-browser check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools lowest newcomer clean
+.PHONY: help demo lock quick test test-slow test-browser campaign check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools lowest newcomer clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -58,6 +58,9 @@ test: check ## Every check and every test of the default run
 
 test-slow: setup ## The long tests
 	$(BIN)/pytest -n 2 --dist worksteal --durations 25 -m "slow and not browser"
+
+campaign: setup ## Every case of the random tests of which the other runs play a part; takes hours
+	FDVV_CAMPAIGN=1 $(BIN)/pytest -n 2 --dist worksteal --timeout 14400 --durations 25 -m campaign
 
 lock: setup ## Write the hashes of what constraints.txt names, for every system, into requirements.lock
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-header \

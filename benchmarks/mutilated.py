@@ -91,7 +91,10 @@ def originals(folder: Path | None) -> list[tuple[Path, MeasuredParts]]:
 
 
 def spoilt(
-    files: Sequence[tuple[Path, MeasuredParts]], count: int, cheap: bool = False, ways: Ways = WAYS["first"]
+    files: Sequence[tuple[Path, MeasuredParts]],
+    numbers: range,
+    cheap: bool = False,
+    ways: Ways = WAYS["first"],
 ) -> Iterator[tuple[str, str, bytes, MeasuredParts | None]]:
     """Make files: kind, name, content and what was measured (None where nothing was).
 
@@ -104,7 +107,7 @@ def spoilt(
             for kind in kinds
             if "huge" not in kind and kind not in ("wide", "beyond the limit", "deep JSON")
         ]
-    for number in range(count):
+    for number in numbers:
         kind, rng = kinds[number % len(kinds)], np.random.default_rng(ways.seed + number)
         if kind in OUT_OF_NOTHING:
             suffix = ".json" if "JSON" in kind else ".csv"
@@ -186,12 +189,12 @@ def _off(stroke: MeasuredCurve, parts: MeasuredParts) -> str:
     return f"the {stroke.stroke} is {least:.1f} times the bound from what was measured" if least > 1 else ""
 
 
-def run(count: int, folder: Path | None = None, cheap: bool = False, ways: Ways = WAYS["first"]) -> Found:
+def run(numbers: range, folder: Path | None = None, cheap: bool = False, ways: Ways = WAYS["first"]) -> Found:
     """Spoil and fit; every file of its own is written, read and removed."""
     found = Found()
     files = originals(folder)
     with tempfile.TemporaryDirectory() as place:
-        for kind, name, content, parts in spoilt(files, count, cheap, ways):
+        for kind, name, content, parts in spoilt(files, numbers, cheap, ways):
             path = Path(place) / name
             path.write_bytes(content)
             del content
@@ -225,7 +228,7 @@ def _fit(found: Found, kind: str, path: Path, parts: MeasuredParts | None) -> No
 def main(count: str = "1000", folder: str = "", of: str = "first", seed: str = "") -> None:
     """Print the figures."""
     ways = replace(WAYS[of], seed=int(seed)) if seed else WAYS[of]
-    found = run(int(count), Path(folder) if folder else None, ways=ways)
+    found = run(range(int(count)), Path(folder) if folder else None, ways=ways)
     print(f"{'way':32s} {'files':>6s} {'accepted':>9s}")
     for kind, number in found.kinds.items():
         print(f"{kind:32s} {number:6d} {found.accepted[kind]:9d}")

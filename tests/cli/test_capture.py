@@ -31,6 +31,7 @@ from fdvv.errors import InputError
 from fdvv.model.file import load_model
 from fdvv.recording.file import load_recording
 from fdvv.recording.types import Recording, Stage, Take
+from tests.support.campaign import campaign
 from tests.support.scripted_bench import PressedBoard
 
 from .conftest import Run
@@ -321,14 +322,14 @@ def takes_in(path: Path) -> Recording:
     return Recording("nothing")
 
 
-@pytest.mark.parametrize("kills", [1, pytest.param(200, marks=pytest.mark.slow)])
+@campaign("seed", range(100), part=1)
 def test_a_capture_killed_at_any_moment_loses_no_take_and_goes_on_to_the_same_recording(
-    fdvv: Run, tmp_path: Path, kills: int
+    fdvv: Run, tmp_path: Path, seed: int
 ) -> None:
-    draw = random.Random(kills)
+    draw = random.Random(seed)
     assert fdvv(*LONG).status == 0
     whole = load_recording(tmp_path / FILE)
-    left, folder = kills, tmp_path
+    left, folder = 2, tmp_path
     while left:
         folder = tmp_path / str(left)
         folder.mkdir()

@@ -35,6 +35,7 @@ from fdvv.protocol.tables import (
     RefusedReply,
     Settings,
 )
+from tests.support.campaign import campaign
 from tests.support.link_rigs import PROGRAMS
 from tests.support.scripted_person import ScriptedPerson
 
@@ -272,7 +273,7 @@ def test_a_sanitised_build_finds_nothing_wrong_under_attack(tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(10, 20))
+@campaign("seed", range(10, 20), part=1)
 def test_a_long_siege_does_no_harm(seed: int) -> None:
     siege = Siege(LibraryBoard, seed)
     attack(siege, 50_000)

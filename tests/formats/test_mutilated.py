@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,10 @@ from fdvv.errors import InputError
 from fdvv.formats.force.average import average_by_velocity
 from fdvv.formats.force.read import read_force_file
 from tests.formats.conftest import TEXTS
+from tests.support.campaign import pick
 from tests.support.damage import DAMAGES, Damage
+
+pytestmark = pytest.mark.campaign
 
 
 def check(path: Path) -> None:
@@ -40,9 +42,8 @@ def check(path: Path) -> None:
 @pytest.mark.parametrize("name", TEXTS)
 @given(damages=st.lists(DAMAGES, min_size=1, max_size=3))
 @settings(
-    max_examples=int(os.environ.get("FDVV_EXAMPLES", "60")),
+    max_examples=pick(60, 2000),
     deadline=None,
-    derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 def test_a_mutilated_text_file_is_read_or_refused(
@@ -57,9 +58,8 @@ def test_a_mutilated_text_file_is_read_or_refused(
 
 @given(damages=st.lists(DAMAGES, min_size=1, max_size=2), inside=st.booleans())
 @settings(
-    max_examples=int(os.environ.get("FDVV_EXAMPLES", "60")),
+    max_examples=pick(60, 2000),
     deadline=None,
-    derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 def test_a_mutilated_spreadsheet_is_read_or_refused(
@@ -81,9 +81,8 @@ def test_a_mutilated_spreadsheet_is_read_or_refused(
 
 @given(data=st.binary(max_size=300))
 @settings(
-    max_examples=int(os.environ.get("FDVV_EXAMPLES", "150")),
+    max_examples=pick(150, 2000),
     deadline=None,
-    derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 def test_any_bytes_at_all_are_read_or_refused(files: Any, tmp_path: Path, data: bytes) -> None:
@@ -102,9 +101,8 @@ CELL = st.one_of(st.floats(width=32).map(repr), st.sampled_from(["", "a", "1,5",
 
 @given(header=st.sampled_from(HEADERS), rows=st.lists(st.lists(CELL, max_size=5), max_size=40))
 @settings(
-    max_examples=int(os.environ.get("FDVV_EXAMPLES", "150")),
+    max_examples=pick(150, 2000),
     deadline=None,
-    derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 def test_any_numbers_under_a_header_are_read_or_refused(

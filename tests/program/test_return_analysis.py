@@ -18,6 +18,7 @@ from fdvv.program.library import make, programs
 from fdvv.program.program import Program, State
 from fdvv.program.surface import Limits, flat, line
 from fdvv.protocol.tables import Mode, Settings
+from tests.support.campaign import campaign
 from tests.support.inputs import inputs_at
 from tests.support.program.random_images import random_program
 
@@ -182,16 +183,11 @@ def accepted_come_back(seeds: range) -> tuple[int, int]:
     return accepted, len(seeds) - accepted
 
 
-def test_random_programs_that_are_accepted_come_back_within_their_bound() -> None:
-    accepted, refused = accepted_come_back(range(40))
+@campaign("block", range(30), part=1)
+def test_random_programs_that_are_accepted_come_back_within_their_bound(block: int) -> None:
+    accepted, refused = accepted_come_back(range(1000 + 50 * block, 1050 + 50 * block))
     assert accepted >= 5
     assert refused >= 5
-
-
-@pytest.mark.slow
-def test_many_random_programs_that_are_accepted_come_back_within_their_bound() -> None:
-    accepted, _ = accepted_come_back(range(1000, 2500))
-    assert accepted >= 150
 
 
 def test_a_bound_of_time_is_not_far_above_what_happens() -> None:

@@ -9,11 +9,10 @@ import sys
 import time
 from pathlib import Path
 
-import pytest
-
 from fdvv.model.file import load_builtin, load_model
 from fdvv.project.documents import DocumentStore
 from fdvv.project.patch import model_of
+from tests.support.campaign import campaign
 
 EDITOR = """
 import itertools, sys
@@ -38,9 +37,7 @@ for i in itertools.count(start):
 """
 
 
-@pytest.mark.parametrize(
-    "seed", [*range(2), *(pytest.param(s, marks=pytest.mark.slow) for s in range(2, 42))]
-)
+@campaign("seed", range(42), part=2)
 def test_every_acknowledged_edit_survives_a_kill(tmp_path: Path, seed: int) -> None:
     project, rng = tmp_path / "project", random.Random(seed)
     drafts = DocumentStore(project)

@@ -18,6 +18,7 @@ from fdvv.recording.log import RecordingLog
 from fdvv.recording.types import Take
 from tests.recording.strategies import contents
 from tests.recording.takes import ABOUT, take
+from tests.support.campaign import campaign
 
 LONGEST_s = 0.08
 """A child makes its first take after some 20 ms, and then one every few."""
@@ -81,31 +82,21 @@ def takes_of(path: Path) -> tuple[Take, ...]:
     return load_recording(path).takes
 
 
-def survive(server: subprocess.Popen[str], folder: Path, moments: int) -> None:
-    """Kill at random moments; a file goes on ten times, then another is begun."""
-    rng = random.Random(1)
-    for moment in range(moments):
-        path = folder / f"{moment // 10}.recording.jsonl"
+@campaign("seed", range(10), part=1)
+def test_killed_at_twenty_random_moments_no_finished_take_is_lost(
+    server: subprocess.Popen[str], tmp_path: Path, seed: int
+) -> None:
+    """A file goes on ten times, then another is begun."""
+    rng = random.Random(seed)
+    for moment in range(20):
+        path = tmp_path / f"{moment // 10}.recording.jsonl"
         before = len(takes_of(path))
         reported = max(before, killed(server, path, rng.uniform(0, LONGEST_s)))
         found = takes_of(path)
         assert reported <= len(found) <= reported + 1
         assert contents(found[before:]) == contents(tuple(take(t.number) for t in found[before:]))
-    for path in folder.iterdir():
+    for path in tmp_path.iterdir():
         with RecordingLog(path, ABOUT) as log:
             log.add(take(log.next_number))
         every = load_recording(path).takes
         assert contents(every) == contents(tuple(take(number) for number in range(1, len(every) + 1)))
-
-
-def test_killed_at_twenty_random_moments_no_finished_take_is_lost(
-    server: subprocess.Popen[str], tmp_path: Path
-) -> None:
-    survive(server, tmp_path, 20)
-
-
-@pytest.mark.slow
-def test_killed_at_two_hundred_random_moments_no_finished_take_is_lost(
-    server: subprocess.Popen[str], tmp_path: Path
-) -> None:
-    survive(server, tmp_path, 200)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -16,13 +15,13 @@ from fdvv.recording.read import read_log
 from fdvv.recording.types import Recording
 from tests.recording.files import NAMES, TEXTS, wav
 from tests.recording.takes import TAKE, head
+from tests.support.campaign import pick
 from tests.support.damage import DAMAGES, Damage
 
-EXAMPLES = int(os.environ.get("FDVV_EXAMPLES", "15"))
+pytestmark = pytest.mark.campaign
 SETTINGS = settings(
-    max_examples=EXAMPLES,
+    max_examples=pick(15, 1000),
     deadline=None,
-    derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 

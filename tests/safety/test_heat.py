@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import math
-import os
-import sys
-import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -25,6 +22,7 @@ from fdvv.twin.settings import limits_of, settings_of
 from fdvv.units import FloatArray
 from tests.safety._build import REPOSITORY, SOURCES, compile_c
 from tests.safety.test_zero_force import constant_force
+from tests.support.campaign import campaign
 from tests.support.inputs import inputs_at
 
 SCENE_s = 60.0
@@ -95,20 +93,24 @@ def play(
     return done, result
 
 
-def test_the_model_is_never_cooler_than_the_coil_in_random_minutes(library: ctypes.CDLL) -> None:
-    for limits in boards():
-        done, result = play(library, 1, 60, limits)
-        assert done == 60
+@campaign("block", range(1500), part=1)
+def test_the_model_is_never_cooler_than_the_coil_in_a_million_random_minutes(
+    library: ctypes.CDLL, block: int
+) -> None:
+    for number, limits in enumerate(boards()):
+        done, result = play(library, 1_000_000 * (number + 1) + 100 * block, 100, limits)
+        assert done == 100
         assert result.hottest_K > (limits.heat_time_ms <= 60_000) * 0.25 * limits.full_duty_rise_K
 
 
-def test_no_coil_is_beyond_the_limit_in_random_minutes_with_restarts_and_power_cuts(
-    library: ctypes.CDLL,
+@campaign("block", range(2000), part=1)
+def test_no_coil_is_beyond_the_limit_in_a_million_random_minutes_with_restarts_and_power_cuts(
+    library: ctypes.CDLL, block: int
 ) -> None:
     hottest_K = 0.0
-    for limits in strong_rigs():
-        done, result = play(library, 7, 30, limits, is_guarded=True)
-        assert done == 30
+    for number, limits in enumerate(strong_rigs()):
+        done, result = play(library, 1_000_000 * (number + 1) + 50 * block, 50, limits, is_guarded=True)
+        assert done == 50
         assert result.hottest_K <= limits.heat_limit_K
         hottest_K = max(hottest_K, result.hottest_K / limits.heat_limit_K)
     assert hottest_K > 0.95
@@ -139,38 +141,6 @@ def test_a_cold_coil_has_its_force_back_soon_after_a_power_cut(
     settings, limits = settings_of(load_rig(name)), limits_of(load_rig(name))
     found_s = library.safety_recovery_s(settings.pack(), limits.pack(), ctypes.c_int(2165))  # 22 C
     assert found_s == pytest.approx(whole_s, abs=0.5)
-
-
-def report(done: int, result: Result, start: float) -> None:
-    """Print what a long run found."""
-    sys.stdout.write(
-        f"{done} minutes, {result.ticks} ticks, least margin {result.least_margin_K:.2e} K, mean "
-        f"{result.mean_margin_K:.1f} K, hottest {result.hottest_K:.1f} K, "
-        f"{time.perf_counter() - start:.0f} s\n"
-    )
-
-
-@pytest.mark.slow
-def test_many_random_minutes_leave_the_model_hotter(library: ctypes.CDLL) -> None:
-    """By hand with FDVV_ROUNDS=150000: a million minutes, in 12 of the processor."""
-    scenes = int(os.environ.get("FDVV_ROUNDS", "8000"))
-    for number, limits in enumerate(boards()):
-        start = time.perf_counter()
-        done, result = play(library, 1_000_000 * (number + 1), scenes, limits)
-        report(done, result, start)
-        assert done == scenes
-
-
-@pytest.mark.slow
-@pytest.mark.skipif("FDVV_ROUNDS" not in os.environ, reason="by hand: FDVV_ROUNDS=100000, a million minutes")
-def test_many_random_minutes_with_power_cuts_leave_no_coil_beyond_the_limit(library: ctypes.CDLL) -> None:
-    scenes = int(os.environ["FDVV_ROUNDS"])
-    for number, limits in enumerate(strong_rigs()):
-        start = time.perf_counter()
-        done, result = play(library, 1_000_000 * (number + 1), scenes, limits, is_guarded=True)
-        report(done, result, start)
-        assert done == scenes
-        assert result.hottest_K <= limits.heat_limit_K
 
 
 def coil_K(limits: BoardLimits, tick_s: float, outputs: RecordArray, start_K: float = 0.0) -> FloatArray:

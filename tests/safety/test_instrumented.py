@@ -82,5 +82,6 @@ def test_the_sanitiser_sees_a_byte_read_beyond_an_image(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.campaign
 def test_nothing_is_undefined_in_the_long_tests_either(tmp_path: Path) -> None:
     run_on(build(tmp_path, *SANITISED))

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import os
-import random
 import subprocess
-import sys
-import time
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -20,10 +17,11 @@ from tests.safety._checks import checks_of_settings
 from tests.safety._equivalents import EQUIVALENT
 from tests.safety._mutants import Mutant, mutants
 from tests.safety._script import Script
+from tests.support.campaign import campaign
 
 SOURCES = {name: CORE / f"{name}.c" for name in ("supervisor", "heat", "thermistor", "settings")}
-SHARES = {"supervisor": 32, "heat": 12, "thermistor": 12, "settings": 12}
-"""Mutants planted by default."""
+SHARES = 20
+"""A usual run plants the mutants of one."""
 REPLAY = Path(__file__).with_name("_replay.c")
 SECONDS = 5
 """A mutant that has not ended by then hangs, which a watchdog sees: caught."""
@@ -118,10 +116,12 @@ def test_the_code_itself_passes(bench: Bench) -> None:
 
 
 @pytest.mark.parametrize("name", SOURCES)
-def test_a_sample_of_mutants_is_caught(bench: Bench, name: str) -> None:
-    alive, counts = survivors(bench, name, random.Random(1).sample(candidates(name), SHARES[name]))
+@campaign("share", range(SHARES), part=1)
+def test_every_mutant_is_caught(bench: Bench, share: int, name: str) -> None:
+    chosen = candidates(name)[share::SHARES]
+    alive, counts = survivors(bench, name, chosen)
     assert alive == []
-    assert counts["caught"] >= 0.9 * SHARES[name] - 1
+    assert counts["caught"] >= 0.9 * len(chosen) - 1
 
 
 @pytest.mark.parametrize("name", SOURCES)
@@ -129,13 +129,3 @@ def test_each_equivalent_is_a_mutant_that_exists_and_has_its_reason(name: str) -
     names = {mutant.name for mutant in mutants(SOURCES[name].read_text())}
     assert set(EQUIVALENT[name]) <= names
     assert all(len(reason.split()) > 3 for reason in EQUIVALENT[name].values())
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SOURCES)
-def test_every_mutant_is_caught(bench: Bench, name: str) -> None:
-    start = time.perf_counter()
-    alive, counts = survivors(bench, name, candidates(name))
-    assert alive == []
-    found = f"{counts['caught']} caught, {counts['not C']} not C, {len(EQUIVALENT[name])} equivalent"
-    sys.stdout.write(f"{name}.c: {found}, {time.perf_counter() - start:.0f} s\n")

@@ -8,6 +8,7 @@ import pytest
 
 from tests.safety import _scenes
 from tests.safety._script import Script
+from tests.support.campaign import campaign
 
 
 @pytest.mark.parametrize("scene", _scenes.DIRECTED, ids=lambda scene: scene.__name__)
@@ -17,16 +18,8 @@ def test_each_scene_goes_as_the_oracle_says(scene: Callable[[Script], None]) -> 
     assert script.play() == ""
 
 
-@pytest.mark.parametrize("seed", range(5))
+@campaign("seed", range(100), part=5)
 def test_10_000_random_ticks_go_as_the_oracle_says(seed: int) -> None:
     script = Script()
     _scenes.chance(script, seed, 10_000)
     assert script.play() == ""
-
-
-@pytest.mark.slow
-def test_a_million_random_ticks_go_as_the_oracle_says() -> None:
-    for seed in range(100, 150):
-        script = Script()
-        _scenes.chance(script, seed, 20_000)
-        assert script.play() == "", seed

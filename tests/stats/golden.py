@@ -6,11 +6,11 @@ import json
 from pathlib import Path
 from typing import Any
 
-import pytest
+from tests.support.campaign import campaign
 
 FILES = Path(__file__).parent / "files"
-EVERY = pytest.mark.parametrize("every", [10, pytest.param(1, marks=pytest.mark.slow)])
-"""Of what other people's programs say: a tenth by default, all of it in the slow run."""
+TENTHS = campaign("start", range(10), part=1)
+"""Of what other people's programs say: every tenth answer from the start that is drawn."""
 
 
 def golden(name: str, file: str = "answers", least: int = 200) -> list[Any]:

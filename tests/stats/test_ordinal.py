@@ -11,8 +11,7 @@ from fdvv.stats.ordinal import ordinal_model
 from fdvv.stats.ordinal_fit import OrdinalPoint, gathered, log_likelihood
 from fdvv.units import FloatArray
 from tests.stats.golden import golden
-
-SLOW = pytest.mark.slow
+from tests.support.campaign import campaign
 
 
 def some_ratings(
@@ -33,8 +32,9 @@ def of_golden(one: Any) -> tuple[FloatArray, Any, FloatArray]:
     return ratings, person, np.tile(np.repeat([0.0, 1.0], rounds), one["people"])
 
 
-def compared(sets: list[Any]) -> None:
-    for one in sets:
+@campaign("start", range(50), part=1)
+def test_it_agrees_with_ordinals_clmm(start: int) -> None:
+    for one in golden("ordinal")[start::50]:
         found = ordinal_model(*of_golden(one), ["x"], nodes=7)
         effect = found.of("x")
         assert found.problem == ""
@@ -45,17 +45,9 @@ def compared(sets: list[Any]) -> None:
         assert found.missing == one["r"].count("0")
 
 
-def test_it_agrees_with_ordinals_clmm() -> None:
-    compared(golden("ordinal")[::50])
-
-
-@pytest.mark.slow
-def test_it_agrees_with_ordinals_clmm_on_200_studies() -> None:
-    compared(golden("ordinal"))
-
-
-def compared_slopes(sets: list[Any]) -> None:
-    for one in sets:
+@campaign("start", range(12), part=1)
+def test_with_a_slope_it_agrees_with_ordinals_clmm(start: int) -> None:
+    for one in golden("ordinal_slope", least=25)[start::12]:
         ratings, person, x = of_golden(one)
         there = ~np.isnan(ratings)
         _, category = np.unique(ratings[there], return_inverse=True)
@@ -70,15 +62,6 @@ def compared_slopes(sets: list[Any]) -> None:
         # ours is the higher by the same measure, and not far away
         assert found.log_likelihood >= log_likelihood(data, point, 9)[0] - 1e-6
         assert found.of("x").value == pytest.approx(one["value"], abs=0.05 * one["error"])
-
-
-def test_with_a_slope_it_agrees_with_ordinals_clmm() -> None:
-    compared_slopes(golden("ordinal_slope", least=25)[:2])
-
-
-@pytest.mark.slow
-def test_with_a_slope_it_agrees_with_ordinals_clmm_on_all_studies() -> None:
-    compared_slopes(golden("ordinal_slope", least=25))
 
 
 def a_point(random: np.random.Generator, size: int) -> OrdinalPoint:
@@ -106,18 +89,14 @@ def integrated(ratings: FloatArray, person: Any, x: FloatArray, point: OrdinalPo
     return total
 
 
-@pytest.mark.parametrize(
-    ("size", "sets"),
-    [(1, 6), (2, 1), *(pytest.param(size, 200, marks=SLOW) for size in (1, 2))],
-)
-def test_the_likelihood_is_that_of_a_plain_integral(size: int, sets: int) -> None:
-    random = np.random.default_rng(6)
-    for seed in range(sets):
-        ratings, person, x = some_ratings(seed, people=3, rounds=3)
-        data = gathered(ratings.astype(int) - 1, person, x[:, np.newaxis], 0 if size == 2 else None)
-        point = a_point(random, size)
-        value, _ = log_likelihood(data, point, 21)
-        assert value == pytest.approx(integrated(ratings, person, x, point), abs=2e-4)
+@pytest.mark.parametrize("size", [1, 2])
+@campaign("seed", range(200), part=2)
+def test_the_likelihood_is_that_of_a_plain_integral(seed: int, size: int) -> None:
+    ratings, person, x = some_ratings(seed, people=3, rounds=3)
+    data = gathered(ratings.astype(int) - 1, person, x[:, np.newaxis], 0 if size == 2 else None)
+    point = a_point(np.random.default_rng(6 + seed), size)
+    value, _ = log_likelihood(data, point, 21)
+    assert value == pytest.approx(integrated(ratings, person, x, point), abs=2e-4)
 
 
 @pytest.mark.parametrize("size", [1, 2])

@@ -16,7 +16,8 @@ from fdvv.stats.post_hoc import holm
 from fdvv.stats.rank_tests import friedman, ranked_pairs, signed_rank, signed_ranks, turnable_ranks
 from fdvv.stats.share import sign_test
 from fdvv.units import FloatArray
-from tests.stats.golden import EVERY, golden
+from tests.stats.golden import TENTHS, golden
+from tests.support.campaign import campaign
 
 
 def test_it_agrees_with_R_on_200_studies_with_ties() -> None:
@@ -93,12 +94,11 @@ def test_what_cannot_be_tested_is_refused(call: Any, reason: str) -> None:
         call()
 
 
-SLOW = pytest.mark.slow
-
 ZEROS: Any = (("wilcoxon", "wilcox"), ("pratt", "pratt"))
 """What we call each way with zeros, and what SciPy calls it."""
 
-SETS = pytest.mark.parametrize("sets", [15, pytest.param(200, marks=SLOW)])
+SETS = campaign("start", range(12), part=1)
+"""Of the 200 drawn sets of differences: every twelfth from the start that is drawn."""
 
 
 def some_differences(sets: int = 200, most: int = 11) -> list[FloatArray]:
@@ -140,11 +140,11 @@ def test_each_z_and_p_that_the_paper_prints_comes_out_of_some_twelve_people(
 
 
 @SETS
-def test_the_asymptotic_p_agrees_with_scipy_of_each_kind_of_zeros(sets: int) -> None:
+def test_the_asymptotic_p_agrees_with_scipy_of_each_kind_of_zeros(start: int) -> None:
     from scipy import stats
 
     wilcoxon: Any = stats.wilcoxon
-    for x in some_differences(sets):
+    for x in some_differences()[start::12]:
         for ours, theirs in ZEROS:
             found = signed_rank(x, ours)
             plain = wilcoxon(x, zero_method=theirs, method="asymptotic", correction=False)
@@ -157,8 +157,8 @@ def test_the_asymptotic_p_agrees_with_scipy_of_each_kind_of_zeros(sets: int) -> 
 
 
 @SETS
-def test_the_exact_p_agrees_with_turning_all_signs_of_each_kind_of_zeros(sets: int) -> None:
-    for x in some_differences(sets):
+def test_the_exact_p_agrees_with_turning_all_signs_of_each_kind_of_zeros(start: int) -> None:
+    for x in some_differences()[start::12]:
         for zeros, _ in ZEROS:
             ranks = turnable_ranks(x, zeros)
             signs = np.array(list(product((0, 1), repeat=x.size)))
@@ -178,11 +178,11 @@ def test_the_exact_p_agrees_with_scipys_permutations() -> None:
             assert signed_rank(x, ours).p_exact == pytest.approx(expected.pvalue, abs=1e-12)
 
 
-@EVERY
+@TENTHS
 def test_it_agrees_with_coin_exactRankTests_and_R_on_200_sets_with_ties_zeros_and_missing_people(
-    every: int,
+    start: int,
 ) -> None:
-    for one in golden("signed_rank")[::every]:
+    for one in golden("signed_rank")[start::10]:
         x = np.array(one["x"], dtype=np.float64)
         found, pratt = signed_rank(x), signed_rank(x, "pratt")
         assert found.w_plus == one["V"]
@@ -202,9 +202,9 @@ def test_it_agrees_with_coin_exactRankTests_and_R_on_200_sets_with_ties_zeros_an
             assert [found.shift, found.low, found.high] == pytest.approx([one["shift"], *one["interval"]])
 
 
-@EVERY
-def test_the_effect_agrees_with_pingouin_on_200_sets(every: int) -> None:
-    for x, effect, statistic in golden("signed_rank", "answers_pingouin")[::every]:
+@TENTHS
+def test_the_effect_agrees_with_pingouin_on_200_sets(start: int) -> None:
+    for x, effect, statistic in golden("signed_rank", "answers_pingouin")[start::10]:
         found = signed_rank(x)
         assert found.effect == pytest.approx(effect)
         assert found.statistic == statistic
@@ -282,11 +282,11 @@ def test_differences_that_cannot_be_tested_are_refused(x: Any, reason: str) -> N
 
 
 @SETS
-def test_the_sign_test_agrees_with_scipy_and_statsmodels(sets: int) -> None:
+def test_the_sign_test_agrees_with_scipy_and_statsmodels(start: int) -> None:
     from scipy.stats import binomtest
     from statsmodels.stats.descriptivestats import sign_test as theirs  # type: ignore[import-untyped]
 
-    for x in some_differences(sets):
+    for x in some_differences()[start::12]:
         found = sign_test(np.append(x, np.nan))
         n = found.plus + found.minus
         assert found.p == pytest.approx(binomtest(found.plus, n).pvalue, rel=1e-10)

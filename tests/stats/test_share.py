@@ -19,9 +19,8 @@ from fdvv.stats.share import (
     share_of_totals,
     wilson,
 )
-from tests.stats.golden import EVERY, golden
-
-SLOW = pytest.mark.slow
+from tests.stats.golden import TENTHS, golden
+from tests.support.campaign import campaign
 
 
 def some_counts(sets: int = 200) -> tuple[Any, Any]:
@@ -55,11 +54,11 @@ def test_both_intervals_agree_with_statsmodels_on_200_counts() -> None:
         assert np.abs(ours[1] - high).max() < 1e-12
 
 
-@EVERY
-def test_both_intervals_and_the_exact_p_agree_with_scipy_on_200_counts(every: int) -> None:
+@TENTHS
+def test_both_intervals_and_the_exact_p_agree_with_scipy_on_200_counts(start: int) -> None:
     from scipy.stats import binomtest
 
-    k, n = (column[::every] for column in some_counts())
+    k, n = (column[start::10] for column in some_counts())
     for ours, scipys in ((wilson(k, n), "wilson"), (clopper_pearson(k, n), "exact")):
         for i in range(len(k)):
             expected = binomtest(int(k[i]), int(n[i])).proportion_ci(method=scipys)  # type: ignore[arg-type]
@@ -86,17 +85,17 @@ def test_people_as_people_agrees_with_survey_on_200_studies() -> None:
             assert (found.low, found.high) == pytest.approx((plain.low, plain.high))
 
 
-@pytest.mark.parametrize("every", [25, pytest.param(1, marks=SLOW)])
-def test_the_beta_binomial_agrees_with_VGAM(every: int) -> None:
+@campaign("start", range(20), part=1)
+def test_the_beta_binomial_agrees_with_VGAM(start: int) -> None:
     compared = 0
-    for one in golden("clustered")[::every]:
+    for one in golden("clustered")[start::20]:
         if one["mu"] is None or one["rho"] < 1e-4:
             continue
         k, n = (np.array(one[name], dtype=np.float64) for name in ("k", "n"))
         mean, alike = beta_binomial_fit(k[n > 0], n[n > 0])
         assert [mean, alike] == pytest.approx([one["mu"], one["rho"]], abs=2e-5)
         compared += 1
-    assert compared >= 150 // every
+    assert compared >= 150 // 20
 
 
 def test_the_beta_binomial_interval_ends_where_scipys_likelihood_has_fallen() -> None:
@@ -173,7 +172,7 @@ def test_intervals_hold_the_share_and_mirror(n: int, part: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("spread", [0.0, 0.05, 0.2])
+@campaign("spread", [0.0, 0.05, 0.2], part=1)
 def test_intervals_over_people_hold_the_truth_about_as_often_as_they_say(spread: float) -> None:
     random = np.random.default_rng(9)
     hits: dict[Any, int] = {"korn-graubard": 0, "beta-binomial": 0, "plain": 0}

@@ -14,7 +14,7 @@ from scipy.stats import norm
 from fdvv.stats.anova import repeated_measures_anova
 from fdvv.stats.ordinal import ordinal_model
 from fdvv.stats.ordinal_fit import OrdinalFit, fitted, gathered
-from tests.study.test_textbook import DRAWS, TWO, analysed
+from tests.study.test_textbook import DRAWS, TENTHS, TWO, analysed, draws
 from tests.support import textbook, textbook_models
 
 pytestmark = pytest.mark.slow
@@ -43,10 +43,10 @@ def fit_of(ratings: Any, person: Any, x: Any, slope: bool, nodes: int) -> Ordina
 
 
 @pytest.mark.parametrize("slope", [False, True])
-@pytest.mark.parametrize("part", range(5))
+@TENTHS
 def test_the_error_of_an_ordinal_effect_is_in_the_inverse_of_the_hessian(part: int, slope: bool) -> None:
     bounded = 0
-    for seed in range(part * DRAWS // 5, (part + 1) * DRAWS // 5):
+    for seed in draws(part):
         ratings, person, x = some_answers(seed)
         found = ordinal_model(ratings, person, x, ["x"], "x" if slope else None)
         if found.problem:
@@ -65,12 +65,13 @@ def test_the_error_of_an_ordinal_effect_is_in_the_inverse_of_the_hessian(part: i
         assert_allclose([effect.low, effect.high], [effect.value - half, effect.value + half])
         assert_allclose(effect.p, 2 * norm.sf(abs(effect.value) / effect.error), atol=1e-12)
         bounded += 1
-    assert bounded > 0.9 * DRAWS / 5
+    assert bounded > 0.9 * DRAWS / 10
 
 
-def test_sphericity_and_sizes_of_effects_from_their_definitions() -> None:
+@TENTHS
+def test_sphericity_and_sizes_of_effects_from_their_definitions(part: int) -> None:
     apart = defaultdict[bool, list[float]](list)
-    for seed in range(DRAWS):
+    for seed in draws(part):
         random = np.random.default_rng(seed)
         buttons, levels = (int(n) for n in random.integers(2, 6, 2))
         people = int(random.integers(max(buttons, levels, 3), 15))
@@ -116,9 +117,10 @@ def timed(seed: int) -> textbook.Rows:
     return rows
 
 
-def test_the_same_of_whole_analyses_with_gaps_and_uneven_rounds(tmp_path: Path) -> None:
+@TENTHS
+def test_the_same_of_whole_analyses_with_gaps_and_uneven_rounds(part: int, tmp_path: Path) -> None:
     tested = 0
-    for seed in range(DRAWS):
+    for seed in draws(part):
         rows = timed(seed)
         found = analysed(rows, "timing", tmp_path).timing
         assert found is not None
@@ -139,4 +141,4 @@ def test_the_same_of_whole_analyses_with_gaps_and_uneven_rounds(tmp_path: Path) 
             assert_allclose(sphericity.W, W, rtol=1e-7)
             assert_allclose(sphericity.p, p, atol=0.06)
             tested += 1
-    assert tested > DRAWS / 2
+    assert tested > DRAWS / 10 / 2

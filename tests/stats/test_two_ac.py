@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 from fdvv.errors import ModelError
 from fdvv.stats.thurstone import d_prime_2afc
 from fdvv.stats.two_ac import _most_likely, shares_2ac, two_ac, two_ac_people
-from tests.stats.golden import EVERY, golden
+from tests.stats.golden import TENTHS, golden
+from tests.support.campaign import campaign
 
 
-@EVERY
-def test_it_agrees_with_ordinal_on_200_tables(every: int) -> None:
-    for one in golden("two_ac")[::every]:
+@TENTHS
+def test_it_agrees_with_ordinal_on_200_tables(start: int) -> None:
+    for one in golden("two_ac")[start::10]:
         found = two_ac(*one["counts"])
         assert found.d == pytest.approx(one["d"], abs=2e-5)
         assert found.tau == pytest.approx(one["tau"], abs=2e-5)
@@ -105,26 +106,16 @@ def test_counts_that_cannot_be_are_refused(counts: Any) -> None:
         two_ac(*counts)
 
 
-def compared_people(sets: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
+@campaign("start", range(50), part=1)
+def test_over_people_it_agrees_with_ordinals_mixed_model(start: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fdvv.stats.two_ac.NODES", 7)
-    for one in sets:
+    for one in golden("two_ac_people")[start::50]:
         found = two_ac_people(one["counts"])
         half = 1.959964 * one["error"]
         assert found.all.d == pytest.approx(one["d"], abs=2e-3)
         assert found.all.tau == pytest.approx(one["tau"], abs=1e-3)
         assert found.person_sd == pytest.approx(one["sd"], abs=2e-3)
         assert (found.all.high - found.all.low) / 2 == pytest.approx(half, rel=0.01)
-
-
-def test_over_people_it_agrees_with_ordinals_mixed_model(monkeypatch: pytest.MonkeyPatch) -> None:
-    compared_people(golden("two_ac_people")[::50], monkeypatch)
-
-
-@pytest.mark.slow
-def test_over_people_it_agrees_with_ordinals_mixed_model_on_200_studies(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    compared_people(golden("two_ac_people"), monkeypatch)
 
 
 def test_over_people_the_interval_is_wider_than_over_answers() -> None:

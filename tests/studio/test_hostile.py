@@ -23,6 +23,7 @@ from websockets.typing import Origin
 from fdvv.studio.parts import load_parts
 from tests.studio.running import RunningStudio
 from tests.studio.values import any_value, question
+from tests.support.campaign import campaign
 
 CALLS = sorted(load_parts().calls.values(), key=lambda c: c.name)
 CHANNELS = sorted(load_parts().channels.values(), key=lambda c: c.name)
@@ -68,14 +69,9 @@ def ask_all(person: httpx2.Client, rounds: int, seed: int) -> Counter[int]:
     return found
 
 
-def test_calls_refuse_what_they_cannot_use(person: httpx2.Client) -> None:
-    found = ask_all(person, rounds=15, seed=1)
-    sys.stdout.write(f"{found.total()} drawn questions to {len(CALLS)} calls: {dict(found)}\n")
-
-
-@pytest.mark.slow
-def test_calls_refuse_what_they_cannot_use_many_times(person: httpx2.Client) -> None:
-    found = ask_all(person, rounds=300, seed=2)
+@campaign("seed", range(20), part=1)
+def test_calls_refuse_what_they_cannot_use(person: httpx2.Client, seed: int) -> None:
+    found = ask_all(person, rounds=15, seed=seed)
     sys.stdout.write(f"{found.total()} drawn questions to {len(CALLS)} calls: {dict(found)}\n")
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import base64
 import json
-import os
 import random
 import sys
 from collections import Counter
@@ -26,10 +25,9 @@ from websockets.typing import Origin
 from fdvv.studio.parts import load_parts
 from tests.studio.memory import Memory
 from tests.studio.running import RunningStudio
+from tests.support.campaign import campaign, pick
 
 CALLS, CHANNELS = load_parts().calls, load_parts().channels
-SHORT = 2
-"""Rounds of a usual run; by hand, FDVV_ROUNDS=8, or 84 for 50,000 calls and messages."""
 SELDOM = {
     "jobs.start": 0.2,
     "studies.freeze": 0.1,
@@ -185,8 +183,8 @@ def studio(tmp_path: Path) -> Iterator[RunningStudio]:
 
 
 @pytest.fixture
-def page(studio: RunningStudio) -> Iterator[Page]:
-    found = Page(studio, seed=int(os.environ.get("FDVV_SEED", "5")))
+def page(studio: RunningStudio, seed: int) -> Iterator[Page]:
+    found = Page(studio, seed)
     yield found
     found.close()
     sys.stdout.write(found.report())
@@ -206,6 +204,7 @@ def held(studio: RunningStudio) -> tuple[int, int]:
     return len(others), len(list((process / "task").iterdir()))
 
 
+@campaign("seed", range(20), part=1)
 def test_calls_and_messages_with_known_ids_cause_no_internal_error(page: Page) -> None:
     page.ask_many(450)
     page.talk(100)
@@ -213,17 +212,18 @@ def test_calls_and_messages_with_known_ids_cause_no_internal_error(page: Page) -
 
 
 @pytest.mark.slow
+@campaign("seed", [5], part=1)
 def test_many_calls_and_messages_reach_nearly_every_call_and_leak_nothing(
     page: Page, studio: RunningStudio
 ) -> None:
     after_first = (0, 0)
-    rounds = int(os.environ.get("FDVV_ROUNDS", SHORT))
+    rounds = pick(2, 84)
     for turn in range(rounds):
         page.ask_many(500)
         page.talk(100)
         page.end_all()
         after_first = after_first if turn else held(studio)
-    assert len(page.reached) >= (70 if rounds > SHORT else 55)
+    assert len(page.reached) >= (pick(55, 70))
     files, threads = held(studio)
     assert files <= after_first[0] + 10
     assert threads <= after_first[1] + 10

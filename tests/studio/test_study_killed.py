@@ -13,6 +13,7 @@ import pytest
 from fdvv.study.admin.study import Study
 from tests.browser.study_screens import plan_text
 from tests.studio.study_lives import GONE, HOST, PASSPHRASE, Hatchery, Killer, Taker, Words
+from tests.support.campaign import campaign
 from tests.support.study_witness import Witness, check_labels
 
 TEXT = plan_text(2, 2, reference=True, pages=True, switch_s=0.0, break_every_min=0.01, break_min=0.002)
@@ -138,7 +139,7 @@ def kill_studio(project: Project, studios: Hatchery, port: int, after: int, afte
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(8))
+@campaign("seed", range(8), part=1)
 def test_no_answer_is_lost_when_the_studio_is_killed_at_256_random_moments(
     tmp_path: Path, studios: Hatchery, port: int, seed: int, record_property: Callable[[str, object], None]
 ) -> None:
@@ -150,7 +151,7 @@ def test_no_answer_is_lost_when_the_studio_is_killed_at_256_random_moments(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(8))
+@campaign("seed", range(8), part=1)
 def test_no_answer_is_lost_when_the_page_is_killed_at_256_random_moments(
     tmp_path: Path,
     studios: Hatchery,

@@ -17,6 +17,7 @@ from fdvv.errors import InputError
 from fdvv.eventlog import line_of
 from fdvv.study.files.chained_log import ChainedLog, next_chain, read_chained
 from fdvv.study.files.log_head import LogHead, head_path
+from tests.support.campaign import campaign
 from tests.support.kill import Killed, kill_at
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
@@ -52,12 +53,12 @@ def test_what_was_written_is_read_back(tmp_path: Path, key: bytes) -> None:
 
 
 @KEYS
-@pytest.mark.parametrize("apart", [61, pytest.param(1, marks=pytest.mark.slow)])
-def test_a_changed_byte_anywhere_is_noticed(tmp_path: Path, key: bytes, apart: int) -> None:
+@campaign("start", range(61), part=1)
+def test_a_changed_byte_anywhere_is_noticed(tmp_path: Path, key: bytes, start: int) -> None:
     path = written(tmp_path, key)
     for file in (path, head_path(path)):
         whole = file.read_bytes()
-        for place in range(0, len(whole), apart):
+        for place in range(start, len(whole), 61):
             for by in (1, 128):
                 changed = bytearray(whole)
                 changed[place] ^= by

@@ -11,6 +11,7 @@ import pytest
 from fdvv.errors import InputError
 from fdvv.study.admin.study import Study
 from fdvv.study.files.people import open_schedule
+from tests.support.campaign import campaign
 from tests.support.studies import (
     CHEAP,
     PASSPHRASE,
@@ -51,15 +52,15 @@ def test_a_study_that_nobody_changed_is_whole(study: Study) -> None:
     study.require_whole()
 
 
-@pytest.mark.parametrize("places", [2, pytest.param(150, marks=pytest.mark.slow)])
-def test_a_changed_byte_of_any_file_is_noticed(study: Study, places: int) -> None:
+@campaign("start", range(75), part=1)
+def test_a_changed_byte_of_any_file_is_noticed(study: Study, start: int) -> None:
     files = all_files(study.folder)
     assert len(files) == 17
     for path in files:
         whole = path.read_bytes()
-        for i in range(min(places, len(whole))):
+        for i in range(start, min(150, len(whole)), 75):
             changed = bytearray(whole)
-            changed[(i * len(whole)) // places + i % 7 - len(whole)] ^= 1 + i % 200
+            changed[(i * len(whole)) // 150 + i % 7 - len(whole)] ^= 1 + i % 200
             path.write_bytes(changed)
             assert study.verify(), (path.name, i)
         path.write_bytes(whole)

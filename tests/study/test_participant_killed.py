@@ -21,6 +21,7 @@ from fdvv.study.plan.plan import Stimulus
 from fdvv.study.plan.sitting import ENDS, Step
 from fdvv.study.plan.trial import TrialAnswer
 from fdvv.study.session.participant import Participant
+from tests.support.campaign import campaign, in_turn
 from tests.support.studies import attended
 from tests.support.study_people import (
     CHEAP,
@@ -166,7 +167,7 @@ def test_a_killed_session_loses_no_answer_and_meets_no_trial_again(tmp_path: Pat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(5))
+@campaign("seed", range(5), part=1)
 def test_no_answer_is_lost_at_five_hundred_random_moments(
     tmp_path: Path, seed: int, record_property: Callable[[str, object], None]
 ) -> None:
@@ -222,6 +223,7 @@ def test_a_device_may_go_away_at_any_moment_of_a_session(tmp_path: Path) -> None
 
 
 @pytest.mark.slow
+@in_turn(5)
 def test_no_answer_is_lost_when_the_device_goes_away_five_hundred_times(
     tmp_path: Path, record_property: Callable[[str, object], None]
 ) -> None:

@@ -18,6 +18,7 @@ from fdvv.study.simulation.power import (
     power_table,
     simulate_scores,
 )
+from tests.support.campaign import campaign
 
 
 def design(difference_JND: float, kind: StudyKind = "realism", points: int | None = None) -> PowerDesign:
@@ -40,7 +41,7 @@ def test_few_people_cannot_show_anything_and_many_can() -> None:
 
 
 @pytest.mark.parametrize("points", [None, 7])
-@pytest.mark.parametrize("people", [12, pytest.param(24, marks=pytest.mark.slow)])
+@campaign("people", [12, 24], part=1)
 def test_false_claims_stay_at_alpha(points: int | None, people: int) -> None:
     (row,) = table(2.0, [people], points, studies=600).rows
     error = np.sqrt(0.05 * 0.95 / 600)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from fdvv.study.plan.plan import Staircase
 from fdvv.study.plan.staircase import staircase_state, target_share, threshold, threshold_interval
+from tests.support.campaign import campaign
 
 
 def run(staircase: Staircase, answers: str) -> list[tuple[float, bool]]:
@@ -91,14 +92,7 @@ def test_what_comes_next_follows_from_what_was_shown_and_never_leaves_its_range(
     assert run(staircase, "".join("cw"[not right] for _, right in history)) == history
 
 
-@pytest.mark.parametrize(
-    ("down", "share"),
-    [
-        (1, 0.5),
-        pytest.param(2, 0.7071, marks=pytest.mark.slow),
-        pytest.param(3, 0.7937, marks=pytest.mark.slow),
-    ],
-)
+@campaign(("down", "share"), [(1, 0.5), (2, 0.7071), (3, 0.7937)], part=1)
 def test_it_settles_where_the_rule_says(down: int, share: float) -> None:
     staircase = Staircase(down=down, reversals=40, dropped=4, trials=400, steps_ratio=(1.6, 1.1))
     assert target_share(staircase) == pytest.approx(share, abs=1e-4)

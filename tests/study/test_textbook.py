@@ -22,10 +22,17 @@ from fdvv.study.analysis.columns import ColumnMap
 from fdvv.study.analysis.read_answers import read_answers
 from fdvv.study.analysis.records import ButtonTest, ChoiceResult, StudyAnalysis
 from tests.support import textbook, textbook_levels
+from tests.support.campaign import campaign
 
 DRAWS = 200
+TENTHS = campaign("part", range(10), part=1)
 TWO, FOUR = ("FD", "FDVV"), ("reference", "FDVV", "FD", "anchor")
 pytestmark = pytest.mark.slow
+
+
+def draws(part: int) -> range:
+    """Return the seeds of a tenth of the draws."""
+    return range(part, DRAWS, 10)
 
 
 def drawn(seed: int, stimuli: tuple[str, ...], kind: str) -> textbook.Rows:
@@ -145,10 +152,10 @@ def check_choices(found: ChoiceResult, rows: textbook.Rows) -> None:
         assert_allclose(found.d[-1].tau, -(low + high) / 2, atol=1e-9)
 
 
-@pytest.mark.parametrize("part", range(10))
+@TENTHS
 def test_choices_and_ratings_of_two(part: int, tmp_path: Path) -> None:
     likelihoods = 0
-    for seed in range(part * DRAWS // 10, (part + 1) * DRAWS // 10):
+    for seed in draws(part):
         rows = drawn(seed, TWO, "realism")
         found = analysed(rows, "realism", tmp_path)
         kept, out = textbook.screened(rows)
@@ -180,17 +187,17 @@ def check_ordinal(model: Any, rows: textbook.Rows) -> bool:
     return True
 
 
-@pytest.mark.parametrize("part", range(5))
+@TENTHS
 def test_many_renderings(part: int, tmp_path: Path) -> None:
     tested = 0
-    for seed in range(part * DRAWS // 5, (part + 1) * DRAWS // 5):
+    for seed in draws(part):
         rows = drawn(seed, FOUR, "mushra")
         found = analysed(rows, "mushra", tmp_path)
         kept, _ = textbook.screened(rows)
         for one in found.rated:
             here = [row for row in kept if one.button in ("", row["item"])]
             tested += check_rated(one, here, sorted({row["item"] for row in rows}))
-    assert tested > DRAWS // 5
+    assert tested > DRAWS / 10
 
 
 def by_person(rows: textbook.Rows, stimuli: tuple[str, ...], buttons: list[str]) -> np.ndarray:
@@ -220,8 +227,9 @@ def check_rated(found: Any, rows: textbook.Rows, buttons: list[str]) -> int:
     return found.friedman is not None
 
 
-def test_right_and_wrong(tmp_path: Path) -> None:
-    for seed in range(DRAWS):
+@TENTHS
+def test_right_and_wrong(part: int, tmp_path: Path) -> None:
+    for seed in draws(part):
         rows = drawn(seed, TWO, "abx")
         found = analysed(rows, "abx", tmp_path)
         kept, _ = textbook.screened(rows)
@@ -257,11 +265,12 @@ def check_distances(found: ChoiceResult, right: int, n: int) -> None:
             assert_allclose(one.p, binomtest(right, n, alternative="greater").pvalue, atol=1e-12)
 
 
-def test_scores_of_complete_people(tmp_path: Path) -> None:
+@TENTHS
+def test_scores_of_complete_people(part: int, tmp_path: Path) -> None:
     import pandas as pd
 
     tested = 0
-    for seed in range(DRAWS):
+    for seed in draws(part):
         rows = drawn(seed, TWO, "timing")
         found = analysed(rows, "timing", tmp_path).timing
         kept, _ = textbook.screened(rows)
@@ -277,4 +286,4 @@ def test_scores_of_complete_people(tmp_path: Path) -> None:
         assert_allclose([one.F for one in found.anova.effects], plain["F Value"], rtol=1e-7, atol=1e-9)
         assert_allclose([one.p for one in found.anova.effects], plain["Pr > F"], rtol=1e-7, atol=1e-9)
         tested += 1
-    assert tested > DRAWS / 2
+    assert tested > DRAWS / 10 / 2

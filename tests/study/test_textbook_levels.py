@@ -22,7 +22,7 @@ from fdvv.study.analysis.levels import threshold_over_people
 from fdvv.study.analysis.records import ChoiceResult, ThresholdResult
 from fdvv.study.plan.plan import Staircase
 from fdvv.study.plan.staircase import staircase_state, threshold
-from tests.study.test_textbook import DRAWS, TWO, VALUE, analysed, check_choices, drawn
+from tests.study.test_textbook import DRAWS, TENTHS, TWO, VALUE, analysed, check_choices, drawn, draws
 from tests.support import textbook, textbook_levels
 
 pytestmark = pytest.mark.slow
@@ -37,10 +37,10 @@ def counts_of(rows: textbook.Rows) -> np.ndarray:
     return np.array([[sum(v == side for v in vs) for side in (-1.0, 0.0, 1.0)] for vs in by.values()], float)
 
 
-@pytest.mark.parametrize("part", range(4))
+@TENTHS
 def test_choices_with_equal_allowed(part: int, tmp_path: Path) -> None:
     mixed = 0
-    for seed in range(part * DRAWS // 4, (part + 1) * DRAWS // 4):
+    for seed in draws(part):
         rows = drawn(seed, TWO, "2ac")
         found = analysed(rows, "2ac", tmp_path)
         kept, _ = textbook.screened(rows)
@@ -50,7 +50,7 @@ def test_choices_with_equal_allowed(part: int, tmp_path: Path) -> None:
         check_totals(found.preference, counts)
         mixed += check_people(found.preference, counts)
         check_persons(found, rows)
-    assert mixed > DRAWS / 4 / 4
+    assert mixed > DRAWS / 10 / 4
 
 
 def check_totals(found: ChoiceResult, counts: np.ndarray) -> None:
@@ -122,8 +122,9 @@ def tails(found: Estimate, every: np.ndarray, low: float, high: float) -> None:
         assert below - missed <= tail <= upto + missed
 
 
-def test_resampled_intervals_against_all_resamples() -> None:
-    for seed in range(DRAWS):
+@TENTHS
+def test_resampled_intervals_against_all_resamples(part: int) -> None:
+    for seed in draws(part):
         random = np.random.default_rng(seed)
         n = int(random.integers(5, 7))
         lower, higher = random.normal(2.0, 0.4, n), random.normal(2.6, 0.5, n)
@@ -156,9 +157,10 @@ def listened(staircase: Staircase, random: np.random.Generator) -> list[tuple[fl
     return history
 
 
-def test_thresholds_of_staircases_and_over_people() -> None:
+@TENTHS
+def test_thresholds_of_staircases_and_over_people(part: int) -> None:
     whole = 0
-    for seed in range(DRAWS):
+    for seed in draws(part):
         random = np.random.default_rng(seed)
         rule = Staircase(down=int(random.integers(2, 4)), dropped=int(random.integers(0, 4)))
         results = []
@@ -176,7 +178,7 @@ def test_thresholds_of_staircases_and_over_people() -> None:
             assert_allclose([over.mean, over.median], np.exp([wanted["mean"], wanted["median"]]))
             assert_allclose([over.low, over.high], np.exp([wanted["low"], wanted["high"]]))
             assert_allclose(over.sd, wanted["sd"])
-    assert whole > DRAWS
+    assert whole > DRAWS / 10
 
 
 def check_threshold(found: Estimate, rule: Staircase, ratios: np.ndarray, correct: np.ndarray) -> bool:
@@ -193,11 +195,12 @@ def check_threshold(found: Estimate, rule: Staircase, ratios: np.ndarray, correc
     return True
 
 
-def test_effects_of_two_factors_and_their_pairs() -> None:
+@TENTHS
+def test_effects_of_two_factors_and_their_pairs(part: int) -> None:
     """Sums of squares by F of statsmodels, epsilon from the covariance, pairs by SciPy."""
     import pandas as pd
 
-    for seed in range(DRAWS):
+    for seed in draws(part):
         random = np.random.default_rng(seed)
         people, buttons, levels = (int(random.integers(*ends)) for ends in ((5, 12), (2, 5), (2, 4)))
         scores = random.normal(0, 1, (people, buttons, levels)) + random.normal(3, 1, (people, 1, 1))
@@ -211,8 +214,8 @@ def test_effects_of_two_factors_and_their_pairs() -> None:
             means = scores.mean(axis=axis)
             epsilon = textbook_levels.greenhouse_geisser(means)
             assert_allclose(one.sphericity.epsilon, epsilon, rtol=1e-9)
-            part = one.F * one.effect_df / (one.F * one.effect_df + one.error_df)
-            assert_allclose(one.partial_eta2, part)
+            share = one.F * one.effect_df / (one.F * one.effect_df + one.error_df)
+            assert_allclose(one.partial_eta2, share)
         check_pairs(scores.mean(axis=2), seed)
 
 

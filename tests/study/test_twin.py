@@ -20,6 +20,7 @@ from fdvv.protocol.tables import Fault
 from fdvv.study.plan.plan import Stimulus
 from fdvv.study.stimulus.renderer import stimulus_model
 from fdvv.study.stimulus.twin import PersonFrame, TwinRenderer, within_reach
+from tests.support.campaign import campaign
 
 FD = Stimulus(name="FD", button="mx-clear", rendered="FD")
 FDVV = Stimulus(name="FDVV", button="mx-clear")
@@ -170,10 +171,7 @@ def test_a_fault_ends_force_and_stage_in_one_line_and_is_kept(
     assert not stage.rendered()[1].faults
 
 
-@pytest.mark.parametrize(
-    "button",
-    ["mx-clear", *(pytest.param(name, marks=pytest.mark.slow) for name in ("mx-blue", "rubber-dome"))],
-)
+@campaign("button", ["mx-clear", "mx-blue", "rubber-dome"], part=1)
 def test_no_hand_however_wild_makes_the_rig_fail(button: str) -> None:
     """As far, as fast and as hard as a page may say; without real time."""
     of = Stimulus(name="FDVV", button=button)

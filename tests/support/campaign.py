@@ -1,11 +1,20 @@
-"""What random tests of one run share."""
+"""Campaigns: long random tests of which a usual run plays a part and `make campaign` every case."""
 
 from __future__ import annotations
 
 import os
+import random
 import shutil
 import subprocess
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import TypeVar
+
+import pytest
+
+Test = TypeVar("Test", bound=Callable[..., object])
+
+IS_WHOLE = "FDVV_CAMPAIGN" in os.environ
 
 
 def find_seed() -> str:
@@ -19,3 +28,30 @@ def find_seed() -> str:
 
 SEED = os.environ["FDVV_SEED"] = find_seed()
 """Of this run and of the processes that it starts."""
+
+
+def campaign(name: str | tuple[str, ...], cases: Iterable[object], part: int) -> Callable[[Test], Test]:
+    """Mark a test as a campaign over cases; a usual run plays `part` of them, drawn by its seed."""
+
+    def mark(test: Test) -> Test:
+        every = list(cases)
+        turn = every if IS_WHOLE else random.Random(f"{SEED} {test.__qualname__}").sample(every, part)
+        return pytest.mark.campaign(pytest.mark.parametrize(name, turn)(test))
+
+    return mark
+
+
+def in_turn(every: int) -> Callable[[Test], Test]:
+    """Mark a test as a campaign that one usual run in `every` plays, for what cannot be divided."""
+
+    def mark(test: Test) -> Test:
+        waits = not IS_WHOLE and random.Random(f"{SEED} {test.__qualname__}").randrange(every)
+        reason = f"one run in {every} plays this, make campaign each time"
+        return pytest.mark.campaign(pytest.mark.skipif(bool(waits), reason=reason)(test))
+
+    return mark
+
+
+def pick(usual: int, whole: int) -> int:
+    """Return the size of a test that a campaign makes larger."""
+    return whole if IS_WHOLE else usual

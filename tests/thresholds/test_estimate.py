@@ -11,6 +11,7 @@ from fdvv.thresholds.choose import next_change
 from fdvv.thresholds.estimate import estimate
 from fdvv.thresholds.observer import JND, PARAMETERS, log_strength, share_correct
 from fdvv.thresholds.prior import ThresholdPrior
+from tests.support.campaign import in_turn
 
 PRIOR = ThresholdPrior()
 
@@ -50,6 +51,7 @@ def test_a_few_observers_are_found_within_the_errors_that_are_claimed() -> None:
 
 
 @pytest.mark.slow
+@in_turn(8)
 def test_intervals_hold_95_percent_of_observers_drawn_from_the_prior() -> None:
     errors, held, claimed = measured(range(1000, 1150), 54)
     assert 0.93 <= held.mean() <= 0.97
