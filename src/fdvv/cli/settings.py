@@ -18,7 +18,7 @@ Command = Callable[..., Any]
 def settings_options(
     kind: type[Settings], *, leave_out: tuple[str, ...] = ()
 ) -> Callable[[Command], Command]:
-    """Give a command an option for each setting; their values reach it as one record, ``settings``.
+    """Return what adds an option for each setting to a command; their values reach it as one ``settings``.
 
     leave_out : settings that the command takes in another way, or leaves at their defaults.
     """
