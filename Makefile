@@ -5,6 +5,7 @@ SHELL := /bin/bash
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+PYTEST := $(BIN)/pytest -n 2 --dist worksteal
 NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch] firmware/force_loop/*.[ch] firmware/boards/host/*.[ch])
 
 LIBRARY := $(if $(filter Darwin,$(shell uname -s)),libfdvv.dylib,libfdvv.so)
@@ -15,7 +16,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # without bytecode every test process compiles all it imports: 20 s to collect the tests alone
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo lock quick test test-slow test-browser campaign check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools lowest newcomer clean
+.PHONY: help demo lock quick test test-slow test-browser test-clock campaign check format bench setup firmware firmware-tools docs web web-check web-tools sdist wheel zig-tools lowest newcomer clean
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -50,24 +51,30 @@ UNTESTED = $(if $(filter-out file,$(origin PKG)),$(strip $(foreach name,$(PKG),$
 quick: setup ## Lint, and test one package, in 20 seconds: make quick PKG=rendering
 	$(if $(UNTESTED),$(error no tests/$(firstword $(UNTESTED)); packages are $(PACKAGES)))
 	$(BIN)/ruff check --quiet .
-	FDVV_QUICK=1 $(BIN)/pytest -n 2 -q -p no:randomly -m "not slow and not browser and not firmware" \
+	FDVV_QUICK=1 $(BIN)/pytest -n 2 -q -p no:randomly -m "not slow and not browser and not firmware and not clock" \
 	  tests/test_public_face.py tests/safety/test_zero_force.py $(wildcard $(PKG:%=tests/%))
 
+# MARKS="not clock" is every test in one run: each process collects all tests first, which takes it 12 s
+MARKS ?= not slow and not browser and not clock
+
 test: check ## Every check and every test of the default run
-	$(BIN)/pytest -n 2 --dist worksteal -m "not slow and not browser"
+	$(PYTEST) --durations 25 -m "$(MARKS)"
 
 test-slow: setup ## The long tests
-	$(BIN)/pytest -n 2 --dist worksteal --durations 25 -m "slow and not browser"
+	$(PYTEST) --durations 25 -m "slow and not browser and not clock"
 
-campaign: setup ## Every case of the random tests of which the other runs play a part; takes hours
-	FDVV_CAMPAIGN=1 $(BIN)/pytest -n 2 --dist worksteal --timeout 14400 --durations 25 -m campaign
+test-clock: setup web-tools ## The tests that compare real times, one after the other
+	$(BIN)/pytest -m clock $(shell grep -rl --include='*.py' 'pytest.mark.clock' tests)
+
+campaign: setup ## Every case of the random tests of which the other runs play a part: hours
+	FDVV_CAMPAIGN=1 $(PYTEST) --timeout 14400 --durations 25 -m campaign
 
 lock: setup ## Write the hashes of what constraints.txt names, for every system, into requirements.lock
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-header \
 	  --no-emit-index-url --upgrade constraints.txt -o requirements.lock
 
 test-browser: setup web-tools ## Drive the studio in a real browser
-	$(BIN)/pytest -n 2 --dist worksteal -m browser
+	$(PYTEST) -m "browser and not clock"
 
 format: setup ## Format the code in place
 	$(BIN)/ruff format .

@@ -24,6 +24,8 @@ from fdvv_drives.testing.process import FarProcess
 from fdvv_drives.testing.serve import make
 from tests.drives.conftest import GENEROUS, OPEN, opened
 
+pytestmark = pytest.mark.clock
+
 Start = Callable[..., FarProcess]
 DRIVES = ("moteus", "odrive", "simplefoc")
 WATCHDOG_s = 0.6

@@ -18,6 +18,8 @@ from fdvv.program.button import button_program
 from tests.support.pressed_rig import KeyedRig
 from tests.support.scripted_person import ScriptedPerson
 
+pytestmark = pytest.mark.clock
+
 TICK_s = 250e-6
 
 

@@ -91,6 +91,7 @@ def test_a_run_goes_on_at_real_pace_and_tells_back_what_led_it() -> None:
     assert np.diff(t) == pytest.approx(np.full(t.size - 1, 1e-4)), "no tick is missing between frames"
 
 
+@pytest.mark.clock
 def test_simulated_time_and_what_a_frame_adds_make_the_time_of_the_clock() -> None:
     seen, asked = Seen(), [0.0]
 
@@ -115,6 +116,7 @@ def test_simulated_time_and_what_a_frame_adds_make_the_time_of_the_clock() -> No
     assert last.zero_s - first.zero_s == pytest.approx(last.dropped_s - first.dropped_s, abs=1e-9)
 
 
+@pytest.mark.clock
 def test_a_page_that_says_nothing_is_not_simulated_for_and_its_finger_is_lifted() -> None:
     seen = Seen()
     run = start_run(seen, silent_s=0.2)
@@ -159,6 +161,7 @@ def test_an_impossible_request_is_reported_and_the_rest_goes_on() -> None:
     assert seen.lines == ["it cannot be done"]
 
 
+@pytest.mark.clock
 def test_where_nothing_goes_on_time_stops_until_something_is_asked() -> None:
     seen, began_s = Seen(), time.monotonic()
     run = start_run(seen, rest_after_s=0.2)
@@ -192,6 +195,7 @@ def test_a_finger_that_holds_the_cap_is_simulated_on() -> None:
     run.close()
 
 
+@pytest.mark.clock
 def test_a_trace_is_replayed_to_its_end_and_then_time_stops() -> None:
     seen = Seen()
     run = start_run(seen, rest_after_s=0.2)
@@ -203,6 +207,7 @@ def test_a_trace_is_replayed_to_its_end_and_then_time_stops() -> None:
     run.close()
 
 
+@pytest.mark.clock
 def test_a_rest_that_a_hidden_page_ends_lifts_the_finger() -> None:
     seen = Seen()
     run = start_run(seen, rest_after_s=0.2)
@@ -238,6 +243,7 @@ def test_a_coil_that_cools_is_simulated_until_the_whole_force_is_back() -> None:
     assert (stirs(still), stirs(warm)) == (False, True)
 
 
+@pytest.mark.clock
 def test_a_press_that_nobody_has_touched_rests_sooner() -> None:
     seen = Seen()
     run = start_run(seen, rest_after_s=3600.0)

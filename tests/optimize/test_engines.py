@@ -174,8 +174,8 @@ def test_a_suggestion_at_thirty_trials_comes_in_time(name: str, most_s: float) -
     trials = run(engine_of("sobol"), case, 34, lambda design: 60.0 + 8.0 * design["actuation_mm"], 7.0)
     taken = []
     for count in range(28, 35):
-        start_s = time.perf_counter()
+        start_s = time.process_time()
         compared_engine(name).suggest(case, trials[:count])
-        taken.append(time.perf_counter() - start_s)
+        taken.append(time.process_time() - start_s)
     # the first one imports what the engine needs
     assert np.median(taken[1:]) < most_s

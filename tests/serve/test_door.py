@@ -129,6 +129,7 @@ def test_another_protocol_is_refused_with_what_to_do(server: RunningServer) -> N
         assert "fdvv serve --client" in json.loads(client.recv(10))["error"]["remedy"]
 
 
+@pytest.mark.clock
 @pytest.mark.slow
 def test_a_stranger_who_says_nothing_is_sent_away(server: RunningServer) -> None:
     silent = socket.create_connection(("127.0.0.1", server.port))
@@ -154,6 +155,7 @@ sys.stdin.read()
 """
 
 
+@pytest.mark.clock
 @pytest.mark.slow
 def test_an_owner_that_hangs_loses_the_device(server: RunningServer, client: Client) -> None:
     """It answers no ping: after 8 s at most it is taken as gone."""

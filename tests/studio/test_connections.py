@@ -51,6 +51,7 @@ def trickle(line: socket.socket) -> None:
         line.send(b"x")
 
 
+@pytest.mark.clock
 @pytest.mark.slow
 def test_five_hundred_half_open_connections_are_closed_within_ten_seconds(studio: RunningStudio) -> None:
     where = studio.base.removeprefix("http://").split(":")

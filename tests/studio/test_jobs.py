@@ -113,6 +113,7 @@ def test_work_that_is_stopped_goes_on_where_it_stopped(jobs: Jobs) -> None:
     assert set(range(1, PRESSES + 1)) - set(used) <= {made + 1}
 
 
+@pytest.mark.clock
 @pytest.mark.slow
 def test_work_stops_by_itself_where_no_process_can_be_sent_ctrl_c(
     jobs: Jobs, monkeypatch: pytest.MonkeyPatch

@@ -193,6 +193,7 @@ def test_a_suggestion_can_be_edited_until_it_is_shown_and_abandoned(
     assert ask("list")["rows"][0]["spent"] == 1
 
 
+@pytest.mark.clock
 def test_a_press_comes_out_with_the_asynchrony_that_its_times_say(
     ask: Callable[..., Any], client: TestClient, own_studio: Studio
 ) -> None:
@@ -225,6 +226,7 @@ def test_a_press_comes_out_with_the_asynchrony_that_its_times_say(
     assert TemporalPointing(rounds=2, quantised=False).scores([one.press for one in counting]) == trial.scores
 
 
+@pytest.mark.clock
 def test_a_key_of_a_keyboard_presses_where_it_reaches_the_buttons_actuation(
     ask: Callable[..., Any], client: TestClient, own_studio: Studio
 ) -> None:
@@ -247,6 +249,7 @@ def test_a_key_of_a_keyboard_presses_where_it_reaches_the_buttons_actuation(
     assert [len(one.activations_s) for one in counting] == [1, 1]
 
 
+@pytest.mark.clock
 @pytest.mark.parametrize("way_ms", [0.0, 45.0, 150.0])
 def test_a_long_way_from_hand_to_simulation_moves_no_press(
     ask: Callable[..., Any], client: TestClient, way_ms: float
@@ -275,6 +278,7 @@ def table(monkeypatch: pytest.MonkeyPatch) -> Iterator[KeyedRig]:
     rig.end()
 
 
+@pytest.mark.clock
 def test_a_press_on_a_device_is_timed_by_its_own_clock(
     ask: Callable[..., Any], client: TestClient, own_studio: Studio, table: KeyedRig
 ) -> None:

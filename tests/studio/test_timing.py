@@ -235,6 +235,7 @@ def tapping(own_studio: Studio) -> TimingStudy:
     return study
 
 
+@pytest.mark.clock
 def test_taps_on_the_twin_keep_the_hand_s_times_even_where_they_come_all_at_once(
     tapping: TimingStudy, client: TestClient, ask: Callable[..., Any]
 ) -> None:
@@ -268,6 +269,7 @@ def test_a_round_without_a_press_is_a_miss_and_is_kept(study: TimingStudy, scree
     assert [one["activations_s"] for one in recorded(study, "round")] == [[]]
 
 
+@pytest.mark.clock
 def test_a_device_on_the_table_tells_the_presses_itself(
     study: TimingStudy, screen: Screen, ask: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -36,7 +36,8 @@ def campaign(name: str | tuple[str, ...], cases: Iterable[object], part: int) ->
     def mark(test: Test) -> Test:
         every = list(cases)
         turn = every if IS_WHOLE else random.Random(f"{SEED} {test.__qualname__}").sample(every, part)
-        return pytest.mark.campaign(pytest.mark.parametrize(name, turn)(test))
+        marked: Test = pytest.mark.campaign(pytest.mark.parametrize(name, turn)(test))
+        return marked
 
     return mark
 
@@ -47,7 +48,8 @@ def in_turn(every: int) -> Callable[[Test], Test]:
     def mark(test: Test) -> Test:
         waits = not IS_WHOLE and random.Random(f"{SEED} {test.__qualname__}").randrange(every)
         reason = f"one run in {every} plays this, make campaign each time"
-        return pytest.mark.campaign(pytest.mark.skipif(bool(waits), reason=reason)(test))
+        marked: Test = pytest.mark.campaign(pytest.mark.skipif(bool(waits), reason=reason)(test))
+        return marked
 
     return mark
 
