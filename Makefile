@@ -6,7 +6,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 PYTEST := $(BIN)/pytest -n 2 --dist worksteal
-NATIVE := $(wildcard src/fdvv/_native/*.[ch] firmware/core/*.[ch] firmware/force_loop/*.[ch] firmware/boards/host/*.[ch])
+NATIVE := $(wildcard packages/fdvv/src/fdvv/_native/*.[ch] firmware/core/*.[ch] firmware/force_loop/*.[ch] firmware/boards/host/*.[ch])
 
 LIBRARY := $(if $(filter Darwin,$(shell uname -s)),libfdvv.dylib,libfdvv.so)
 
@@ -21,20 +21,20 @@ unexport PYTHONDONTWRITEBYTECODE
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
-setup: $(VENV)/.ready src/fdvv/_native/$(LIBRARY) ## Make the virtual environment and build the C kernels
+setup: $(VENV)/.ready packages/fdvv/src/fdvv/_native/$(LIBRARY) ## Make the virtual environment and build the C kernels
 
-$(VENV)/.ready: pyproject.toml $(wildcard extras/*/pyproject.toml) requirements.lock hatch_build.py tools/setup.sh
+$(VENV)/.ready: pyproject.toml $(wildcard packages/*/pyproject.toml extras/*/pyproject.toml) requirements.lock packages/fdvv/hatch_build.py tools/setup.sh
 	bash tools/setup.sh "$(PYTHON)" "$(VENV)"
 	@touch $@
 
 # the library, and the Python tables of the protocol
-src/fdvv/_native/$(LIBRARY): $(VENV)/.ready $(NATIVE) protocol/fdvv.toml protocol/force_loop.toml tools/make_protocol.py hatch_build.py
-	$(BIN)/python hatch_build.py
+packages/fdvv/src/fdvv/_native/$(LIBRARY): $(VENV)/.ready $(NATIVE) protocol/fdvv.toml protocol/force_loop.toml tools/make_protocol.py packages/fdvv/hatch_build.py
+	$(BIN)/python packages/fdvv/hatch_build.py
 
 demo: setup ## Fit, compensate on the simulated rig and write demo/report.html
 	$(BIN)/fdvv demo --output demo
 
-check: setup ## Format, lint and type checks
+check: setup ## Format, lint, types, words, layers and the budget
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
@@ -43,16 +43,17 @@ check: setup ## Format, lint and type checks
 	$(BIN)/lint-imports --no-logo || { echo 'An import points up. Move the shared record down, or pass in a callable: see ARCHITECTURE.md.' >&2; exit 1; }
 
 # the packages with changes that are not committed, else model; make quick PKG="rendering live" picks others
-PKG ?= $(or $(shell git diff --name-only HEAD -- src | sed -n 's#^src/fdvv/\([a-z]*\)/.*#\1#p' | sort -u),model)
-PACKAGES := $(filter-out __pycache__,$(patsubst tests/%/,%,$(wildcard tests/*/)))
+PKG ?= $(or $(shell git diff --name-only HEAD -- packages | sed -n 's#^packages/[^/]*/src/[^/]*/\([a-z]*\)/.*#\1#p' | sort -u),model)
+PACKAGES := $(sort $(filter-out __pycache__,$(notdir $(patsubst %/,%,$(wildcard packages/*/tests/*/ tests/*/)))))
+tests_of = $(wildcard packages/*/tests/$(1) tests/$(1))
 # of those that were asked for; a changed package may have no tests of its own
-UNTESTED = $(if $(filter-out file,$(origin PKG)),$(strip $(foreach name,$(PKG),$(if $(wildcard tests/$(name)),,$(name)))))
+UNTESTED = $(if $(filter-out file,$(origin PKG)),$(strip $(foreach name,$(PKG),$(if $(call tests_of,$(name)),,$(name)))))
 
 quick: setup ## Lint, and test one package, in 20 seconds: make quick PKG=rendering
-	$(if $(UNTESTED),$(error no tests/$(firstword $(UNTESTED)); packages are $(PACKAGES)))
+	$(if $(UNTESTED),$(error no tests of $(firstword $(UNTESTED)); packages are $(PACKAGES)))
 	$(BIN)/ruff check --quiet .
 	FDVV_QUICK=1 $(BIN)/pytest -n 2 -q -p no:randomly -m "not slow and not browser and not firmware and not clock" \
-	  tests/test_public_face.py tests/safety/test_zero_force.py $(wildcard $(PKG:%=tests/%))
+	  tests/test_public_face.py tests/safety/test_zero_force.py $(foreach name,$(PKG),$(call tests_of,$(name)))
 
 # MARKS="not clock" is every test in one run: each process collects all tests first, which takes it 12 s
 MARKS ?= not slow and not browser and not clock
@@ -95,22 +96,21 @@ firmware: firmware-tools ## Build the boards' programs into build/firmware
 web-tools: ## Install the browser and the tools that build and test the studio's page
 	bash tools/web_tools.sh
 
-web: setup web-tools ## Check, test and build the studio's page into src/fdvv/studio/static
+web: setup web-tools ## Check, test and build the studio's page into packages/fdvv-studio/src/fdvv_studio/studio/static
 	cd web && PYTHON=$(BIN)/python npm run --silent check && npm test --silent && npm run --silent build
 
 web-check: web ## The same, and the committed page must be that of the sources
-	git diff --exit-code --stat -- src/fdvv/studio/static
-	test -z "$$(git status --porcelain -- src/fdvv/studio/static)"
+	git diff --exit-code --stat -- packages/fdvv-studio/src/fdvv_studio/studio/static
+	test -z "$$(git status --porcelain -- packages/fdvv-studio/src/fdvv_studio/studio/static)"
 
 # the same sources, the same bytes
 sdist wheel: export SOURCE_DATE_EPOCH ?= $(shell git log -1 --format=%ct 2>/dev/null || echo 1580601600)
 
-sdist: build/tools/.ready ## Build the sdist into dist/
-	build/tools/bin/python -m build --sdist --outdir dist .
+sdist: build/tools/.ready ## Build the sdists into dist/
+	for package in packages/*/; do build/tools/bin/python -m build --sdist --outdir dist "$$package"; done
 
-wheel: build/tools/.ready ## Build the sdist, and from it the wheel of this machine, and those of the extras, into dist/
-	build/tools/bin/python -m build --outdir dist .
-	for extra in extras/*/; do build/tools/bin/python -m build --outdir dist "$$extra"; done
+wheel: build/tools/.ready ## Build the sdists, and from them the wheels of this machine, those of the extras too, into dist/
+	for package in packages/*/ extras/*/; do build/tools/bin/python -m build --outdir dist "$$package"; done
 
 build/tools/.ready:
 	$(PYTHON) -m venv build/tools
@@ -128,4 +128,4 @@ newcomer: ## Type what the README says, in an empty folder and a clean environme
 	PYTHON="$(PYTHON)" bash tools/newcomer.sh
 
 clean: ## Remove what was built
-	rm -rf $(VENV) build dist demo .mypy_cache .ruff_cache .pytest_cache src/fdvv/_native/$(LIBRARY) src/fdvv/protocol/tables.py
+	rm -rf $(VENV) build dist demo .mypy_cache .ruff_cache .pytest_cache packages/fdvv/src/fdvv/_native/$(LIBRARY) packages/fdvv/src/fdvv/protocol/tables.py

@@ -12,7 +12,6 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import cycle, islice
 
 import numpy as np
-from tests.support.reference.button import reference_button
 
 from fdvv.twin.button import ButtonPhysics
 from fdvv.twin.files import button_names, load_button
@@ -22,6 +21,7 @@ from fdvv.twin.pace import solve_button_pace
 from fdvv.twin.rig import ForceSensor
 from fdvv.twin.simulate_button import ButtonNoise, draw_button_noise, simulate_button
 from fdvv.units import m_from_mm
+from tests.support.reference.button import reference_button
 
 VELOCITY_mm_s = 100.0
 Call = tuple[ButtonPhysics, Finger, Gesture, ButtonNoise, ForceSensor]

@@ -14,7 +14,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from tests.support.reference.button import reference_button
 
 from benchmarks.button_capture import budget
 from benchmarks.button_lines import Line, rms
@@ -34,6 +33,7 @@ from fdvv.twin.simulate_button import (
     simulate_button,
 )
 from fdvv.units import FloatArray, cN_from_N, mm_from_m
+from tests.support.reference.button import reference_button
 
 # units that no shipped button is made from; where the file does not tell where the circuit closes, assumed
 HELD_OUT = {

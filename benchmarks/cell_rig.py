@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 
 import numpy as np
+
 from tests.support.reference.cell_press import (
     Departure,
     compiled_press,

@@ -10,10 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
-from tests.support.core.programs import REST, armed, event, image
-from tests.support.inputs import inputs_at
 
 from fdvv.protocol.tables import NONE, Settings
+from tests.support.core.programs import REST, armed, event, image
+from tests.support.inputs import inputs_at
 
 SETTINGS = replace(Settings(), velocity_scale_q12=4096, slew_cN64_tick=32000, stuck_ticks=65535)
 SPEEDS_MM_S = (0.5, 2.0, 10.0, 50.0, 100.0, 150.0, 200.0, 300.0, 450.0, 600.0)

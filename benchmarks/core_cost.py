@@ -16,6 +16,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+
+from fdvv.firmware.core import Core, RecordArray
+from fdvv.firmware.limits import limits_like
+from fdvv.protocol.tables import NONE, Condition, Settings, Slot, State, Transition, Vibration
+from fdvv_m0.bus import Bus
+from fdvv_m0.processor import Processor
 from tests.support.random_presses import random_inputs, random_settings
 from tests.support.random_programs import (
     assemble,
@@ -24,12 +30,6 @@ from tests.support.random_programs import (
     random_vibration,
     random_waveform,
 )
-
-from fdvv.firmware.core import Core, RecordArray
-from fdvv.firmware.limits import limits_like
-from fdvv.protocol.tables import NONE, Condition, Settings, Slot, State, Transition, Vibration
-from fdvv_m0.bus import Bus
-from fdvv_m0.processor import Processor
 
 FIRMWARE = Path(__file__).resolve().parents[1] / "firmware"
 CORE = FIRMWARE / "core"

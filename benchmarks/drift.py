@@ -11,8 +11,6 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 
-from tests.support.rig_truth import draw_fast_rig, rig_truth
-
 from fdvv.compensation.identification.drift import detect_drift
 from fdvv.compensation.identification.excitation import identification_surface
 from fdvv.compensation.identification.identify import identify
@@ -23,6 +21,7 @@ from fdvv.model.file import load_builtin
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.twin.rig import Rig
+from tests.support.rig_truth import draw_fast_rig, rig_truth
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 SEEDS = range(300, 320)

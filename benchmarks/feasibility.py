@@ -14,9 +14,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from tests.support.held import swings_held
-from tests.support.rig_truth import draw_fast_rig, rig_truth
-from tests.support.table_press import simulate
 
 from fdvv.compensation.feasibility.limits import RigLimits, minimum_jerk, needed_cN
 from fdvv.compensation.feasibility.stability import (
@@ -46,6 +43,9 @@ from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.rig import Rig
 from fdvv.twin.settings import settings_of
 from fdvv.units import FloatArray
+from tests.support.held import swings_held
+from tests.support.rig_truth import draw_fast_rig, rig_truth
+from tests.support.table_press import simulate
 
 SEEDS = range(400, 420)
 BUTTONS = ("mx-clear", "mx-brown", "mx-blue", "mx-red", "mx-black", "rubber-dome")

@@ -1,7 +1,8 @@
 """Which one design is best for a whole group, if nobody tries anything? Simulated.
 
 Run as ``python -m benchmarks.fixed_design [PROCESSES]`` (default 2): writes
-``src/fdvv/optimize/people/fixed_designs.json``, which ``fdvv optimize run`` plays beside what it recommends.
+``packages/fdvv-people/src/fdvv_people/optimize/people/fixed_designs.json``, which ``fdvv optimize run``
+plays beside what it recommends.
 Designs of the paper's space that are buttons are scored by expected asynchrony, without chance. An even net
 and what is nearest to the shipped switches come first; the best go on to more people, then to steps around
 them. The first CHOOSE people of SEED choose; those after them, whom the choice has not seen, say what it is
@@ -21,18 +22,18 @@ from benchmarks.optimize_people import expected_ms
 from fdvv.io.documents import pretty
 from fdvv.io.files import write_atomic
 from fdvv.model.file import load_builtin
-from fdvv.optimize.button_constraints import button_constraints
-from fdvv.optimize.engines.registry import engine_of
-from fdvv.optimize.paper_space import paper_design_like, paper_model, paper_space
-from fdvv.optimize.people.groups import GROUPS, group_named
-from fdvv.optimize.people.user import SimulatedUser, draw_users
-from fdvv.optimize.problem import Problem
-from fdvv.optimize.run.rivals import SWITCHES
-from fdvv.optimize.space import Design
-from fdvv.task.pointing import LEVELS_px_s, TemporalPointing
-from fdvv.task.score import Objective
+from fdvv_people.optimize.button_constraints import button_constraints
+from fdvv_people.optimize.engines.registry import engine_of
+from fdvv_people.optimize.paper_space import paper_design_like, paper_model, paper_space
+from fdvv_people.optimize.people.groups import GROUPS, group_named
+from fdvv_people.optimize.people.user import SimulatedUser, draw_users
+from fdvv_people.optimize.problem import Problem
+from fdvv_people.optimize.run.rivals import SWITCHES
+from fdvv_people.optimize.space import Design
+from fdvv_people.task.pointing import LEVELS_px_s, TemporalPointing
+from fdvv_people.task.score import Objective
 
-FILE = Path(__file__).parents[1] / "src" / "fdvv" / "optimize" / "people" / "fixed_designs.json"
+FILE = Path(__file__).parents[1] / "packages/fdvv-people/src/fdvv_people/optimize/people/fixed_designs.json"
 SEED, CHOOSE, JUDGE = 700, 48, 24
 NET, FIRST, SECOND, LEADERS = 96, 16, 16, 3
 """Designs of the net, people who score them all, designs that all people score, and those stepped from."""

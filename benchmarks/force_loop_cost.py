@@ -18,11 +18,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from tests.firmware._core_on_arm import M4, CoreOnArm, compile_core
-from tests.support.force_loop_press import SETTINGS, ANNOUNCED_mm_s16, LoopPress, loop_constants, press
 
 from benchmarks.core_cost import dearest, full_image, looking_ahead
 from fdvv.protocol.tables import BoardLimits, Settings
+from tests.firmware._core_on_arm import M4, CoreOnArm, compile_core
+from tests.support.force_loop_press import SETTINGS, ANNOUNCED_mm_s16, LoopPress, loop_constants, press
 
 TICK_CYCLES = 12_000
 """Of 100 us at 120 MHz."""

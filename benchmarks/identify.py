@@ -16,7 +16,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from tests.support.rig_truth import draw_fast_rig, missed_cN, rig_truth
 
 from fdvv.compensation.identification.balance import PARAMETERS
 from fdvv.compensation.identification.excitation import identification_surface
@@ -29,6 +28,7 @@ from fdvv.model.surface import ForceSurface
 from fdvv.twin.finger import Finger
 from fdvv.twin.rig import Rig
 from fdvv.units import FloatArray
+from tests.support.rig_truth import draw_fast_rig, missed_cN, rig_truth
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 SEEDS = range(300, 350)

@@ -28,7 +28,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.repeated_curves import readable, repeat_noise, shipped, write_many
-from fdvv.library.library import Library, library_query
+from fdvv_studio.library.library import Library, library_query
 
 EVERY_s = 0.1
 WORDS = (

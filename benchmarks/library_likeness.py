@@ -18,10 +18,10 @@ import numpy as np
 
 from fdvv.button.like import LikeTable, distances
 from fdvv.errors import FdvvError
-from fdvv.library.catalog import source_files
-from fdvv.library.figures import row_of_file
-from fdvv.library.row import ButtonRow
 from fdvv.units import FloatArray
+from fdvv_studio.library.catalog import source_files
+from fdvv_studio.library.figures import row_of_file
+from fdvv_studio.library.row import ButtonRow
 
 BENCHES = ("tg-tidy", "bluepylons", "haata", "buddyog-topre", "geekboards", "joaoachando")
 MAKES = (

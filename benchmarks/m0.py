@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from tests.support.scripted_person import ScriptedPerson
 
 from fdvv.device.linked import LinkedDevice
 from fdvv.device.remote import surface_image
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import Settings
 from fdvv_m0.board import EmulatedBoard
+from tests.support.scripted_person import ScriptedPerson
 
 ELF = Path(__file__).resolve().parents[1] / "build" / "firmware" / "itsybitsy_m0.elf"
 TICKS = 8000

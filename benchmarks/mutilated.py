@@ -32,7 +32,7 @@ from fdvv.formats.force.read import read_force_file
 from fdvv.model.curve import MeasuredCurve
 
 ROOT = Path(__file__).parents[1]
-EXAMPLES = ROOT / "src" / "fdvv" / "button" / "examples"
+EXAMPLES = ROOT / "packages/fdvv/src/fdvv/button/examples"
 SHARED = Path(os.environ.get("FDVV_SHARED", ROOT.parent / "shared")) / "data"
 TWO = "two buttons in one"
 OFF_cN, OFF_ratio, LONGER_mm = 5.0, 0.05, 0.3

@@ -7,8 +7,8 @@ from typing import Any
 
 from benchmarks.optimize_expected_improvement import GPExpectedImprovement
 from benchmarks.optimize_optuna import CMAESEngine, NSGA2Engine, TPEEngine
-from fdvv.optimize.engines.registry import engine_of
-from fdvv.optimize.problem import Engine
+from fdvv_people.optimize.engines.registry import engine_of
+from fdvv_people.optimize.problem import Engine
 
 BASELINES: Mapping[str, Callable[..., Engine]] = {
     "tpe": TPEEngine,

@@ -23,13 +23,13 @@ from benchmarks.optimize_engines import Runner, Variant, compare, kept_runs, run
 from benchmarks.optimize_rivals import FixedDesign, ScikitOptimize
 from benchmarks.optimize_tables import BUDGET, LEVELS, LOOKS, PEOPLE, SEEDS, Run, common, curves
 from fdvv.io.files import write_atomic
-from fdvv.optimize.engines.search import draw_feasible
-from fdvv.optimize.population.plan import PopulationPlan
-from fdvv.optimize.population.population import run_population
-from fdvv.optimize.problem import Engine, Problem
 from fdvv.parallel.open import open_executor
-from fdvv.stats.share import share
-from fdvv.task.pointing import TemporalPointing
+from fdvv_people.optimize.engines.search import draw_feasible
+from fdvv_people.optimize.population.plan import PopulationPlan
+from fdvv_people.optimize.population.population import run_population
+from fdvv_people.optimize.problem import Engine, Problem
+from fdvv_people.stats.share import share
+from fdvv_people.task.pointing import TemporalPointing
 
 GROUP, FIRST_SEED, OTHERS_SEED = "diverse", 2000, 11
 OTHERS, DESIGNS, POOL = 24, 128, 10_000

@@ -41,15 +41,15 @@ from benchmarks.optimize_tables import (
 )
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_records
-from fdvv.optimize.button_constraints import button_constraints
-from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.people.groups import PAPER_GROUP
-from fdvv.optimize.population.plan import PopulationPlan, optimise
-from fdvv.optimize.population.population import read_population, run_population
-from fdvv.optimize.problem import Engine, Problem, Trial
-from fdvv.optimize.space import Design
 from fdvv.parallel.open import open_executor
-from fdvv.task.score import Score
+from fdvv_people.optimize.button_constraints import button_constraints
+from fdvv_people.optimize.paper_space import paper_space
+from fdvv_people.optimize.people.groups import PAPER_GROUP
+from fdvv_people.optimize.population.plan import PopulationPlan, optimise
+from fdvv_people.optimize.population.population import read_population, run_population
+from fdvv_people.optimize.problem import Engine, Problem, Trial
+from fdvv_people.optimize.space import Design
+from fdvv_people.task.score import Score
 
 OTHERS: Mapping[str, tuple[int, Mapping[str, float]]] = {"usual": (24, {}), "shifted": (8, SHIFTED)}
 """Whose scores a warm start begins from: how many people, and how they differ from the judged ones."""

@@ -12,8 +12,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fdvv.optimize.engines.gp_model import believed_best, best_of, finished, fitted_process, observed
-from fdvv.optimize.engines.search import (
+from fdvv.units import FloatArray
+from fdvv_people.optimize.engines.gp_model import believed_best, best_of, finished, fitted_process, observed
+from fdvv_people.optimize.engines.search import (
     even_net,
     generator,
     log_expected_improvement,
@@ -21,8 +22,7 @@ from fdvv.optimize.engines.search import (
     random_places,
     tried_places,
 )
-from fdvv.optimize.problem import Problem, Trial
-from fdvv.units import FloatArray
+from fdvv_people.optimize.problem import Problem, Trial
 
 
 @dataclass(frozen=True)

@@ -21,13 +21,13 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.optimize.engines.gp import ChangeCost
-from fdvv.optimize.engines.registry import engine_of
-from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Problem, Trial, TrialState
-from fdvv.optimize.space import LENGTH
-from fdvv.task.score import Objective, Score
 from fdvv.units import FloatArray
+from fdvv_people.optimize.engines.gp import ChangeCost
+from fdvv_people.optimize.engines.registry import engine_of
+from fdvv_people.optimize.paper_space import paper_space
+from fdvv_people.optimize.problem import Problem, Trial, TrialState
+from fdvv_people.optimize.space import LENGTH
+from fdvv_people.task.score import Objective, Score
 
 # no person smooths these functions
 SPACE = replace(paper_space(), length=LENGTH)

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.optimize.engines.gp_model import RecommendsBelievedBest, believed_best, finished
-from fdvv.optimize.engines.search import (
+from fdvv.units import FloatArray
+from fdvv_people.optimize.engines.gp_model import RecommendsBelievedBest, believed_best, finished
+from fdvv_people.optimize.engines.search import (
     draw_feasible,
     fresh,
     generator,
@@ -20,8 +21,7 @@ from fdvv.optimize.engines.search import (
     sobol_places,
     tried_places,
 )
-from fdvv.optimize.problem import OPEN, Problem, Trial, TrialState
-from fdvv.units import FloatArray
+from fdvv_people.optimize.problem import OPEN, Problem, Trial, TrialState
 
 if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution

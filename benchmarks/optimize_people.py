@@ -13,14 +13,14 @@ import numpy as np
 from scipy.special import ndtri
 
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.paper_space import paper_model
-from fdvv.optimize.people.groups import PAPER_GROUP, group_named
-from fdvv.optimize.people.simulate import score_design, simulate_task
-from fdvv.optimize.people.user import SimulatedUser, draw_user, spread_factor, timing_spread_s
-from fdvv.optimize.space import Design
-from fdvv.task.pointing import LOST_ms, TemporalPointing
-from fdvv.task.score import Score
 from fdvv.units import FloatArray
+from fdvv_people.optimize.paper_space import paper_model
+from fdvv_people.optimize.people.groups import PAPER_GROUP, group_named
+from fdvv_people.optimize.people.simulate import score_design, simulate_task
+from fdvv_people.optimize.people.user import SimulatedUser, draw_user, spread_factor, timing_spread_s
+from fdvv_people.optimize.space import Design
+from fdvv_people.task.pointing import LOST_ms, TemporalPointing
+from fdvv_people.task.score import Score
 
 FIRST_SEED = 2000
 """Below it seeds were used to tune, or were looked at while an engine was changed."""
@@ -39,7 +39,7 @@ class Person:
 
     Attributes
     ----------
-    seed, number : of the draw. group : of people, see fdvv.optimize.people.groups.
+    seed, number : of the draw. group : of people, see fdvv_people.optimize.people.groups.
     """
 
     seed: int

@@ -11,10 +11,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fdvv.optimize.engines.gp_model import finished
-from fdvv.optimize.engines.search import random_places
-from fdvv.optimize.problem import Problem, Trial
 from fdvv.units import FloatArray
+from fdvv_people.optimize.engines.gp_model import finished
+from fdvv_people.optimize.engines.search import random_places
+from fdvv_people.optimize.problem import Problem, Trial
 
 
 @dataclass

@@ -14,9 +14,9 @@ import tempfile
 import time
 from pathlib import Path
 
-from fdvv.optimize.population.plan import PopulationPlan
-from fdvv.optimize.population.population import run_population
 from fdvv.parallel.open import open_executor
+from fdvv_people.optimize.population.plan import PopulationPlan
+from fdvv_people.optimize.population.population import run_population
 
 PEOPLE = 20
 

@@ -17,19 +17,19 @@ import numpy as np
 from benchmarks.optimize_people import Person, expected_ms
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.button_constraints import button_constraints
-from fdvv.optimize.engines.multi_objective import believed_front, pareto_front
-from fdvv.optimize.engines.registry import engine_of
-from fdvv.optimize.paper_space import paper_model, paper_space
-from fdvv.optimize.people.taste import draw_taste, expected_liking, rate
-from fdvv.optimize.population.plan import optimise
-from fdvv.optimize.problem import Problem
-from fdvv.optimize.space import Design
 from fdvv.parallel.open import open_executor
-from fdvv.task.pointing import ASYNCHRONY
-from fdvv.task.questionnaire import LIKING, liking_score
-from fdvv.task.score import Score
 from fdvv.units import FloatArray
+from fdvv_people.optimize.button_constraints import button_constraints
+from fdvv_people.optimize.engines.multi_objective import believed_front, pareto_front
+from fdvv_people.optimize.engines.registry import engine_of
+from fdvv_people.optimize.paper_space import paper_model, paper_space
+from fdvv_people.optimize.people.taste import draw_taste, expected_liking, rate
+from fdvv_people.optimize.population.plan import optimise
+from fdvv_people.optimize.problem import Problem
+from fdvv_people.optimize.space import Design
+from fdvv_people.task.pointing import ASYNCHRONY
+from fdvv_people.task.questionnaire import LIKING, liking_score
+from fdvv_people.task.score import Score
 
 GROUP, SEED, LEVEL, BUDGET = "diverse", 4000, "easy", 30
 START = "mx-clear"

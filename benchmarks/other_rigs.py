@@ -13,7 +13,6 @@ import sys
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from tests.support.other_rigs import KINDS, OtherRig, draw_other_rig, presses_of
 
 from fdvv.compensation.identification.excitation import identification_surface
 from fdvv.compensation.identification.identify import identify
@@ -21,6 +20,7 @@ from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray
+from tests.support.other_rigs import KINDS, OtherRig, draw_other_rig, presses_of
 
 RIGS, FIRST_SEED = 40, 9000
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)

@@ -13,12 +13,12 @@ import numpy.typing as npt
 from fdvv.errors import InputError, ModelError
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.paper_space import paper_model, paper_space
-from fdvv.optimize.people.press_simulator import PressSimulator, known_rig
-from fdvv.optimize.people.simulate import Hand
-from fdvv.optimize.people.user import SimulatedUser, UserSettings, aim_s, draw_users, timing_spread_s
-from fdvv.task.pointing import LOST_ms, TemporalPointing
 from fdvv.units import FloatArray
+from fdvv_people.optimize.paper_space import paper_model, paper_space
+from fdvv_people.optimize.people.press_simulator import PressSimulator, known_rig
+from fdvv_people.optimize.people.simulate import Hand
+from fdvv_people.optimize.people.user import SimulatedUser, UserSettings, aim_s, draw_users, timing_spread_s
+from fdvv_people.task.pointing import LOST_ms, TemporalPointing
 
 PAPER_BUTTONS = ("optimal", "clear", "brown", "black", "red", "random")
 """Buttons of the paper's validation, in the order of its table."""

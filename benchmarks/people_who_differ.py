@@ -21,15 +21,15 @@ import numpy as np
 from benchmarks.optimize_people import expected_ms
 from benchmarks.people_calibration import Taps, person_spreads_ms, read_taps
 from fdvv.model.file import load_builtin
-from fdvv.optimize.button_constraints import button_constraints
-from fdvv.optimize.engines.registry import engine_of
-from fdvv.optimize.paper_space import paper_model, paper_space
-from fdvv.optimize.people.groups import group_named
-from fdvv.optimize.people.user import SimulatedUser, draw_users
-from fdvv.optimize.problem import Problem
-from fdvv.optimize.space import Design
-from fdvv.task.pointing import TemporalPointing
 from fdvv.units import FloatArray
+from fdvv_people.optimize.button_constraints import button_constraints
+from fdvv_people.optimize.engines.registry import engine_of
+from fdvv_people.optimize.paper_space import paper_model, paper_space
+from fdvv_people.optimize.people.groups import group_named
+from fdvv_people.optimize.people.user import SimulatedUser, draw_users
+from fdvv_people.optimize.problem import Problem
+from fdvv_people.optimize.space import Design
+from fdvv_people.task.pointing import TemporalPointing
 
 SEED = 500
 SPACE = paper_space(button_constraints())

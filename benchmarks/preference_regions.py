@@ -24,13 +24,13 @@ from typing import ClassVar
 
 import numpy as np
 
-from fdvv.optimize.engines.preference_line import PreferenceLineEngine
-from fdvv.optimize.engines.registry import engine_of
-from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Engine, Problem, Trial, TrialState
-from fdvv.stats.share import share
-from fdvv.task.score import Objective
 from fdvv.units import FloatArray
+from fdvv_people.optimize.engines.preference_line import PreferenceLineEngine
+from fdvv_people.optimize.engines.registry import engine_of
+from fdvv_people.optimize.paper_space import paper_space
+from fdvv_people.optimize.problem import Engine, Problem, Trial, TrialState
+from fdvv_people.stats.share import share
+from fdvv_people.task.score import Objective
 
 SPACE = paper_space()
 DIMENSIONS = len(SPACE.names)

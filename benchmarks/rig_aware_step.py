@@ -11,7 +11,6 @@ import time
 from collections.abc import Callable
 
 import numpy as np
-from tests.support.rig_truth import draw_fast_rig
 
 from fdvv.compensation.method import CompensationJob
 from fdvv.compensation.rig_aware import RigAware, RigState
@@ -20,6 +19,7 @@ from fdvv.device.twin import TwinDevice
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.tuning import settings_with
+from tests.support.rig_truth import draw_fast_rig
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
 BUTTON, OTHER = load_builtin("mx-clear"), load_builtin("mx-red")

@@ -19,8 +19,6 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import count
 
-from tests.support.rig_faults import PLANTED, PlantedPerson, WatchedBoard
-
 from benchmarks.drawn_rigs import BUTTONS, Case, SPEEDS_mm_s
 from benchmarks.force_loop import DESIGNS, RECOMMENDED, parts
 from fdvv.compensation.rig_aware import RigAware
@@ -32,6 +30,7 @@ from fdvv.rendering.part_check import CHECK_cN
 from fdvv.rendering.session_run import Guide, PressDone
 from fdvv.twin.finger import Finger
 from fdvv.twin.rig import Rig
+from tests.support.rig_faults import PLANTED, PlantedPerson, WatchedBoard
 
 FIRST, RIGS, SOUND = 500, 10, 100
 WITHIN, SHOWN = 2, 20

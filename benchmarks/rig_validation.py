@@ -9,11 +9,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from tests.support.cap_vibration import cap_vibration, ways
-from tests.support.closed_forms import coil_error_ratio, mean_response, ripple_N
-from tests.support.loop import LinearLoop, bare_loop, cycles, grainy_loop, onset_N_m, quantisation_limit_N_m
-from tests.support.reference.reference import reference_simulate
-from tests.support.table_press import simulate
 
 from benchmarks.rig_vibration import VELOCITIES_mm_s
 from fdvv.model.file import load_builtin
@@ -26,6 +21,11 @@ from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.rig import Rig
 from fdvv.twin.rig_moves import Coil
 from fdvv.units import FloatArray
+from tests.support.cap_vibration import cap_vibration, ways
+from tests.support.closed_forms import coil_error_ratio, mean_response, ripple_N
+from tests.support.loop import LinearLoop, bare_loop, cycles, grainy_loop, onset_N_m, quantisation_limit_N_m
+from tests.support.reference.reference import reference_simulate
+from tests.support.table_press import simulate
 
 PACES_mm_s = (50.0, 100.0, 150.0, 200.0)
 FELT_um = 0.1

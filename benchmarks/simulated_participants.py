@@ -20,13 +20,13 @@ import numpy as np
 from fdvv.model.file import builtin_names, load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.rendering.probe import fd_only
-from fdvv.study.plan.claim import claim_holds
-from fdvv.study.plan.plan_file import write_template
-from fdvv.study.simulation.people import ProxySettings
-from fdvv.study.simulation.perception import Senses, haptic_features, perceived_difference
-from fdvv.study.simulation.power import ItemEffect, PowerDesign, simulate_scores
-from fdvv.study.simulation.study_power import open_plan, study_power
-from fdvv.study.stimulus.renderer import stimulus_model
+from fdvv_people.study.plan.claim import claim_holds
+from fdvv_people.study.plan.plan_file import write_template
+from fdvv_people.study.simulation.people import ProxySettings
+from fdvv_people.study.simulation.perception import Senses, haptic_features, perceived_difference
+from fdvv_people.study.simulation.power import ItemEffect, PowerDesign, simulate_scores
+from fdvv_people.study.simulation.study_power import open_plan, study_power
+from fdvv_people.study.stimulus.renderer import stimulus_model
 
 PAPER_percent = 77.31
 PEOPLE = 12

@@ -37,11 +37,11 @@ from benchmarks.people_calibration import (
 )
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.paper_space import paper_model, paper_space
-from fdvv.optimize.people.simulate import score_design
-from fdvv.optimize.people.user import SimulatedUser, draw_users
-from fdvv.task.pointing import TemporalPointing
 from fdvv.units import FloatArray
+from fdvv_people.optimize.paper_space import paper_model, paper_space
+from fdvv_people.optimize.people.simulate import score_design
+from fdvv_people.optimize.people.user import SimulatedUser, draw_users
+from fdvv_people.task.pointing import TemporalPointing
 
 GAINS = (0.0, 0.05, 0.1, 0.3)
 BLOCKS = 20

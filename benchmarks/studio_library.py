@@ -19,14 +19,14 @@ from pathlib import Path
 
 import numpy as np
 from playwright.sync_api import Page, expect, sync_playwright
-from tests.studio.running import RunningStudio
 
 from fdvv.button.fit import measured_files
 from fdvv.errors import FdvvError
-from fdvv.library.catalog import Catalog
-from fdvv.library.figures import read_file
-from fdvv.library.index import CatalogIndex
-from fdvv.library.search import CatalogSearch, SearchQuery
+from fdvv_studio.library.catalog import Catalog
+from fdvv_studio.library.figures import read_file
+from fdvv_studio.library.index import CatalogIndex
+from fdvv_studio.library.search import CatalogSearch, SearchQuery
+from tests.studio.running import RunningStudio
 
 WORDS = ("cherry mx", "gateron yel", "box navy", "gatreon", "silent red", "x", "topre 45")
 PAINTED = """

@@ -19,10 +19,10 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.live.binary_finger import BinaryFinger
-from fdvv.live.press import LiveEventKind, LivePress
-from fdvv.live.press_subject import model_subject
-from fdvv.optimize.run.session import Optimization
+from fdvv_people.optimize.run.session import Optimization
+from fdvv_studio.live.binary_finger import BinaryFinger
+from fdvv_studio.live.press import LiveEventKind, LivePress
+from fdvv_studio.live.press_subject import model_subject
 
 ZONE_ratio = 100 / 144
 WATCH = """(x_ratio) => {

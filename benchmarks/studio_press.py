@@ -19,10 +19,10 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.live.press import LivePress
-from fdvv.live.press_subject import PressMode, drawn_trace, model_subject
-from fdvv.live.run import LiveFrame, LiveRun
 from fdvv.model.file import load_builtin
+from fdvv_studio.live.press import LivePress
+from fdvv_studio.live.press_subject import PressMode, drawn_trace, model_subject
+from fdvv_studio.live.run import LiveFrame, LiveRun
 
 STEP_s, SIMULATED_s = 0.004, 10.0
 RIGS = (

@@ -32,6 +32,7 @@ from typing import NamedTuple
 
 import numpy as np
 from playwright.sync_api import Browser, Page, sync_playwright
+
 from tests.browser.conftest import CHROMIUM
 from tests.studio.running import RunningStudio
 

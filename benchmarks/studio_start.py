@@ -16,6 +16,7 @@ from pathlib import Path
 from statistics import median
 
 from playwright.sync_api import Browser, sync_playwright
+
 from tests.studio.running import RunningStudio
 
 INTERACTIVE, FIRST_ROW = "html[data-ready=library]", ".lib-row:not([hidden]) .lib-name"

@@ -15,13 +15,13 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.live.binary_finger import BinaryFinger
-from fdvv.live.press import LivePress
-from fdvv.live.press_subject import model_subject
-from fdvv.study.plan.plan import Stimulus
-from fdvv.study.stimulus.evidence import RenderingEvidence
-from fdvv.study.stimulus.renderer import stimulus_model
-from fdvv.study.stimulus.twin import TwinRenderer
+from fdvv_people.study.plan.plan import Stimulus
+from fdvv_people.study.stimulus.evidence import RenderingEvidence
+from fdvv_people.study.stimulus.renderer import stimulus_model
+from fdvv_people.study.stimulus.twin import TwinRenderer
+from fdvv_studio.live.binary_finger import BinaryFinger
+from fdvv_studio.live.press import LivePress
+from fdvv_studio.live.press_subject import model_subject
 
 BUTTONS, PACES_mm_s, PRESSES = ("mx-clear", "rubber-dome"), (15, 40, 120, 300, 450, 600), 8
 SWITCH_s = 0.1

@@ -19,8 +19,8 @@ from pathlib import Path
 
 from benchmarks.library_build import Used, children_s, watched
 from fdvv.parallel.open import open_executor
-from fdvv.sweep.plan import SweepPlan
-from fdvv.sweep.sweep import RESULTS, run_sweep
+from fdvv_campaigns.sweep.plan import SweepPlan
+from fdvv_campaigns.sweep.sweep import RESULTS, run_sweep
 
 
 def plan(repeats: int) -> SweepPlan:

@@ -4,7 +4,7 @@ Run as ``python -m benchmarks.tapping [PEOPLE]`` (default 12). Three tables, abo
 
 - what a tapping study of simulated people scores, by how many strokes a second a finger makes at most.
   Presses of the key are counted, then the strokes that closed it, as they were made and as they are found
-  from the presses alone (`fdvv.task.tapping.strokes_Hz`);
+  from the presses alone (`fdvv_people.task.tapping.strokes_Hz`);
 - what each button does under a finger that leans on it and makes no stroke at all;
 - which taps of a hand on a keyboard the twin's finger follows in the studio, and with what delay.
 """
@@ -18,21 +18,21 @@ from itertools import pairwise
 
 import numpy as np
 
-from fdvv.live.binary_finger import BinaryFinger
-from fdvv.live.press import LiveEventKind, LivePress
-from fdvv.live.press_subject import PressSubject, model_subject, program_subject
 from fdvv.model.file import builtin_names, load_builtin
 from fdvv.model.model import FDVVModel
-from fdvv.optimize.people.groups import TAPPERS
-from fdvv.optimize.people.press_simulator import PressSimulator
-from fdvv.optimize.people.simulate import simulate_task
-from fdvv.optimize.people.user import SimulatedUser, draw_users
 from fdvv.program.library import load_shipped
 from fdvv.program.program import Program
-from fdvv.task.tapping import RapidTapping, strokes_Hz
-from fdvv.timing.simulation.people import MOST_STROKES
 from fdvv.twin.gesture import depth_m
 from fdvv.units import FloatArray, N_from_cN
+from fdvv_people.optimize.people.groups import TAPPERS
+from fdvv_people.optimize.people.press_simulator import PressSimulator
+from fdvv_people.optimize.people.simulate import simulate_task
+from fdvv_people.optimize.people.user import SimulatedUser, draw_users
+from fdvv_people.task.tapping import RapidTapping, strokes_Hz
+from fdvv_people.timing.simulation.people import MOST_STROKES
+from fdvv_studio.live.binary_finger import BinaryFinger
+from fdvv_studio.live.press import LiveEventKind, LivePress
+from fdvv_studio.live.press_subject import PressSubject, model_subject, program_subject
 
 BUTTONS = ("fast-tapping", "rapid-trigger", "mx-red", "mx-clear")
 SEED = 900

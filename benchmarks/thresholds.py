@@ -25,22 +25,23 @@ from fdvv.model.file import load_builtin
 from fdvv.model.grown import grown
 from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import AT_JND, DIMENSIONS
-from fdvv.study.plan.plan import Thresholds
-from fdvv.study.plan.threshold_trials import threshold_estimate, trial_change
-from fdvv.study.simulation.people import draw_people
-from fdvv.study.simulation.perception import (
+from fdvv.units import FloatArray
+from fdvv_people.study.plan.plan import Thresholds
+from fdvv_people.study.plan.threshold_trials import threshold_estimate, trial_change
+from fdvv_people.study.simulation.people import draw_people
+from fdvv_people.study.simulation.perception import (
     HapticFeatures,
     PerceivedDifference,
     haptic_features,
     perceived_difference,
 )
-from fdvv.thresholds.belief import Change, Trial
-from fdvv.units import FloatArray
+from fdvv_people.thresholds.belief import Change, Trial
 
 KINDS = ("proportional", "exponent", "lapsing", "tiring", "lognormal", "proxy")
 """Of observers: d' in proportion to the change, about as the method expects; with an exponent of 0.65 to 1.6
 and another way of adding up; with 5 to 12 % of lapses; whose JND grows by 0.4 % a trial; a cumulative normal
-of the logarithm of the change; and those of fdvv.study.simulation at the built-in rubber dome, with four
+of the logarithm of the change; and those of fdvv_people.study.simulation at the built-in rubber dome, with
+four
 times the vibration of mx-clear: each person must feel what can be rendered."""
 
 JND_ratio, JND_spread = (0.10, 0.45, 0.35), 0.6

@@ -28,12 +28,12 @@ from fdvv.button.kind import kind_of
 from fdvv.errors import FdvvError
 from fdvv.formats.force.read import read_force_file
 from fdvv.formats.force.types import ForceFile
-from fdvv.library.catalog import source_files
-from fdvv.library.figures import polyline_model
 from fdvv.model.bump import STOP_LEAST_cN_mm, find_contact_mm
 from fdvv.model.curve import Stroke
 from fdvv.model.landmarks import landmarks
 from fdvv.model.model import FDVVModel
+from fdvv_studio.library.catalog import source_files
+from fdvv_studio.library.figures import polyline_model
 
 MARKS = Path(__file__).with_name("true_to_file_marks.csv")
 CLOSE_mm = 0.05

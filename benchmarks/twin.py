@@ -14,8 +14,6 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import numpy as np
-from tests.support.reference.reference import reference_simulate
-from tests.support.table_press import simulate
 
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
@@ -29,6 +27,8 @@ from fdvv.twin.rig_moves import Exciter
 from fdvv.twin.simulate import simulate_program
 from fdvv.twin.trace import Trace
 from fdvv.units import m_from_mm
+from tests.support.reference.reference import reference_simulate
+from tests.support.table_press import simulate
 
 PACES_mm_s = (50.0, 75.0, 100.0, 125.0, 150.0, 175.0, 200.0)
 STEPS_s = (2e-5, 1e-5, 5e-6, 2.5e-6)

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
-from tests.support.loop import AWAY
 
 from fdvv.device.boards import HostBoard
 from fdvv.device.linked import LinkedDevice
@@ -50,6 +49,7 @@ from fdvv.vibration.inverse import (
     spqi,
     st_sim,
 )
+from tests.support.loop import AWAY
 
 FIRST_SEED = 2000
 """Below it seeds were used to choose settings."""

@@ -13,7 +13,7 @@ import pytest
 from fdvv._native import address
 
 ROOT = Path(__file__).resolve().parents[1]
-NATIVE, CORE = ROOT / "src" / "fdvv" / "_native", ROOT / "firmware" / "core"
+NATIVE, CORE = ROOT / "packages/fdvv/src/fdvv/_native", ROOT / "firmware" / "core"
 FORCE_LOOP = ROOT / "firmware" / "force_loop"
 FOLDERS = NATIVE, CORE, FORCE_LOOP
 SOURCES = [f"-I{CORE}", f"-I{FORCE_LOOP}", "-DFDVV_FORCE_LOOP"]

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import inspect
 import subprocess
 import sys
 import textwrap
 from pathlib import Path
+from types import ModuleType
 
 import griffe
 import pytest
 from tools.check_api import broken, unannounced
 
 import fdvv
+import fdvv_people
+import fdvv_studio
 
 SOURCE = ast.parse(Path(fdvv.__file__).read_text(encoding="utf-8"))
 
@@ -37,6 +41,26 @@ def test_type_checkers_and_python_import_the_same_names() -> None:
     }
     assert imports == {(module, name) for module, names in fdvv._MODULES.items() for name in names}
     assert {name for _, name in imports} == set(fdvv.__all__)
+
+
+@pytest.mark.parametrize("face", [fdvv_people, fdvv_studio])
+def test_a_face_above_the_core_has_what_it_names_documented_and_typed(face: ModuleType) -> None:
+    assert face.__file__
+    source = ast.parse(Path(face.__file__).read_text(encoding="utf-8"))
+    typed = {a.name for node in ast.walk(source) if isinstance(node, ast.ImportFrom) for a in node.names}
+    names = set(face.__all__) - {"__version__"}
+    assert all(inspect.getdoc(getattr(face, name)) for name in names)
+    assert names == typed - {"TYPE_CHECKING", "Any", "annotations"}
+    assert dir(face) == sorted(face.__all__)
+    with pytest.raises(AttributeError, match="has no attribute 'nonsense'"):
+        _ = face.nonsense
+
+
+def test_a_name_that_moved_says_where_it_is_and_is_there() -> None:
+    for name, place in fdvv._MOVED.items():
+        with pytest.raises(AttributeError, match=rf"{name} is {place}\.{name} \(pip install fdvv-"):
+            getattr(fdvv, name)
+        assert hasattr(importlib.import_module(place), name)
 
 
 def test_an_unknown_name_is_an_attribute_error() -> None:

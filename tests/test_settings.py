@@ -25,7 +25,7 @@ from fdvv.rendering.settings import (
     TuneSettings,
 )
 from fdvv.settings import SettingError, Settings, about, settings_of
-from fdvv.studio.jobs.orders import SETTINGS
+from fdvv_studio.studio.jobs.orders import SETTINGS
 
 EVERY = (CaptureSettings, CompensateSettings, FeasibleSettings, ProbeSettings, TuneSettings)
 

@@ -53,8 +53,10 @@ def main() -> int:
     if ref is None:
         print("no tag yet: nothing was promised")
         return 0
-    old = griffe.load_git("fdvv", ref=ref, repo=ROOT, search_paths=["src"], resolve_aliases=True)
-    new = griffe.load("fdvv", search_paths=[ROOT / "src"], resolve_aliases=True)
+    old = griffe.load_git(
+        "fdvv", ref=ref, repo=ROOT, search_paths=["packages/fdvv/src", "src"], resolve_aliases=True
+    )
+    new = griffe.load("fdvv", search_paths=[ROOT / "packages" / "fdvv" / "src"], resolve_aliases=True)
     assert isinstance(old, griffe.Module)
     assert isinstance(new, griffe.Module)
     found = unannounced(broken(old, new), (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))

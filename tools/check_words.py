@@ -19,7 +19,7 @@ LEFT_OUT = (
     "tests/files/",
     "CHANGELOG.md",
     "tools/check_words.py",
-    "src/fdvv/studio/static/",
+    "packages/fdvv-studio/src/fdvv_studio/studio/static/",
     "web/src/net/messages.ts",
 )
 

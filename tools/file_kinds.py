@@ -8,18 +8,9 @@ from typing import Any
 
 from fdvv.compensation.identification.rig_file import RigRecord
 from fdvv.compensation.identification.rig_model import RigModel
-from fdvv.library.build import LibraryManifest
 from fdvv.model.file import ModelRecord
 from fdvv.model.jnd_file import JndRecord, MeasuredJnd
-from fdvv.optimize.experiment.setup import ExperimentSetup
-from fdvv.optimize.population.plan import PopulationPlan
-from fdvv.optimize.population.population import ChunkRecord
-from fdvv.optimize.problem import Trial
-from fdvv.optimize.run.compromise import Chosen
-from fdvv.optimize.run.ledger import Edited, Line, LineChoice, Pair, PairAnswer, TrialOutcome
-from fdvv.optimize.run.setup import OptimizeSetup
 from fdvv.program.file import ProgramRecord
-from fdvv.project.history import DocumentBase, HistoryChange
 from fdvv.recording.file import Correction
 from fdvv.recording.records import BenchRecord, HeadRecord, MarkRecord, MendRecord, StreamRecord, TakeRecord
 from fdvv.recording.types import Bench, Mark, Recording, Stream, Take
@@ -27,22 +18,31 @@ from fdvv.rendering.actuation_file import ActuationRecord
 from fdvv.rendering.run_summary import RunSummary
 from fdvv.rendering.session import Manifest
 from fdvv.rendering.session_log import AnswerRecord, PressEntry, SessionRun
-from fdvv.studio.jobs.file import JobRecord
-from fdvv.studio.seats import SeatsFile
-from fdvv.study.analysis.code_book import CodeBook
-from fdvv.study.files.counts import Counts
-from fdvv.study.files.layout import Frozen
-from fdvv.study.files.log_head import LogHead
-from fdvv.study.files.people import LockedSchedule, Schedule, SealedTrial
-from fdvv.study.files.seal import KeyHolderFile
-from fdvv.study.plan.plan import StudyPlan
-from fdvv.study.plan.session import SessionState
-from fdvv.sweep.plan import SweepPlan
-from fdvv.task.rounds import TaskRound, TrialRated
-from fdvv.timing.plan.plan import TimingPlan
-from fdvv.timing.plan.session import TimingState
 from fdvv.vibration.exciter import ExciterRecord, KnownExciter
+from fdvv_campaigns.sweep.plan import SweepPlan
+from fdvv_people.optimize.experiment.setup import ExperimentSetup
+from fdvv_people.optimize.population.plan import PopulationPlan
+from fdvv_people.optimize.population.population import ChunkRecord
+from fdvv_people.optimize.problem import Trial
+from fdvv_people.optimize.run.compromise import Chosen
+from fdvv_people.optimize.run.ledger import Edited, Line, LineChoice, Pair, PairAnswer, TrialOutcome
+from fdvv_people.optimize.run.setup import OptimizeSetup
+from fdvv_people.study.analysis.code_book import CodeBook
+from fdvv_people.study.files.counts import Counts
+from fdvv_people.study.files.layout import Frozen
+from fdvv_people.study.files.log_head import LogHead
+from fdvv_people.study.files.people import LockedSchedule, Schedule, SealedTrial
+from fdvv_people.study.files.seal import KeyHolderFile
+from fdvv_people.study.plan.plan import StudyPlan
+from fdvv_people.study.plan.session import SessionState
+from fdvv_people.task.rounds import TaskRound, TrialRated
+from fdvv_people.timing.plan.plan import TimingPlan
+from fdvv_people.timing.plan.session import TimingState
 from fdvv_rig.selftest.receipt import SelftestReceipt
+from fdvv_studio.library.build import LibraryManifest
+from fdvv_studio.project.history import DocumentBase, HistoryChange
+from fdvv_studio.studio.jobs.file import JobRecord
+from fdvv_studio.studio.seats import SeatsFile
 
 
 @dataclass(frozen=True)

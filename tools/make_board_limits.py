@@ -18,7 +18,7 @@ from fdvv.twin.settings import limits_of
 
 ROOT = Path(__file__).resolve().parents[1]
 BOARDS = ROOT / "firmware" / "boards"
-RIGS = ROOT / "src" / "fdvv" / "twin" / "rigs"
+RIGS = ROOT / "packages/fdvv/src/fdvv/twin/rigs"
 
 
 @dataclass(frozen=True)

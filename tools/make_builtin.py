@@ -19,7 +19,7 @@ from fdvv.model.model import FDVVModel, Provenance
 from fdvv.model.velocity import Interpolation
 from fdvv.model.vibration import Mode, Vibration
 
-OUTPUT = Path(__file__).parents[1] / "src" / "fdvv" / "model" / "builtin" / "mx-clear.fdvv.json"
+OUTPUT = Path(__file__).parents[1] / "packages/fdvv/src/fdvv/model/builtin/mx-clear.fdvv.json"
 
 # 15 evenly indexed samples of an 81-sample grid, 0.05 mm apart
 NODES_mm = np.round(0.05 * np.floor(80 * np.arange(15) / 14), 2)

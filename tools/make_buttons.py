@@ -17,7 +17,7 @@ from fdvv.twin.button import ButtonPhysics, Curve, button_of_model
 from fdvv.twin.files import button_to_toml
 from fdvv.units import N_from_cN, m_from_mm
 
-OUTPUT = Path(__file__).parents[1] / "src" / "fdvv" / "twin" / "buttons"
+OUTPUT = Path(__file__).parents[1] / "packages/fdvv/src/fdvv/twin/buttons"
 STEP_mm = 0.02
 SLOW_mm_s = 0.5
 

@@ -8,7 +8,7 @@ from fdvv.io.files import write_atomic
 from fdvv.program.file import PROGRAM_SUFFIX, program_to_json
 from fdvv.program.library import make, programs
 
-FOLDER = Path(__file__).parents[1] / "src" / "fdvv" / "program" / "library"
+FOLDER = Path(__file__).parents[1] / "packages/fdvv/src/fdvv/program/library"
 
 
 def files() -> dict[Path, str]:

@@ -19,7 +19,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "protocol" / "fdvv.toml"
 HEADER = ROOT / "firmware" / "core" / "protocol.h"
-TABLES = ROOT / "src" / "fdvv" / "protocol" / "tables.py"
+TABLES = ROOT / "packages/fdvv/src/fdvv/protocol/tables.py"
 LOOP_SOURCE = ROOT / "protocol" / "force_loop.toml"
 LOOP_HEADER = ROOT / "firmware" / "force_loop" / "loop_protocol.h"
 STRIP_SOURCE = ROOT / "protocol" / "strip.toml"

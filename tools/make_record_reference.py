@@ -15,8 +15,8 @@ from tools.record_types import fields, in_words, reached
 
 from fdvv.cli.settings import option_name
 from fdvv.settings import Setting, settings_of
-from fdvv.studio.jobs.orders import SETTINGS
-from fdvv.studio.parts import load_parts
+from fdvv_studio.studio.jobs.orders import SETTINGS
+from fdvv_studio.studio.parts import load_parts
 
 COLUMNS = ("setting", "option", "allowed", "default", "meaning")
 MAX_DEFAULT = 60

@@ -153,7 +153,7 @@ def missing() -> list[str]:
 
 if __name__ == "__main__":
     if missing():
-        sys.exit(f'the site needs {", ".join(missing())}: pip install "fdvv[docs]"')
+        sys.exit(f"the site needs {', '.join(missing())}: pip install --group docs")
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else OUTPUT
     build(folder)
     print(folder / "index.html")

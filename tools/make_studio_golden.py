@@ -25,8 +25,8 @@ from fdvv.model.model import FDVVModel
 from fdvv.model.spread import CurveSpread, PointSpread
 from fdvv.model.velocity import Interpolation
 from fdvv.model.vibration import Mode, Vibration
-from fdvv.project.patch import apply_patch, inverse_patch, patch_between, record_of
 from fdvv.vibration.wave import vibration_samples
+from fdvv_studio.project.patch import apply_patch, inverse_patch, patch_between, record_of
 
 TARGET = Path(__file__).resolve().parents[1] / "web" / "tests" / "golden"
 SEED = 20201

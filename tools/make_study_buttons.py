@@ -16,7 +16,7 @@ from fdvv.model.file import load_model, save_model
 from fdvv.model.model import FDVVModel
 from fdvv.twin.files import load_button
 
-FOLDER = Path(__file__).parents[1] / "src" / "fdvv" / "study" / "templates" / "buttons"
+FOLDER = Path(__file__).parents[1] / "packages/fdvv-people/src/fdvv_people/study/templates/buttons"
 BUTTONS = ("mx-brown", "mx-black", "mx-red", "hp-pr1101u", "macbook-pro-2011")
 
 

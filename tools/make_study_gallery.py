@@ -16,7 +16,7 @@ from pathlib import Path
 from playwright.sync_api import Page, sync_playwright
 from tools.make_studio_gallery import TABLET, WIDE, Shot, take
 
-from fdvv.study.admin.study import Study
+from fdvv_people.study.admin.study import Study
 
 NAME, TIRING, PHONE = "realism", "tiring", (390, 844)
 PLAN = """name = "{name}"

@@ -20,7 +20,7 @@ from fdvv.model.file import save_model
 from fdvv.model.fit import fit_curve
 from fdvv.model.model import FDVVModel, Provenance
 
-OUTPUT = Path(__file__).parents[1] / "src" / "fdvv" / "model" / "builtin"
+OUTPUT = Path(__file__).parents[1] / "packages/fdvv/src/fdvv/model/builtin"
 
 SWITCHES = {
     "mx-red": ("Cherry-MX-Red.ods", "linear"),

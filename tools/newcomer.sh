@@ -1,22 +1,16 @@
 #!/usr/bin/env bash
-# Walk a newcomer's path in an empty folder and a clean environment: the sources, what the README says to type, the
+# Walk a newcomer's path in an empty folder and a clean environment: a clone of the last commit, what the README says to type, the
 # first rendered button, the studio, a study's preview. Prints the seconds of every step; the last line is the sum.
-# usage: newcomer.sh [SDIST]      without an sdist: a clone of this checkout's last commit
 # PYTHON=/path/to/python3: as a newcomer's `python3`
 set -euo pipefail
 checkout=$(cd "$(dirname "$0")/.." && pwd)
-sources=${1:+$(realpath "$1")}
 python=$("${PYTHON:-python3}" -c 'import os, sys; print(os.path.realpath(sys.executable))')
 
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 mkdir "$place/home" "$place/bin" "$place/fdvv"
 ln -s "$python" "$place/bin/python3"
-if [ -n "$sources" ]; then
-  tar -xzf "$sources" -C "$place/fdvv" --strip-components=1
-else
-  git clone --quiet --depth 1 "file://$checkout" "$place/fdvv"
-fi
+git clone --quiet --depth 1 "file://$checkout" "$place/fdvv"
 
 # root hides things at once, others as root of a namespace of their own
 as=(unshare); [ "$(id -u)" = 0 ] || as=(unshare --map-root-user)

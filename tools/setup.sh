@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Make a virtual environment with fdvv and its extras (editable) and everything that demo and tests need.
+# Make a virtual environment with all packages of this repository (editable) and everything that demo and tests need.
 # usage: setup.sh PYTHON VENV
 set -euo pipefail
 python=$1 venv=$2
@@ -18,12 +18,9 @@ fi
 
 [ -x "$venv/bin/python" ] || "$python" -m venv "$venv"
 pip=("$venv/bin/python" -m pip install --quiet --disable-pip-version-check)
-here=(-e '.[dev]')
-for extra in extras/*/; do
-  # torch is 1 GB: the engines that need it are tested where it is installed
-  [ "$extra" = extras/fdvv-botorch/ ] || here+=(-e "$extra")
-done
-# every package by its hash, the tools that build included: then nothing is left for a build to fetch
+here=()
+for package in packages/*/ extras/*/; do here+=(-e "$package"); done
+# torch is 1 GB: the engines that need it are tested where it is installed. Every package by its hash, the tools that build included: then nothing is left for a build to fetch
 lock=requirements.lock only_uv=$(mktemp)
 trap 'rm -f "$only_uv"' EXIT
 awk '/^[^ ]/ { on = /^uv==/ } on' "$lock" > "$only_uv"
@@ -33,4 +30,4 @@ if ! { "${pip[@]}" --require-hashes -r "$only_uv" && "${uv[@]}" --compile-byteco
 then
   "${pip[@]}" --require-hashes -r "$lock"
 fi
-"${pip[@]}" --no-deps --no-build-isolation "${here[@]}" -e extras/fdvv-botorch
+"${pip[@]}" --no-deps --no-build-isolation "${here[@]}"

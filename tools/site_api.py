@@ -14,9 +14,13 @@ from sphinx.application import Sphinx
 from tools.docstrings import SECTION, read
 
 import fdvv
+import fdvv_campaigns
+import fdvv_people
+import fdvv_studio
 from fdvv.cli.main import cli
 
-HIDDEN = ("__main__", "_native", "cad", "static", "cli", "serve", "studio")
+DISTRIBUTIONS = (fdvv, fdvv_studio, fdvv_people, fdvv_campaigns)
+HIDDEN = ("__main__", "_native", "cad", "static", "cli", "serve", "studio", "pages")
 """Packages without names for users; commands and messages have pages of their own."""
 CODE = re.compile(
     r"(`+)(.+?)\1|(?<![\w*])(?P<stars>\*\*?)(?=[^\s*])[^*]*[^\s*](?P=stars)(?![\w*])", flags=re.DOTALL
@@ -26,9 +30,13 @@ SPECIAL = re.compile(r"([*|\\]|_(?=\W|$))")
 
 
 def api_pages() -> dict[str, str]:
-    """Return the pages of the package by name: the facade first, then one page for each package or module."""
-    parts = [name for name, _ in _modules(fdvv.__path__, "fdvv.")]
-    return {"fdvv": _page("fdvv", []), **{name: _page(name, list(_below(name))) for name in parts}}
+    """Return pages by name: of each distribution its face, then one page for each package or module."""
+    pages: dict[str, str] = {}
+    for package in DISTRIBUTIONS:
+        top = package.__name__
+        parts = [name for name, _ in _modules(package.__path__, f"{top}.")]
+        pages |= {top: _page(top, []), **{name: _page(name, list(_below(name))) for name in parts}}
+    return pages
 
 
 def _modules(path: Any, prefix: str) -> Iterator[tuple[str, bool]]:

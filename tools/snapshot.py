@@ -91,7 +91,8 @@ class Checkout:
             [python, "-c", "import fdvv; print(fdvv.__file__)"], check=True, capture_output=True, text=True
         )
         package = Path(found.stdout.strip()).parent
-        return cls(fdvv, package, package.parents[1])
+        root = next(folder for folder in package.parents if (folder / "firmware" / "core").is_dir())
+        return cls(fdvv, package, root)
 
 
 def sha256(data: bytes) -> str:
@@ -279,7 +280,8 @@ def run_case(case: Case, checkout: Checkout, data: Path, keep: Path | None) -> d
 def package_files(checkout: Checkout) -> dict[str, Any]:
     """Return the hash of each data file of the package by its bare name, wherever it lies."""
     found: dict[str, list[str]] = defaultdict(list)
-    for path in checkout.package.rglob("*"):
+    packages = [*checkout.root.glob("packages/*/src/*")] or [checkout.package]
+    for path in (path for package in packages for path in package.rglob("*")):
         if path.is_file() and path.suffix not in NOT_DATA and not {"static", "__pycache__"} & set(path.parts):
             found[path.name].append(sha256(path.read_bytes()))
     return {name: {"sha256": " ".join(sorted(found[name]))} for name in sorted(found)}

@@ -23,6 +23,9 @@ from pathlib import Path
 
 FDVV = [sys.executable, "-P", "-m", "fdvv"]
 EXTRAS = {
+    "fdvv_studio": (["library"], "fdvv-studio"),
+    "fdvv_people": (["study", "new", "realism"], "fdvv-people"),
+    "fdvv_campaigns": (["sweep", "plan.toml"], "fdvv-campaigns"),
     "matplotlib": (["show", "mx-clear", "--figure", "clear.svg"], "fdvv[plot]"),
     "nacl": (["study", "freeze", "realism", "--passphrase-file", "word.txt"], "fdvv[study]"),
     "sklearn": (["optimize", "run", "--folder", "run", "--trials", "1"], "fdvv[optimize]"),
@@ -35,6 +38,8 @@ EXTRAS = {
     "fdvv_drives": (["device", "info", "--device", "moteus:stage.toml"], "fdvv-drives"),
 }
 """A command that needs what an extra brings, by a module of it."""
+ABOVE = ("fdvv_studio", "fdvv_people", "fdvv_campaigns")
+"""What `fdvv[all]` brings beside the core."""
 
 
 def fdvv(folder: Path, *words: str, status: int = 0) -> tuple[str, str]:
@@ -50,9 +55,12 @@ def fdvv(folder: Path, *words: str, status: int = 0) -> tuple[str, str]:
 
 def every_room(folder: Path) -> str:
     """Import every module there is."""
-    import fdvv
-
-    found = [module.name for module in pkgutil.walk_packages(fdvv.__path__, "fdvv.")]
+    packages = map(importlib.import_module, filter(importlib.util.find_spec, ("fdvv", *ABOVE)))
+    found = [
+        m.name
+        for package in packages
+        for m in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+    ]
     # the compiled library looks like a module, and __main__ would run
     names = [name for name in found if not name.startswith("fdvv._native.") and name != "fdvv.__main__"]
     for name in names:
@@ -99,8 +107,11 @@ def extras(folder: Path) -> str:
     """Meet what needs an extra that is not there: one line that names it."""
     (folder / "word.txt").write_text("correct horse battery staple\n", encoding="utf-8")
     met = []
+    people = importlib.util.find_spec("fdvv_people") is not None
     for module, (words, extra) in EXTRAS.items():
-        if importlib.util.find_spec(module) is None:
+        if importlib.util.find_spec(module) is None and (
+            people or extra not in ("fdvv[study]", "fdvv[optimize]")
+        ):
             said = fdvv(folder, *words, status=1)[1].splitlines()[-1]
             if extra not in said:
                 raise SystemExit(f"fdvv {' '.join(words)} does not tell of {extra}: {said}")
@@ -140,10 +151,20 @@ def fetched(address: str) -> str:
 STEPS: list[Callable[[Path], str]] = [version, library, every_room, firmware, demo, studio, study, extras]
 
 
+NEEDED: dict[Callable[[Path], str], str] = {
+    library: "fdvv_studio",
+    studio: "fdvv_studio",
+    study: "fdvv_people",
+}
+"""The package that a step needs beside the core."""
+
+
 def main() -> None:
     """Take every step in an empty folder."""
     with tempfile.TemporaryDirectory() as folder:
         for step in STEPS:
+            if importlib.util.find_spec(NEEDED.get(step, "fdvv")) is None:
+                continue
             begun = time.monotonic()
             result = step(Path(folder))
             print(f"{step.__name__:12s} {time.monotonic() - begun:6.1f} s  {result}", flush=True)

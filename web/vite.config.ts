@@ -30,7 +30,7 @@ export default defineConfig({
   ...(process.env.VITEST ? { resolve: { conditions: ["browser"] } } : {}),
   test: { include: ["tests/**/*.test.ts"] },
   build: {
-    outDir: "../src/fdvv/studio/static",
+    outDir: "../packages/fdvv-studio/src/fdvv_studio/studio/static",
     emptyOutDir: true,
     target: "es2022",
     license: { fileName: "licenses.md" },

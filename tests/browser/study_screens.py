@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from fdvv.study.admin.study import Study
-from fdvv.study.files.seal import Cost
+from fdvv_people.study.admin.study import Study
+from fdvv_people.study.files.seal import Cost
 
 if TYPE_CHECKING:
     from playwright.sync_api import CDPSession, Page
@@ -271,7 +271,7 @@ class Sitter:
 
 def recorded_answers(study: Study, person: str = "P01") -> list[dict[str, Any]]:
     """Return the answers on the disk, in order, as their records hold them."""
-    from fdvv.study.files.chained_log import read_chained
+    from fdvv_people.study.files.chained_log import read_chained
 
     records = read_chained(study.person_folder(person) / "session.jsonl").records
     return [record["answered"]["answer"] for record in records if "answered" in record]

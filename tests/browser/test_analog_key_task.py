@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from fdvv.optimize.run.session import Optimization
-from fdvv.task.rounds import ClockSource
+from fdvv_people.optimize.run.session import Optimization
+from fdvv_people.task.rounds import ClockSource
 from tests.browser.accessibility import audit
 from tests.browser.test_optimize import ROUNDS, Wire, begin, kept_rounds
 from tests.studio.running import RunningStudio

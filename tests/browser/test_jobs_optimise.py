@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 from playwright.sync_api import expect
 
-from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.verdict import verdict_sentence
+from fdvv_people.optimize.run.session import Optimization
+from fdvv_people.optimize.run.verdict import verdict_sentence
 from tests.browser.counted import CountedPerson
 from tests.studio.running import RunningStudio
 

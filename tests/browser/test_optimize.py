@@ -13,17 +13,17 @@ import pytest
 from benchmarks.studio_play import button_ms
 from playwright.sync_api import expect
 
-from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Answer, TrialState
-from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.setup import OptimizeSetup
-from fdvv.task.pointing import ASYNCHRONY
-from fdvv.task.questionnaire import LIKING, liking_score
-from fdvv.task.rounds import ClockSource, TaskRound, TaskRounds
-from fdvv.task.score import Score
+from fdvv_people.optimize.paper_space import paper_space
+from fdvv_people.optimize.problem import Answer, TrialState
+from fdvv_people.optimize.run.session import Optimization
+from fdvv_people.optimize.run.setup import OptimizeSetup
+from fdvv_people.task.pointing import ASYNCHRONY
+from fdvv_people.task.questionnaire import LIKING, liking_score
+from fdvv_people.task.rounds import ClockSource, TaskRound, TaskRounds
+from fdvv_people.task.score import Score
 from tests.browser.accessibility import audit
+from tests.pages.test_optimize_group import scored_run
 from tests.studio.running import RunningStudio
-from tests.studio.test_optimize_group import scored_run
 from tests.support.grids import grid
 from tests.support.pressed_rig import KeyedRig
 
@@ -229,7 +229,7 @@ def table(tmp_path: Path) -> Iterator[RunningStudio]:
     """A studio beside which a board stands, on a real terminal line, that somebody presses now and then."""
     rig = KeyedRig(presses=100)
     listed = ((f"serial:{rig.path}", "a board"),), ""
-    first = f"from fdvv.studio import play_trials\nplay_trials.available_devices = lambda: {listed!r}"
+    first = f"from fdvv_studio.studio import play_trials\nplay_trials.available_devices = lambda: {listed!r}"
     studio = RunningStudio(tmp_path / "project", first=first)
     rig.start()
     yield studio

@@ -245,7 +245,10 @@ def test_a_file_is_uploaded_and_a_broken_one_refused_in_one_line(gallery: Page, 
     gallery.set_input_files("main input[type=file]", huge)
     gallery.locator(".toast.wrong", has_text="larger than 2 MB").wait_for()
 
-    good = Path(__file__).resolve().parents[2] / "src/fdvv/program/library/rapid-trigger.fdvv-program.json"
+    good = (
+        Path(__file__).resolve().parents[2]
+        / "packages/fdvv/src/fdvv/program/library/rapid-trigger.fdvv-program.json"
+    )
     gallery.set_input_files("main input[type=file]", good)
     gallery.wait_for_selector(".verdict.good")
     with gallery.expect_download() as export:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 from playwright.sync_api import expect
 
-from fdvv.studio.auth import opening_file
-from fdvv.study.admin.study import Study
+from fdvv_people.study.admin.study import Study
+from fdvv_studio.studio.auth import opening_file
 from tests.browser.study_screens import (
     NAME,
     Sitter,

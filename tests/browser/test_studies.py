@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from playwright.sync_api import expect
 
-from fdvv.study.admin.study import Study
+from fdvv_people.study.admin.study import Study
 from tests.browser.accessibility import audit
 from tests.browser.study_screens import NAME, PASSPHRASE, Sitter, frozen_study, plan_text, wait_for_part
 from tests.studio.running import RunningStudio

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from playwright.sync_api import expect
 
-from fdvv.study.admin.study import Study
+from fdvv_people.study.admin.study import Study
 from tests.browser.accessibility import audit
 from tests.browser.study_screens import (
     NAME,

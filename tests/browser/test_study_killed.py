@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from playwright.sync_api import Error
 
-from fdvv.study.admin.study import Study
+from fdvv_people.study.admin.study import Study
 from tests.browser.study_screens import (
     NAME,
     PASSPHRASE,

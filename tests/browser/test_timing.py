@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 from playwright.sync_api import expect
 
-from fdvv.timing.files.study import TimingStudy
+from fdvv_people.timing.files.study import TimingStudy
 from tests.browser.study_screens import NAME, PASSPHRASE, open_sessions, wait_for_part
 from tests.browser.timing_screens import STEP, Timer, frozen_timing, recorded, timing_text
 from tests.studio.running import RunningStudio

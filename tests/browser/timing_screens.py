@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fdvv.study.files.chained_log import read_chained
-from fdvv.timing.files.study import TimingStudy
+from fdvv_people.study.files.chained_log import read_chained
+from fdvv_people.timing.files.study import TimingStudy
 from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE, Sitter
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from fdvv_strip.library import LibraryStrip
-from tests.cli.conftest import Ran
+from tests.support.command_line import Ran
 
 Run = Callable[..., Ran]
 

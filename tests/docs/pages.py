@@ -72,7 +72,7 @@ def follow(
 
     shorter : options to append to a subcommand that would take minutes.
     """
-    (folder / "src").symlink_to(REPOSITORY / "src")
+    (folder / "packages").symlink_to(REPOSITORY / "packages")
     printed = ""
     for block in blocks_of(page):
         where = f"{name_of(page)}:{block.line}"

@@ -127,7 +127,7 @@ def test_formats_of_force_curves_are_described() -> None:
     heads = {name: sample.text().strip().splitlines()[:60] for name, sample in TEXTS.items()}
     for recognise, read_lines in READERS:
         known = [name for name, head in heads.items() if recognise(head)]
-        assert known, f"{read_lines.__name__}: add a sample to tests/formats/conftest.py"
+        assert known, f"{read_lines.__name__}: add a sample to packages/fdvv/tests/formats/conftest.py"
     assert {*TEXTS, "bluepylons-ods"} - described == set()
 
 
@@ -149,10 +149,10 @@ def _parameters(root: type[Any]) -> Iterator[dataclasses.Field[Any]]:
 
 def test_environment_variables_are_described() -> None:
     page = (DOCS / "reference" / "environment.md").read_text(encoding="utf-8")
-    folders = ("src", "tools", "tests", "benchmarks")
+    folders = ("packages", "tools", "tests", "benchmarks")
     files = [p for folder in folders for p in (REPOSITORY / folder).rglob("*") if p.suffix in (".py", ".sh")]
     texts = [p.read_text(encoding="utf-8") for p in files if p != Path(__file__)]
-    texts += [(REPOSITORY / name).read_text(encoding="utf-8") for name in ("Makefile", "hatch_build.py")]
+    texts += [(REPOSITORY / name).read_text(encoding="utf-8") for name in ("Makefile", "conftest.py")]
     used = {name for text in texts for match in VARIABLE.findall(text) for name in match if name}
     assert used == set(re.findall(r"^\| `([A-Z0-9_]+)` \|", page, flags=re.MULTILINE))
 

@@ -16,8 +16,7 @@ import numpy.typing as npt
 from fdvv.firmware.core import INPUTS, OUTPUTS, RecordArray
 from fdvv.firmware.limits import limits_like
 from fdvv.protocol.tables import BoardLimits, Settings
-
-from ._m0 import BOARD, REPOSITORY, SHARED, require_tools
+from tests.firmware._m0 import BOARD, REPOSITORY, SHARED, require_tools
 
 HERE = Path(__file__).resolve().parent
 CORE = REPOSITORY / "firmware" / "core"

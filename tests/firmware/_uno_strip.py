@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ._simavr import CLOCK_HZ, Signature, compile_emulator
+from tests.firmware._simavr import CLOCK_HZ, Signature, compile_emulator
 
 CYCLES_us = CLOCK_HZ // 1_000_000
 GLANCE_CYCLES = CLOCK_HZ // 1000

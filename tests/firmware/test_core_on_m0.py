@@ -7,11 +7,10 @@ import pytest
 
 from fdvv.firmware.core import Core
 from fdvv.protocol.tables import Refusal, Settings
+from tests.firmware._core_on_arm import CoreOnArm, board_flags, compile_core
 from tests.support.campaign import campaign
 from tests.support.random_presses import random_inputs, random_settings
 from tests.support.random_programs import random_image
-
-from ._core_on_arm import CoreOnArm, board_flags, compile_core
 
 pytestmark = pytest.mark.firmware
 

@@ -12,6 +12,8 @@ from benchmarks.force_loop_cost import CountingCore, counted, cycles_of, dear_co
 
 from fdvv.firmware.core import Core, RecordArray
 from fdvv.protocol.tables import LoopFault, Refusal
+from tests.firmware._core_on_arm import M4, CoreOnArm, board_flags, compile_core
+from tests.firmware._simavr import say
 from tests.support.campaign import campaign
 from tests.support.force_loop_press import (
     CELLS,
@@ -24,9 +26,6 @@ from tests.support.force_loop_press import (
 )
 from tests.support.random_presses import random_inputs, random_settings
 from tests.support.random_programs import random_image
-
-from ._core_on_arm import M4, CoreOnArm, board_flags, compile_core
-from ._simavr import say
 
 pytestmark = pytest.mark.firmware
 WORST_CYCLES, WORST_CYCLES_DEAREST = 4200, 8100

@@ -11,9 +11,8 @@ import pytest
 
 from fdvv_m0.emulator import M0Emulator
 from fdvv_m0.records import TickInputs, TickOutputs
-
-from ._m0 import CHECK, build, frames, sizes_bytes
-from ._simavr import say
+from tests.firmware._m0 import CHECK, build, frames, sizes_bytes
+from tests.firmware._simavr import say
 
 pytestmark = pytest.mark.firmware
 

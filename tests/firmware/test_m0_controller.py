@@ -20,10 +20,9 @@ from fdvv.testing.conformance import plain_surface
 from fdvv_m0.board import SHARE_OF_TICK, EmulatedBoard
 from fdvv_m0.emulator import M0Emulator
 from fdvv_m0.records import TickInputs
+from tests.firmware._m0 import CONTROLLER, build, sizes_bytes
+from tests.firmware._simavr import say
 from tests.support.scripted_person import ScriptedPerson, ScriptedPlant
-
-from ._m0 import CONTROLLER, build, sizes_bytes
-from ._simavr import say
 
 pytestmark = pytest.mark.firmware
 

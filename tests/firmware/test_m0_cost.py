@@ -9,8 +9,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from . import _m0
-from ._simavr import say
+from tests.firmware import _m0
+from tests.firmware._simavr import say
 
 pytestmark = pytest.mark.firmware
 

@@ -14,9 +14,8 @@ from fdvv.errors import DeviceError, InputError
 from fdvv.testing.conformance import ProgramConformance, plain_surface
 from fdvv.twin.files import load_rig
 from fdvv_m0.board import EmulatedBoard
+from tests.firmware._m0 import CONTROLLER, build
 from tests.support.scripted_person import ScriptedPerson
-
-from ._m0 import CONTROLLER, build
 
 pytestmark = pytest.mark.firmware
 

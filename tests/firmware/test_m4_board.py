@@ -25,11 +25,10 @@ from fdvv.twin.gesture import plan
 from fdvv_m0.board import EmulatedBoard
 from fdvv_m0.m4 import PIN_ENABLE, M4Emulator
 from fdvv_m0.records import TickInputs
+from tests.firmware._m0 import M4_CHECK, M4_CONTROLLER, build, build_with, frames, sizes_bytes
+from tests.firmware._simavr import say
+from tests.firmware.test_m0_cost import benchmark
 from tests.support.force_loop_press import CONTROLLER, KNOWN, RIG
-
-from ._m0 import M4_CHECK, M4_CONTROLLER, build, build_with, frames, sizes_bytes
-from ._simavr import say
-from .test_m0_cost import benchmark
 
 pytestmark = pytest.mark.firmware
 FLASH_BYTES, RAM_BYTES, STACK_BYTES = 512 * 1024 - 16 * 1024, 192 * 1024, 8 * 1024

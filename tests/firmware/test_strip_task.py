@@ -12,18 +12,17 @@ import pytest
 from fdvv.device.linked import LinkedDevice
 from fdvv.device.twin import SimulatedPerson
 from fdvv.model.file import load_builtin
-from fdvv.optimize.people.simulate import simulate_task
-from fdvv.optimize.people.user import SimulatedUser
 from fdvv.program.button import compile_button
-from fdvv.task.pointing import TemporalPointing
 from fdvv_m0.board import EmulatedBoard
+from fdvv_people.optimize.people.simulate import simulate_task
+from fdvv_people.optimize.people.user import SimulatedUser
+from fdvv_people.task.pointing import TemporalPointing
 from fdvv_strip.board import LedPointingTask, StripStart
 from fdvv_strip.task import play_on_strip, played_presser
-
-from ._m0 import CONTROLLER
-from ._m0 import build as build_controller
-from ._simavr import build_board, require_tools, say
-from ._uno_strip import UnoStrip, build_strip_emulator
+from tests.firmware._m0 import CONTROLLER
+from tests.firmware._m0 import build as build_controller
+from tests.firmware._simavr import build_board, require_tools, say
+from tests.firmware._uno_strip import UnoStrip, build_strip_emulator
 
 pytestmark = pytest.mark.firmware
 

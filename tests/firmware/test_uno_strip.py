@@ -15,9 +15,8 @@ import pytest
 from fdvv.errors import DeviceError
 from fdvv_strip.board import LedPointingTask, StripResult, StripRound
 from fdvv_strip.tables import STRIP_HOST_TIMEOUT_MS, StripLed, StripMode
-
-from ._simavr import build_board, require_tools, say
-from ._uno_strip import CYCLES_us, StripFrame, UnoStrip, build_strip_emulator
+from tests.firmware._simavr import build_board, require_tools, say
+from tests.firmware._uno_strip import CYCLES_us, StripFrame, UnoStrip, build_strip_emulator
 
 pytestmark = pytest.mark.firmware
 

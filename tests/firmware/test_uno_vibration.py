@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 from fdvv.program.synth import SILENCE_counts, Slot, Waveform, render
+from tests.firmware._simavr import CLOCK_HZ, Uno, build_board, build_emulator, require_tools, say
 from tests.support.program.vibration_wire import bank_messages, play_message, read_status
-
-from ._simavr import CLOCK_HZ, Uno, build_board, build_emulator, require_tools, say
 
 pytestmark = pytest.mark.firmware
 

@@ -10,8 +10,7 @@ from fdvv_rig.dimensions import Dimensions
 from fdvv_rig.manifest import read_manifest
 from fdvv_rig.parts import PARTS
 from fdvv_rig.placement import RIG, State
-
-from .legal import legal_dimensions
+from tests.hardware.legal import legal_dimensions
 
 pytest.importorskip("build123d", reason="the CAD kernel is not installed (fdvv-rig[cad])")
 pytest.importorskip("manifold3d", reason="manifold3d is not installed")

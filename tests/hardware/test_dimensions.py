@@ -16,8 +16,7 @@ from fdvv_rig.layout import Layout
 from fdvv_rig.limiter import Limiter
 from fdvv_rig.parts import PARTS
 from fdvv_rig.tolerance import core_stack
-
-from .legal import legal_dimensions
+from tests.hardware.legal import legal_dimensions
 
 DEFAULT = Dimensions()
 

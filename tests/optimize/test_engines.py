@@ -10,12 +10,12 @@ import pytest
 from benchmarks.optimize_baselines import BASELINES, compared_engine
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize.engines.registry import engine_names, engine_of
-from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Engine, Problem, Trial, TrialState
-from fdvv.optimize.space import Constraint, DesignSpace, Parameter
-from fdvv.task.score import Objective, Score
 from fdvv_botorch.models import torch_there
+from fdvv_people.optimize.engines.registry import engine_names, engine_of
+from fdvv_people.optimize.paper_space import paper_space
+from fdvv_people.optimize.problem import Engine, Problem, Trial, TrialState
+from fdvv_people.optimize.space import Constraint, DesignSpace, Parameter
+from fdvv_people.task.score import Objective, Score
 from tests.optimize.problems import BOWL, HELD, bowl_ms, problem, run, scored
 
 NO_TORCH = pytest.mark.skipif(not torch_there(), reason="botorch is not installed")
@@ -152,7 +152,7 @@ def test_with_trials_of_others_the_first_design_is_near_what_they_did_best() -> 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_what_is_left_of_places_is_new_and_comes_once(seed: int) -> None:
-    from fdvv.optimize.engines.search import SAME, fresh
+    from fdvv_people.optimize.engines.search import SAME, fresh
 
     rng = np.random.default_rng(seed)
     places = rng.integers(0, 3, (30, 2)) / 2 + rng.choice([0.0, 0.1 * SAME], (30, 2))

@@ -11,15 +11,15 @@ from msgspec import UNSET
 from scipy.stats import norm
 
 from fdvv.errors import InputError
-from fdvv.optimize.engines.gp import ChangeCost
-from fdvv.optimize.engines.gp_model import Basis, Observed, believe, believed_best, prior_basis
-from fdvv.optimize.engines.gp_model import observed as scores_of
-from fdvv.optimize.engines.registry import engine_of
-from fdvv.optimize.engines.search import log_expected_improvement
-from fdvv.optimize.paper_space import paper_space
-from fdvv.optimize.problem import Problem, Trial, TrialState
 from fdvv.units import FloatArray
 from fdvv_botorch.models import torch_there
+from fdvv_people.optimize.engines.gp import ChangeCost
+from fdvv_people.optimize.engines.gp_model import Basis, Observed, believe, believed_best, prior_basis
+from fdvv_people.optimize.engines.gp_model import observed as scores_of
+from fdvv_people.optimize.engines.registry import engine_of
+from fdvv_people.optimize.engines.search import log_expected_improvement
+from fdvv_people.optimize.paper_space import paper_space
+from fdvv_people.optimize.problem import Problem, Trial, TrialState
 from tests.optimize.problems import BOWL, bowl_ms, problem, run, scored
 
 NO_TORCH = pytest.mark.skipif(not torch_there(), reason="botorch is not installed")

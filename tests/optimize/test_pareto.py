@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize.engines.multi_objective import ParetoFront, believed_front, pareto_front
-from fdvv.optimize.problem import Problem, Trial, TrialState
-from fdvv.optimize.space import DesignSpace, Parameter
-from fdvv.task.score import Objective, Score
 from fdvv_botorch.models import torch_there
+from fdvv_people.optimize.engines.multi_objective import ParetoFront, believed_front, pareto_front
+from fdvv_people.optimize.problem import Problem, Trial, TrialState
+from fdvv_people.optimize.space import DesignSpace, Parameter
+from fdvv_people.task.score import Objective, Score
 from tests.optimize.problems import BOWL
 
 TWO = Problem(BOWL, (Objective("asynchrony_ms"), Objective("hits", larger_is_better=True)), 1)

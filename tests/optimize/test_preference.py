@@ -8,11 +8,11 @@ from scipy.optimize import minimize
 from scipy.stats import norm
 
 from fdvv.errors import InputError, ModelError
-from fdvv.optimize.engines.preference import NOISE, believe_choices
-from fdvv.optimize.engines.registry import engine_of, pair_engine_names
-from fdvv.optimize.problem import Answer, Engine, Problem, Trial, TrialState
-from fdvv.optimize.space import Design
 from fdvv_botorch.models import torch_there
+from fdvv_people.optimize.engines.preference import NOISE, believe_choices
+from fdvv_people.optimize.engines.registry import engine_of, pair_engine_names
+from fdvv_people.optimize.problem import Answer, Engine, Problem, Trial, TrialState
+from fdvv_people.optimize.space import Design
 from tests.optimize.problems import BOWL, HELD, bowl_ms, problem
 
 NO_TORCH = pytest.mark.skipif(not torch_there(), reason="botorch is not installed")

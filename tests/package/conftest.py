@@ -67,11 +67,12 @@ class Builder:
 
 @dataclass(frozen=True)
 class Packages:
-    """An sdist, the sources in it, and the wheel that was built from those."""
+    """The sdist of the core, the sources in it, the wheel that was built from those, and the wheels above."""
 
     sdist: Path
     sources: Path
     wheel: Path
+    others: tuple[Path, ...]
 
 
 @pytest.fixture(scope="session")
@@ -82,11 +83,14 @@ def builder(tmp_path_factory: pytest.TempPathFactory) -> Builder:
 
 @pytest.fixture(scope="session")
 def packages(builder: Builder, tmp_path_factory: pytest.TempPathFactory) -> Packages:
-    """Build the sdist, and the wheel from it."""
+    """Build the sdist of each package, and the wheel from it."""
     output = tmp_path_factory.mktemp("packages")
-    sdist = builder.build("sdist", REPOSITORY, output)
-    sources = unpacked(sdist, output / "sources")
-    return Packages(sdist, sources, builder.build("wheel", sources, output))
+    built = []
+    for name in ("fdvv", "fdvv-studio", "fdvv-people", "fdvv-campaigns"):
+        sdist = builder.build("sdist", REPOSITORY / "packages" / name, output)
+        sources = unpacked(sdist, output / name)
+        built.append((sdist, sources, builder.build("wheel", sources, output)))
+    return Packages(*built[0], tuple(wheel for _, _, wheel in built[1:]))
 
 
 def unpacked(sdist: Path, folder: Path) -> Path:

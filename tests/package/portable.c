@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "../../firmware/boards/host/board.h"
-#include "../../src/fdvv/_native/fdvv.h"
+#include "../../packages/fdvv/src/fdvv/_native/fdvv.h"
 
 static uint64_t sum = 14695981039346656037u;
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+
 from tests.package.conftest import REPOSITORY, module_of
 
 TARGETS = {
@@ -52,7 +53,7 @@ print(found.hexdigest())
 
 @pytest.fixture
 def build() -> ModuleType:
-    return module_of(REPOSITORY / "hatch_build.py")
+    return module_of(REPOSITORY / "packages" / "fdvv" / "hatch_build.py")
 
 
 def nothing_installed(monkeypatch: pytest.MonkeyPatch) -> None:

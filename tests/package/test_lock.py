@@ -9,6 +9,7 @@ from pathlib import Path
 
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+
 from tests.package.conftest import REPOSITORY
 
 LOCK = (REPOSITORY / "requirements.lock").read_text(encoding="utf-8")
@@ -23,14 +24,20 @@ def pins(text: str) -> set[tuple[str, str]]:
 
 
 def wanted() -> Iterator[Requirement]:
-    """Yield what core and extras ask for, and what builds them."""
-    for path in (REPOSITORY / "pyproject.toml", *sorted(REPOSITORY.glob("extras/*/pyproject.toml"))):
+    """Yield what the packages and the tools of this repository ask for, and what builds them."""
+    for path in sorted(
+        [*REPOSITORY.glob("packages/*/pyproject.toml"), *REPOSITORY.glob("extras/*/pyproject.toml")]
+    ):
         if path.parent.name != "fdvv-botorch":
             document = tomllib.loads(path.read_text(encoding="utf-8"))
             yield from map(Requirement, document["build-system"]["requires"])
             yield from map(Requirement, document["project"].get("dependencies", []))
+            if path.is_relative_to(REPOSITORY / "packages"):
+                for optional in document["project"].get("optional-dependencies", {}).values():
+                    yield from map(Requirement, optional)
     document = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))
-    yield from map(Requirement, document["project"]["optional-dependencies"]["dev"])
+    groups = [*document["dependency-groups"]["docs"], *document["dependency-groups"]["dev"]]
+    yield from (Requirement(entry) for entry in groups if isinstance(entry, str))
 
 
 def test_the_lock_has_the_pins_of_the_constraints_and_no_others() -> None:

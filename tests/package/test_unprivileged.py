@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+
 from tests.package.conftest import Packages
 
 pytestmark = [

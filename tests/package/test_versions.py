@@ -7,30 +7,34 @@ import tomllib
 from typing import Any
 
 import pytest
-from tests.package.conftest import REPOSITORY
 
 from fdvv._version import __version__
+from tests.package.conftest import REPOSITORY
 
+CORE = REPOSITORY / "packages" / "fdvv"
 CHANGELOG = (REPOSITORY / "CHANGELOG.md").read_text(encoding="utf-8")
 HEADS = re.findall(r"^## \[(.+?)\](?: - (\S+))?$", CHANGELOG, flags=re.MULTILINE)
 
 
 @pytest.fixture
 def project() -> dict[str, Any]:
-    return tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))
+    return tomllib.loads((CORE / "pyproject.toml").read_text(encoding="utf-8"))
 
 
 def test_the_version_stands_in_one_place_and_the_citation_follows_it(project: dict[str, Any]) -> None:
     assert project["project"]["dynamic"] == ["version"]
-    assert (REPOSITORY / project["tool"]["hatch"]["version"]["path"]).read_text().count(__version__) == 1
+    assert (CORE / project["tool"]["hatch"]["version"]["path"]).read_text().count(__version__) == 1
     citation = (REPOSITORY / "CITATION.cff").read_text(encoding="utf-8")
     assert re.findall(r"^version: (.+)$", citation, flags=re.MULTILINE) == [__version__]
 
 
-def test_the_extras_have_the_version_of_the_core() -> None:
-    extras = sorted((REPOSITORY / "extras").glob("*/src/*/__init__.py"))
-    assert len(extras) == 7
-    for module in extras:
+def test_the_other_packages_have_the_version_of_the_core() -> None:
+    packages = [
+        *REPOSITORY.glob("packages/fdvv-*/src/*/__init__.py"),
+        *REPOSITORY.glob("extras/*/src/*/__init__.py"),
+    ]
+    assert len(packages) == 3 + 7
+    for module in packages:
         assert f'__version__ = "{__version__}"' in module.read_text(encoding="utf-8"), module
 
 

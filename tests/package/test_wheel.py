@@ -12,9 +12,9 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from tests.package.conftest import REPOSITORY, Builder, Packages, clean_environment, new_environment, unpacked
 
 from fdvv._native.structures import HEADERS
+from tests.package.conftest import REPOSITORY, Builder, Packages, clean_environment, new_environment, unpacked
 
 pytestmark = pytest.mark.slow
 
@@ -23,15 +23,17 @@ NEEDED = (
     "_native/fdvv-host",
     *(f"_native/{name}" for name in HEADERS),
     "model/builtin/mx-clear.fdvv.json",
-    "study/words.toml",
-    "study/templates/realism.toml",
-    "study/templates/buttons/mx-red.fdvv.json",
-    "studio/static/index.html",
     "twin/rigs/voltage.toml",
     "twin/rigs/light.toml",
     "twin/rigs/paper.toml",
     "twin/fingers/paper.toml",
     "py.typed",
+)
+NEEDED_above = (
+    "fdvv_people/study/words.toml",
+    "fdvv_people/study/templates/realism.toml",
+    "fdvv_people/study/templates/buttons/mx-red.fdvv.json",
+    "fdvv_studio/studio/static/index.html",
 )
 LARGEST_wheel_bytes = 6_000_000
 LARGEST_sdist_bytes = 20_000_000
@@ -40,14 +42,16 @@ LARGEST_sdist_bytes = 20_000_000
 def test_the_wheel_holds_the_package_and_nothing_beside_it(packages: Packages) -> None:
     names = zipfile.ZipFile(packages.wheel).namelist()
     assert [name for name in NEEDED if f"fdvv/{name}" not in names] == []
+    above = {name for wheel in packages.others for name in zipfile.ZipFile(wheel).namelist()}
+    assert above >= set(NEEDED_above)
     version = packages.wheel.name.split("-")[1]
     assert {name.split("/")[0] for name in names} == {"fdvv", f"fdvv-{version}.dist-info"}
     assert [name for name in names if name.endswith((".c", ".tmp", ".pyc"))] == []
     assert packages.wheel.stat().st_size < LARGEST_wheel_bytes
 
 
-def test_the_wheel_of_an_extra_holds_its_modules_and_templates(builder: Builder, tmp_path: Path) -> None:
-    for sources in sorted((REPOSITORY / "extras").glob("*/src")):
+def test_every_other_wheel_holds_its_modules_and_templates(builder: Builder, tmp_path: Path) -> None:
+    for sources in sorted([*REPOSITORY.glob("packages/fdvv-*/src"), *REPOSITORY.glob("extras/*/src")]):
         files = [path.relative_to(sources) for path in sources.rglob("*") if path.is_file()]
         wanted = {path.as_posix() for path in files if path.suffix != ".pyc"}
         wheel = zipfile.ZipFile(builder.build("wheel", sources.parent, tmp_path))
@@ -59,10 +63,10 @@ def test_the_sdist_holds_all_sources_and_nothing_that_was_built(packages: Packag
         names = {name.partition("/")[2] for name in archive.getnames()}
     for part in (
         "README.md",
-        "tools/setup.sh",
+        "LICENSE",
+        "tools/make_protocol.py",
         "firmware/core/core.c",
-        "web/package.json",
-        "tests/conftest.py",
+        "src/fdvv/_native/fdvv.h",
     ):
         assert part in names
     built = re.compile(r"\.(so|dylib|dll|pyc|tmp)$|fdvv-host$|^build/|node_modules/|\.venv")
@@ -86,10 +90,10 @@ def test_the_tag_of_the_wheel_is_the_glibc_that_its_symbols_need(packages: Packa
     assert (int(tag[1]), int(tag[2])) == needed
 
 
-def test_the_wheel_works_alone_without_extras_and_without_the_repository(
+def test_the_wheels_work_without_extras_and_without_the_repository(
     packages: Packages, tmp_path: Path
 ) -> None:
-    python = new_environment(tmp_path / "clean", str(packages.wheel))
+    python = new_environment(tmp_path / "clean", str(packages.wheel), *map(str, packages.others))
     tool = shutil.copy(REPOSITORY / "tools" / "try_wheel.py", tmp_path)
     run = [str(python), "-P", str(tool)]
     ran = subprocess.run(
@@ -175,3 +179,14 @@ def test_a_newcomer_gets_from_the_readme_to_a_button_a_studio_and_a_study(packag
     steps = re.findall(r"^ *[\d.]+ s  (.+?)  ", ran.stdout, flags=re.MULTILINE)
     for step in ("make demo", "fdvv studio", "fdvv study preview realism", "python"):
         assert step in steps
+
+
+def test_the_core_works_alone_and_names_what_brings_the_rest(packages: Packages, tmp_path: Path) -> None:
+    python = new_environment(tmp_path / "clean", str(packages.wheel))
+    tool = shutil.copy(REPOSITORY / "tools" / "try_wheel.py", tmp_path)
+    command = [str(python), "-P", str(tool)]
+    ran = subprocess.run(
+        command, cwd=tmp_path, env=clean_environment(), capture_output=True, text=True, check=False
+    )
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert "fdvv-studio, fdvv-people, fdvv-campaigns" in ran.stdout

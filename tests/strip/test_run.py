@@ -9,12 +9,12 @@ import pytest
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LinkedDevice
 from fdvv.errors import DeviceError, InputError
-from fdvv.optimize.problem import TrialState
-from fdvv.optimize.run.session import Optimization
-from fdvv.optimize.run.setup import OptimizeSetup
-from fdvv.task.pointing import TemporalPointing
-from fdvv.task.score import Objective
-from fdvv.task.task import TaskPress
+from fdvv_people.optimize.problem import TrialState
+from fdvv_people.optimize.run.session import Optimization
+from fdvv_people.optimize.run.setup import OptimizeSetup
+from fdvv_people.task.pointing import TemporalPointing
+from fdvv_people.task.score import Objective
+from fdvv_people.task.task import TaskPress
 from fdvv_strip.board import LedPointingTask, StripStart
 from fdvv_strip.library import LibraryStrip
 from fdvv_strip.run import run_on_strip, try_on_strip

@@ -8,10 +8,10 @@ import pytest
 
 from fdvv.errors import DeviceError
 from fdvv.model.file import load_builtin
-from fdvv.optimize.people.simulate import simulate_task
-from fdvv.optimize.people.user import SimulatedUser
-from fdvv.task.pointing import TemporalPointing
-from fdvv.task.task import TaskPress
+from fdvv_people.optimize.people.simulate import simulate_task
+from fdvv_people.optimize.people.user import SimulatedUser
+from fdvv_people.task.pointing import TemporalPointing
+from fdvv_people.task.task import TaskPress
 from fdvv_strip.board import LedPointingTask, StripResult
 from fdvv_strip.library import LibraryStrip
 from fdvv_strip.task import play_on_strip, played_presser, press_of, strip_round

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv.library.figures import row_of_model
-from fdvv.library.row import ButtonRow, Origin
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.units import FloatArray
+from fdvv_studio.library.figures import row_of_model
+from fdvv_studio.library.row import ButtonRow, Origin
 from tests.support.buttons import write_cycle
 
 TRAVEL_mm = 4.0

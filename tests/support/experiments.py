@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fdvv.optimize.experiment.experiment import ExperimentResult
-from fdvv.optimize.experiment.setup import ExperimentSetup, blocks_of
-from fdvv.optimize.experiment.train import Observation, Training
+from fdvv_people.optimize.experiment.experiment import ExperimentResult
+from fdvv_people.optimize.experiment.setup import ExperimentSetup, blocks_of
+from fdvv_people.optimize.experiment.train import Observation, Training
 
 
 def invented(optimal_ms: float, noise_ms: float = 2.0) -> ExperimentResult:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-from fdvv.optimize.population.plan import PopulationPlan
-from fdvv.optimize.population.population import run_population
+from fdvv_people.optimize.population.plan import PopulationPlan
+from fdvv_people.optimize.population.population import run_population
 from tests.support.executors import Here
 
 SEED = 7

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.study.admin.study import Study
-from fdvv.study.files.people import SealedTrial
-from fdvv.study.files.seal import Cost
-from fdvv.study.plan.events import PageAnswered, TrialAnswered, TrialShown
-from fdvv.study.plan.session import SessionState
-from fdvv.study.plan.trial import Rendered, StudyTrial, TrialAnswer
-from fdvv.study.session.log import OpenedSession
+from fdvv_people.study.admin.study import Study
+from fdvv_people.study.files.people import SealedTrial
+from fdvv_people.study.files.seal import Cost
+from fdvv_people.study.plan.events import PageAnswered, TrialAnswered, TrialShown
+from fdvv_people.study.plan.session import SessionState
+from fdvv_people.study.plan.trial import Rendered, StudyTrial, TrialAnswer
+from fdvv_people.study.session.log import OpenedSession
 
 PASSPHRASE = "four words of no sense"
 CHEAP = Cost(1, 8192)

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.study.plan.answers import Answers
-from fdvv.study.plan.plan import Staircase
-from fdvv.study.plan.staircase import staircase_state
-from fdvv.study.plan.trial import EQUAL
 from fdvv.units import FloatArray
+from fdvv_people.study.plan.answers import Answers
+from fdvv_people.study.plan.plan import Staircase
+from fdvv_people.study.plan.staircase import staircase_state
+from fdvv_people.study.plan.trial import EQUAL
 
 BUTTONS = ("Clear", "Brown", "Black", "Red", "HP keyboard", "MacBook Pro keyboard")
 CHOSEN, ASKED = 334, 432

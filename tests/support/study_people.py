@@ -7,14 +7,14 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from fdvv.errors import DeviceError
-from fdvv.study.admin.study import Study
-from fdvv.study.files.seal import Cost
-from fdvv.study.plan.events import TrialFace, rated_labels
-from fdvv.study.plan.plan import Stimulus
-from fdvv.study.plan.sitting import Step
-from fdvv.study.plan.trial import Rendered, TrialAnswer
-from fdvv.study.session.participant import Participant
-from fdvv.study.stimulus.renderer import StimulusRenderer
+from fdvv_people.study.admin.study import Study
+from fdvv_people.study.files.seal import Cost
+from fdvv_people.study.plan.events import TrialFace, rated_labels
+from fdvv_people.study.plan.plan import Stimulus
+from fdvv_people.study.plan.sitting import Step
+from fdvv_people.study.plan.trial import Rendered, TrialAnswer
+from fdvv_people.study.session.participant import Participant
+from fdvv_people.study.stimulus.renderer import StimulusRenderer
 
 PASSPHRASE = "correct horse battery staple"
 CHEAP = Cost(1, 8192)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from fdvv.study.admin.study import Study
-from fdvv.study.files.folder import study_problems
-from fdvv.study.plan.session import SessionState
-from fdvv.study.session.log import read_session
+from fdvv_people.study.admin.study import Study
+from fdvv_people.study.files.folder import study_problems
+from fdvv_people.study.plan.session import SessionState
+from fdvv_people.study.session.log import read_session
 
 
 class Witness:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from fdvv.study.plan.sitting import ENDS, Step
-from fdvv.task.rounds import ClockSource, RoundTiming
-from fdvv.timing.files.study import TimingStudy
-from fdvv.timing.plan.plan import DAY_s
-from fdvv.timing.plan.schedule import TimingFace
-from fdvv.timing.session.participant import TimingParticipant
+from fdvv_people.study.plan.sitting import ENDS, Step
+from fdvv_people.task.rounds import ClockSource, RoundTiming
+from fdvv_people.timing.files.study import TimingStudy
+from fdvv_people.timing.plan.plan import DAY_s
+from fdvv_people.timing.plan.schedule import TimingFace
+from fdvv_people.timing.session.participant import TimingParticipant
 from tests.support.studies import CHEAP, PASSPHRASE
 
 SMALL = """

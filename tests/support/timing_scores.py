@@ -7,8 +7,8 @@ from itertools import product
 
 import numpy as np
 
-from fdvv.timing.analysis.scores import ScoreRow, TimingScores
-from fdvv.timing.plan.plan import TimingPlan
+from fdvv_people.timing.analysis.scores import ScoreRow, TimingScores
+from fdvv_people.timing.plan.plan import TimingPlan
 
 
 def made_scores(

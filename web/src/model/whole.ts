@@ -33,7 +33,7 @@ export function stretchTravel(travel_mm: number): Edit {
 
 /**
  * Scale line and departure of each control point; the line is the least-squares one through them, as in
- * `fdvv.optimize.model_space`. No force becomes a pull that was none.
+ * `fdvv_people.optimize.model_space`. No force becomes a pull that was none.
  */
 function parted(curve: ForceCurve, line_ratio: number, rest_ratio: number): number[] {
   const x = controlPoints_mm(curve);

@@ -11,7 +11,7 @@ export function golden<Case>(name: string): Case[] {
 
 /** Read a model that is shipped. */
 export function builtIn(name: string): FDVVModel {
-  const file = new URL(`../../../src/fdvv/model/builtin/${name}.fdvv.json`, import.meta.url);
+  const file = new URL(`../../../packages/fdvv/src/fdvv/model/builtin/${name}.fdvv.json`, import.meta.url);
   return canonical(JSON.parse(readFileSync(file, "utf8")));
 }
 

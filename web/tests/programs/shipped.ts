@@ -1,10 +1,10 @@
-import button from "../../../src/fdvv/program/library/button.fdvv-program.json";
-import dwellTicks from "../../../src/fdvv/program/library/dwell-ticks.fdvv-program.json";
-import fastTapping from "../../../src/fdvv/program/library/fast-tapping.fdvv-program.json";
-import multiLevel from "../../../src/fdvv/program/library/multi-level.fdvv-program.json";
-import nonNewtonian from "../../../src/fdvv/program/library/non-newtonian.fdvv-program.json";
-import rapidTrigger from "../../../src/fdvv/program/library/rapid-trigger.fdvv-program.json";
-import returningLater from "../../../src/fdvv/program/library/returning-later.fdvv-program.json";
+import button from "../../../packages/fdvv/src/fdvv/program/library/button.fdvv-program.json";
+import dwellTicks from "../../../packages/fdvv/src/fdvv/program/library/dwell-ticks.fdvv-program.json";
+import fastTapping from "../../../packages/fdvv/src/fdvv/program/library/fast-tapping.fdvv-program.json";
+import multiLevel from "../../../packages/fdvv/src/fdvv/program/library/multi-level.fdvv-program.json";
+import nonNewtonian from "../../../packages/fdvv/src/fdvv/program/library/non-newtonian.fdvv-program.json";
+import rapidTrigger from "../../../packages/fdvv/src/fdvv/program/library/rapid-trigger.fdvv-program.json";
+import returningLater from "../../../packages/fdvv/src/fdvv/program/library/returning-later.fdvv-program.json";
 import { condition } from "../../src/programs/condition";
 import type { ProgramDocument, Transition } from "../../src/programs/document";
 import { readDocument } from "../../src/programs/document";

@@ -8,9 +8,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fdvv.optimize.engines.gp import log_success
-from fdvv.optimize.engines.gp_model import best_of, finished
-from fdvv.optimize.engines.search import (
+from fdvv.units import FloatArray
+from fdvv_botorch.models import objective_model, tensor, torch_seeded, worth_of
+from fdvv_people.optimize.engines.gp import log_success
+from fdvv_people.optimize.engines.gp_model import best_of, finished
+from fdvv_people.optimize.engines.search import (
     LOCAL,
     even_net,
     generator,
@@ -18,9 +20,7 @@ from fdvv.optimize.engines.search import (
     sobol_places,
     tried_places,
 )
-from fdvv.optimize.problem import OPEN, Problem, Trial
-from fdvv.units import FloatArray
-from fdvv_botorch.models import objective_model, tensor, torch_seeded, worth_of
+from fdvv_people.optimize.problem import OPEN, Problem, Trial
 
 STARTUP = 5
 SAMPLES, FRONT_SAMPLES = 64, 32

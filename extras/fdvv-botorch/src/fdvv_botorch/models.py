@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from fdvv.errors import BuildError
-from fdvv.optimize.engines.gp_model import Basis, Observed, believe, observed, pooled, prior_basis
-from fdvv.optimize.problem import Problem, Trial
-from fdvv.task.score import Objective
 from fdvv.units import FloatArray
+from fdvv_people.optimize.engines.gp_model import Basis, Observed, believe, observed, pooled, prior_basis
+from fdvv_people.optimize.problem import Problem, Trial
+from fdvv_people.task.score import Objective
 
 REST = 32
 """Places that an acquisition of torch is asked at once for, at most: it keeps a graph of each."""

@@ -9,11 +9,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.optimize.engines.preference import PreferenceEngine
-from fdvv.optimize.engines.search import draw_feasible, fresh, generator, tried_places
-from fdvv.optimize.problem import Problem, Trial
 from fdvv.units import FloatArray
 from fdvv_botorch.models import tensor, torch_seeded
+from fdvv_people.optimize.engines.preference import PreferenceEngine
+from fdvv_people.optimize.engines.search import draw_feasible, fresh, generator, tried_places
+from fdvv_people.optimize.problem import Problem, Trial
 
 FEW, DRAWN = 48, 256
 """Designs among which all pairs are weighed, the most promising of so many drawn at random."""

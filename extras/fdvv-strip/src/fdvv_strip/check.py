@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from fdvv.task.pointing import TemporalPointing
-from fdvv.task.task import TaskPress
+from fdvv_people.task.pointing import TemporalPointing
+from fdvv_people.task.task import TaskPress
 from fdvv_strip.board import LedPointingTask
 from fdvv_strip.library import LibraryStrip, strip_port
 from fdvv_strip.tables import StripLed

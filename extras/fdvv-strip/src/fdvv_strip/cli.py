@@ -11,7 +11,7 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.options import remote
 from fdvv.rendering.tuning import program_image
-from fdvv.task.task import TaskPress
+from fdvv_people.task.task import TaskPress
 from fdvv_strip.check import StripCheck, check_strip
 from fdvv_strip.run import rendering
 

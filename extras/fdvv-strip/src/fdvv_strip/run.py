@@ -8,15 +8,15 @@ from contextlib import contextmanager
 from fdvv.device.remote import Remote
 from fdvv.device.wire import RefusedError
 from fdvv.errors import DeviceError, InputError
-from fdvv.optimize.people.simulate import simulate_task
-from fdvv.optimize.problem import Trial, TrialState
-from fdvv.optimize.run.player import POINTING, play_seed, player_of
-from fdvv.optimize.run.session import Optimization
 from fdvv.program.button import compile_button
 from fdvv.program.surface import Limits
 from fdvv.protocol.tables import Fault
-from fdvv.task.pointing import TemporalPointing
-from fdvv.task.task import TaskPress
+from fdvv_people.optimize.people.simulate import simulate_task
+from fdvv_people.optimize.problem import Trial, TrialState
+from fdvv_people.optimize.run.player import POINTING, play_seed, player_of
+from fdvv_people.optimize.run.session import Optimization
+from fdvv_people.task.pointing import TemporalPointing
+from fdvv_people.task.task import TaskPress
 from fdvv_strip.board import LedPointingTask
 from fdvv_strip.library import LibraryStrip, open_strip
 from fdvv_strip.task import Presser, play_on_strip, played_presser

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from fdvv.errors import DeviceError
-from fdvv.task.pointing import TemporalPointing
-from fdvv.task.task import TaskPress
+from fdvv_people.task.pointing import TemporalPointing
+from fdvv_people.task.task import TaskPress
 from fdvv_strip.board import KeyLine, LedPointingTask, StripResult, StripRound, StripStart
 from fdvv_strip.tables import StripLed
 

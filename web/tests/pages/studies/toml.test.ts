@@ -2,7 +2,7 @@ import { readdirSync, readFileSync } from "node:fs";
 import { expect, test } from "vitest";
 import { readValue, writeValue } from "../../../src/pages/studies/toml";
 
-const FOLDER = "../src/fdvv/study/templates";
+const FOLDER = "../packages/fdvv-people/src/fdvv_people/study/templates";
 const TEXT = `people = 12   # planned
 rounds = 6
 switch_s = 0.6

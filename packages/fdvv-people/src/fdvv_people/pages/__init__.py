@@ -1,0 +1,1 @@
+"""The studio's calls and screens of studies and optimisation."""

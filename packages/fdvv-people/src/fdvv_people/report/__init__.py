@@ -1,0 +1,1 @@
+"""How reports word statistics and draw scores."""

@@ -1,0 +1,100 @@
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from fdvv.errors import ModelError
+from fdvv.model.curve import ForceCurve, Stroke
+from fdvv.model.file import load_builtin
+from fdvv.model.model import FDVVModel
+from fdvv.model.vibration import Mode, Vibration
+from tests.model.strategies import models
+
+CLEAR = load_builtin("mx-clear")
+
+
+def flat(force_cN: float, stroke: str = "press", velocity_mm_s: float | None = 50.0) -> ForceCurve:
+    return ForceCurve(Stroke(stroke), velocity_mm_s, 1, [0, 0, 4, 4], [force_cN] * 2)  # type: ignore[arg-type]
+
+
+def buzz(velocity_mm_s: float | None, stroke: str = "press") -> Vibration:
+    return Vibration(Stroke(stroke), velocity_mm_s, 2.0, 0.01, (Mode(239.0, 1.0, 10.0),))
+
+
+def model(**fields: Any) -> FDVVModel:
+    whole: dict[str, Any] = {"name": "flat", "travel_mm": 4.0, "curves": (flat(60),)}
+    return FDVVModel(**{**whole, **fields})
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"name": ""}, "name must be text without spaces at its ends, got ''"),
+        ({"name": " x"}, "name must be text without spaces at its ends, got ' x'"),
+        ({"travel_mm": 0.0}, "travel_mm must be positive, got 0.0"),
+        ({"travel_mm": np.nan}, "travel_mm must be positive, got nan"),
+        ({"actuation_mm": 4.1}, "actuation_mm must lie within the travel of 4.0 mm, got 4.1"),
+        ({"reset_mm": -0.1}, "reset_mm must lie within the travel of 4.0 mm, got -0.1"),
+        ({"reset_mm": np.nan}, "reset_mm must lie within the travel of 4.0 mm, got nan"),
+        ({"curves": ()}, "at least one curve, got none"),
+        ({"curves": (flat(60), flat(70))}, "press has two curves at one velocity"),
+        ({"curves": (flat(60), flat(70, velocity_mm_s=None))}, "unknown velocity must stand alone"),
+        ({"vibrations": (buzz(None), buzz(None))}, "press has two vibrations at one velocity"),
+        ({"vibrations": (buzz(None), buzz(50.0))}, "a press vibration of unknown velocity must stand alone"),
+    ],
+)
+def test_what_is_no_model_is_refused(fields: dict[str, Any], said: str) -> None:
+    with pytest.raises(ModelError, match=said):
+        model(**fields)
+
+
+def test_an_unknown_interpolation_is_refused() -> None:
+    with pytest.raises(ValueError, match="magic"):
+        model(interpolation="magic")
+
+
+def test_press_and_release_may_share_a_velocity() -> None:
+    both = model(curves=(flat(40, "release"), flat(60)), vibrations=(buzz(50.0), buzz(50.0, "release")))
+    assert [c.stroke for c in both.curves] == [Stroke.PRESS, Stroke.RELEASE]
+
+
+@settings(max_examples=40, deadline=None)
+@given(models())
+def test_the_order_in_which_curves_are_given_does_not_matter(drawn: FDVVModel) -> None:
+    again = replace(drawn, curves=tuple(reversed(drawn.curves)))
+    assert again == drawn
+    assert hash(again) == hash(drawn)
+    speeds = drawn.velocities_mm_s("press")
+    assert list(speeds) == sorted(speeds)
+
+
+def test_models_differ_by_a_single_number_or_by_the_provenance() -> None:
+    assert load_builtin("mx-clear") == CLEAR
+    assert replace(CLEAR, actuation_mm=2.0000001) != CLEAR
+    assert replace(CLEAR, provenance=replace(CLEAR.provenance, source="elsewhere")) != CLEAR
+    assert CLEAR != "mx-clear"  # type: ignore[comparison-overlap]
+
+
+def test_only_the_name_changes_when_a_model_is_renamed() -> None:
+    renamed = CLEAR.renamed("other")
+    assert renamed.name == "other"
+    assert renamed.renamed("mx-clear") == CLEAR
+
+
+def test_the_vibration_nearest_in_velocity_is_taken() -> None:
+    slow, fast = buzz(50.0), buzz(200.0)
+    both = model(vibrations=(fast, slow))
+    assert both.vibration("press", 10.0) is slow
+    assert both.vibration("press", 140.0) is fast
+    assert both.vibration("release", 140.0) is None
+
+
+def test_a_vibration_of_unknown_velocity_serves_every_speed() -> None:
+    assert model(vibrations=(buzz(None),)).vibration("press", 300.0) == buzz(None)
+
+
+def test_a_model_knows_its_velocities_per_stroke() -> None:
+    assert CLEAR.velocities_mm_s("release") == (0.5, 50.0, 100.0, 150.0, 200.0)
+    assert model(curves=(flat(60, velocity_mm_s=None),)).velocities_mm_s("press") == ()
