@@ -17,7 +17,7 @@ from tests.support.checkout import REPOSITORY, shared_folder
 pytest_plugins = ["tests.support.command_line"]
 
 # what a test starts as a process of its own imports tests.support too
-os.environ["PYTHONPATH"] = os.pathsep.join(map(str, (REPOSITORY, *REPOSITORY.glob("packages/*"))))
+os.environ |= {"PYTHONPATH": os.pathsep.join(map(str, (REPOSITORY, *REPOSITORY.glob("packages/*"))))}
 
 # no wall clock: beside other work everything takes longer
 settings.register_profile(

@@ -14,7 +14,7 @@ import pytest
 
 Test = TypeVar("Test", bound=Callable[..., object])
 
-IS_WHOLE = "FDVV_CAMPAIGN" in os.environ
+IS_WHOLE = bool(os.environ.get("FDVV_CAMPAIGN"))
 
 
 def find_seed() -> str:

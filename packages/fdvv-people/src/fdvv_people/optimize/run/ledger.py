@@ -47,7 +47,7 @@ class TrialOutcome(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Pair(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Two designs that are compared, of an earlier fdvv."""
+    """Two designs that are compared, of an earlier fdvv. answer : in a record of its own, never here."""
 
     number: int
     first: dict[str, float]
@@ -71,7 +71,10 @@ class PairAnswer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Line(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Designs in a row, of an earlier fdvv."""
+    """A line of an earlier fdvv.
+
+    stops : its designs in a row. best : in a record of its own, never here.
+    """
 
     number: int
     stops: tuple[dict[str, float], ...]
