@@ -9,13 +9,13 @@ from typing import Any
 
 from msgspec import NODEFAULT, inspect, to_builtins
 from tools.file_kinds import FILES, IN_MEMORY, FileKind, members
+from tools.make_studio_types import shown_settings
 from tools.markdown import escaped, slug, table
 from tools.record_docs import FieldDoc, describe
 from tools.record_types import fields, in_words, reached
 
 from fdvv.cli.settings import option_name
 from fdvv.settings import Setting, settings_of
-from fdvv_studio.studio.jobs.orders import SETTINGS
 from fdvv_studio.studio.parts import load_parts
 
 COLUMNS = ("setting", "option", "allowed", "default", "meaning")
@@ -60,7 +60,7 @@ def settings_tables() -> str:
     """Return a table for the settings of each use case: what they mean and allow, in every door."""
     return "\n".join(
         f"## {name.capitalize()}\n\n{table(COLUMNS, [_setting_row(one) for one in settings_of(kind)])}"
-        for name, kind in SETTINGS.items()
+        for name, kind in shown_settings().items()
     )
 
 

@@ -12,7 +12,8 @@ from typing import Any
 import msgspec
 from msgspec import inspect
 
-from fdvv.settings import Setting, settings_of
+from fdvv.settings import Setting, Settings, settings_of
+from fdvv_people.optimize.run.settings import RunSettings
 from fdvv_studio.studio.jobs.orders import SETTINGS
 from fdvv_studio.studio.parts import load_parts
 
@@ -144,11 +145,16 @@ def reference() -> str:
     return HEAD + "\n" + "\n".join(index) + "\n\n" + "\n\n".join(writer.found.values()) + "\n"
 
 
+def shown_settings() -> dict[str, type[Settings]]:
+    """Return the settings of every use case that has a form on the page."""
+    return {**SETTINGS, "optimize": RunSettings}
+
+
 def settings_reference() -> str:
     """Return the text of settings.ts."""
     kinds = {
         name: {setting.name: _shown(setting) for setting in settings_of(kind)}
-        for name, kind in SETTINGS.items()
+        for name, kind in shown_settings().items()
     }
     text = json.dumps(kinds, ensure_ascii=False, indent=2)
     return f"{SETTINGS_HEAD}\nexport const settings = {text} as const;\n"

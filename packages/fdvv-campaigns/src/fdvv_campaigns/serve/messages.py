@@ -12,6 +12,7 @@ from msgspec import Meta
 
 from fdvv.twin.files import FIRST_RIG
 from fdvv_people.optimize.problem import Answer
+from fdvv_people.optimize.run.settings import Budget, Retest
 from fdvv_people.optimize.space import Parameter
 from fdvv_studio.studio.contract import Message
 
@@ -63,11 +64,11 @@ class BeginRun(Request, tag="optimize.begin"):
     start: dict[str, float] | None = None
     engine: str = "gp"
     seed: Number = 0
-    budget: Annotated[int, Meta(ge=1, le=100_000)] = 30
+    budget: Budget = 30
     objective: Annotated[str, Meta(min_length=1, max_length=60)] = "score"
     goal: Literal["minimise", "maximise"] = "minimise"
     error: Annotated[float, Meta(ge=0)] | None = None
-    retest: Annotated[int, Meta(ge=0, le=1000)] = 0
+    retest: Retest = 0
 
 
 class OfRun(Request, kw_only=True):

@@ -6,8 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import click
+from msgspec.structs import asdict
 
 from fdvv.cli import ui
+from fdvv.cli.settings import settings_options
 from fdvv.report.report import write_report
 from fdvv_people.cli.optimize.options import (
     ON_STRIP,
@@ -30,6 +32,7 @@ from fdvv_people.optimize.run.player import POINTING, played_min, player_of
 from fdvv_people.optimize.run.replay import replay_differences
 from fdvv_people.optimize.run.report import optimize_html, optimize_report
 from fdvv_people.optimize.run.session import Optimization
+from fdvv_people.optimize.run.settings import RunSettings
 from fdvv_people.optimize.run.verdict import verdict_kind
 
 LAST = 8
@@ -64,12 +67,7 @@ def optimize() -> None:
 )
 @ui.option("--buttons", is_flag=True, help="Of the paper's space: only designs that are buttons.")
 @ui.option("--wide", is_flag=True, help="Of a button: also what no real button is like.")
-@ui.option(
-    "--retest",
-    type=click.IntRange(0, 1000),
-    help="Blocks of trials at the end: each has the start, the result and what --switch adds once. 16, or 40 "
-    "of start and result alone.",
-)
+@settings_options(RunSettings)
 @ui.option(
     "--switch",
     "switches",
@@ -93,13 +91,6 @@ def optimize() -> None:
 @weight_option
 @level_option
 @run_engine_option
-@ui.option(
-    "--trials",
-    type=click.IntRange(1, 100_000),
-    default=30,
-    help="How many designs are tried, or comparisons made.",
-)
-@ui.option("--presses", type=click.IntRange(2, 1000), default=20, help="Of a trial.")
 @ui.option("--person", type=ui.COUNT, default=0, help="Seed that the simulated person is drawn with.")
 @group_option
 @ui.option("--seed", type=ui.COUNT, default=0, help="Of the run.")
@@ -170,7 +161,11 @@ def report(folder: Path, output: Path | None, as_json: bool) -> None:
 
 
 def _request(
-    engine: tuple[str, dict[str, Any]] | None, trials: int, person: int, strip: str | None, **arguments: Any
+    engine: tuple[str, dict[str, Any]] | None,
+    settings: RunSettings,
+    person: int,
+    strip: str | None,
+    **arguments: Any,
 ) -> Any:
     if strip and arguments["task"] != POINTING:
         raise click.UsageError(f"on a strip one plays {POINTING}, not {arguments['task']}")
@@ -180,9 +175,8 @@ def _request(
     name, options = engine or (None, {})
     simulated = person if strip in (None, "host") else None
     switches = arguments.pop("switches") or None
-    return RunRequest(
-        engine=name, options=options, budget=trials, person=simulated, switches=switches, **arguments
-    )
+    chosen = {**arguments, **asdict(settings)}
+    return RunRequest(engine=name, options=options, person=simulated, switches=switches, **chosen)
 
 
 def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool) -> None:

@@ -25,6 +25,7 @@ from fdvv_people.optimize.problem import PREFERENCE, Problem, Trial
 from fdvv_people.optimize.realistic import realistic_bounds, realistic_cN
 from fdvv_people.optimize.rig_constraints import rig_constraints
 from fdvv_people.optimize.run.rivals import Rival
+from fdvv_people.optimize.run.settings import Budget
 from fdvv_people.optimize.space import LENGTH, Design, DesignSpace, Parameter
 from fdvv_people.task.pointing import ASYNCHRONY, MORE, TemporalPointing
 from fdvv_people.task.questionnaire import LIKING
@@ -99,7 +100,7 @@ class OptimizeSetup(Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tru
     level: str | None = None
     objectives: Annotated[tuple[Objective, ...], Meta(min_length=1)] = (ASYNCHRONY,)
     seed: Annotated[int, Meta(ge=0)] = 0
-    budget: Annotated[int, Meta(ge=1, le=100_000)] = 30
+    budget: Budget = 30
     start: dict[str, float] | None = None
     prior: tuple[Trial, ...] = ()
     rivals: tuple[Rival, ...] = ()

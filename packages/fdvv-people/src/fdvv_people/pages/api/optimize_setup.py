@@ -15,6 +15,7 @@ from fdvv_people.optimize.people.groups import PAPER_GROUP
 from fdvv_people.optimize.problem import PREFERENCE, Trial
 from fdvv_people.optimize.run.begin import offered_grid, offered_grids
 from fdvv_people.optimize.run.rivals import PEOPLE, SWITCHES, Rival, fixed_rivals, switch_rivals
+from fdvv_people.optimize.run.settings import Budget, Presses, Retest
 from fdvv_people.optimize.run.setup import OptimizeSetup, SpaceSetup, model_space_setup, wished
 from fdvv_people.optimize.space import Design
 from fdvv_people.pages.api.optimize import OTHERS, START, TITLE, Level, Name, Number, OptimizeAsk
@@ -80,10 +81,10 @@ class OptimizeCreate(Message):
     start: ButtonId | None
     rig: Annotated[str, Meta(max_length=300)] | None
     seed: Number
-    budget: Annotated[int, Meta(ge=1, le=500)]
-    task_presses: Annotated[int, Meta(ge=2, le=100)] = 20
+    budget: Budget
+    task_presses: Presses = 20
     others: Annotated[str, Meta(max_length=300)] | None = None
-    retest: Annotated[int, Meta(ge=0, le=200)] = 6
+    retest: Retest = 6
     switches: bool = False
 
 
