@@ -41,6 +41,7 @@ check: setup ## Format, lint, types, words, layers and the budget
 	$(BIN)/python -m tools.check_words
 	$(BIN)/python -m tools.check_sentences
 	$(BIN)/lint-imports --no-logo || { echo 'An import points up. Move the shared record down, or pass in a callable: see ARCHITECTURE.md.' >&2; exit 1; }
+	$(BIN)/python -m tools.check_budget
 
 # the packages with changes that are not committed, else model; make quick PKG="rendering live" picks others
 PKG ?= $(or $(shell git diff --name-only HEAD -- packages | sed -n 's#^packages/[^/]*/src/[^/]*/\([a-z]*\)/.*#\1#p' | sort -u),model)
