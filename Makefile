@@ -66,7 +66,7 @@ test-slow: setup ## The long tests
 	$(PYTEST) --durations 25 -m "slow and not browser and not clock"
 
 test-clock: setup web-tools ## The tests that compare real times, one after the other
-	$(BIN)/pytest -m clock $(shell grep -rl --include='*.py' 'pytest.mark.clock' tests)
+	$(BIN)/pytest -m clock $(shell grep -rl --include='*.py' 'pytest.mark.clock' tests packages)
 
 campaign: setup ## Every case of the random tests of which the other runs play a part: hours
 	FDVV_CAMPAIGN=1 $(PYTEST) --timeout 14400 --durations 25 -m campaign
