@@ -56,7 +56,7 @@ quick: setup ## Lint, and test one package, in 20 seconds: make quick PKG=render
 	FDVV_QUICK=1 $(BIN)/pytest -n 2 -q -p no:randomly -m "not slow and not browser and not firmware and not clock" \
 	  tests/test_public_face.py tests/safety/test_zero_force.py $(foreach name,$(PKG),$(call tests_of,$(name)))
 
-# MARKS="not clock" is every test in one run: each process collects all tests first, which takes it 12 s
+# MARKS="not browser and not clock" is the long ones too: each process collects all tests first, which takes it 12 s
 MARKS ?= not slow and not browser and not clock
 
 test: check ## Every check and every test of the default run

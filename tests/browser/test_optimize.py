@@ -229,7 +229,7 @@ def table(tmp_path: Path) -> Iterator[RunningStudio]:
     """A studio beside which a board stands, on a real terminal line, that somebody presses now and then."""
     rig = KeyedRig(presses=100)
     listed = ((f"serial:{rig.path}", "a board"),), ""
-    first = f"from fdvv_studio.studio import play_trials\nplay_trials.available_devices = lambda: {listed!r}"
+    first = f"from fdvv_people.pages import play_trials\nplay_trials.available_devices = lambda: {listed!r}"
     studio = RunningStudio(tmp_path / "project", first=first)
     rig.start()
     yield studio

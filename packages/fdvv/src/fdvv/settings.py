@@ -62,6 +62,10 @@ class SettingError(ModelError):
         super().__init__(f"{name} {reason}; {remedy}")
 
 
+UNITS = (("_mm_s", "mm/s"), ("_mm", "mm"))
+"""Of settings, by the end of their names."""
+
+
 @dataclass(frozen=True)
 class Setting:
     """One field of settings, as a door shows it.
@@ -117,7 +121,8 @@ class Setting:
             return noun
         if self.most is None:
             return f"{noun} of {self.least:g} or more"
-        return f"{self.least or 0:g} to {self.most:g}"
+        unit = next((f" {text}" for end, text in UNITS if self.name.endswith(end)), "")
+        return f"{self.least or 0:g} to {self.most:g}{unit}"
 
     def _allows(self, value: Any) -> bool:
         if self.choices:

@@ -115,7 +115,7 @@ def test_a_finished_recording_is_not_written_to_again(fdvv: Run, tmp_path: Path)
         (("x.csv",), "end it in .recording.jsonl"),
         ((FILE, "--paces", "50,fast"), "numbers with commas between them"),
         ((FILE, "--paces", "50,50"), "must differ, got 50.0"),
-        ((FILE, "--paces", "5"), "must be 20 to 500, got 5.0"),
+        ((FILE, "--paces", "5"), "must be 20 to 500 mm/s, got 5.0"),
         ((FILE, "--paces", ""), "numbers with commas between them"),
         ((FILE, "--device", "rig"), "--device: rig: names no capture bench; use one of twin"),
         ((FILE, "--button", "no-such"), "no-such"),
