@@ -70,7 +70,7 @@ def play(
 ) -> None:
     """Play a run to its end: in the search everything is better than the start."""
     random = np.random.default_rng(4)
-    while trial := next(iter(session.ask()), None):
+    while trial := session.next_trial():
         session.show(trial.number)
         if trial.rival and trial.rival == failing:
             session.give_up(trial.number, "the rig cannot render it")

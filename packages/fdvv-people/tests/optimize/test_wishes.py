@@ -51,7 +51,8 @@ def begun(folder: Path, pairs: int = 6, weights: dict[str, float] | None = None)
 def search(session: Optimization) -> None:
     """Play the search: the shallower the faster, the deeper the better liked; the start is the worst."""
     shallow = SPACE.parameters[1]
-    while trial := next(iter(session.ask()), None):
+    while not session.searched:
+        (trial,) = session.ask()
         session.show(trial.number)
         depth = (trial.design["actuation_mm"] - shallow.low) / (shallow.high - shallow.low)
         worse = trial.design == START
