@@ -222,7 +222,7 @@ def test_a_command_that_takes_more_cpu_fails_where_it_is_measured(
     ]
 
 
-@pytest.mark.slow
+@pytest.mark.clock
 def test_our_commands_take_no_more_cpu_than_their_budget(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
