@@ -53,7 +53,7 @@ def test_the_recommended_rig_has_a_bill_and_a_circuit_of_its_own(fdvv: Run, tmp_
 
 
 def test_a_circuit_that_would_burn_a_pin_ends_with_status_1(fdvv: Run, tmp_path: Path) -> None:
-    source = Path(__file__).resolve().parents[4] / "extras/fdvv-rig/src/fdvv_rig/circuit/circuit.toml"
+    source = Path(__file__).resolve().parents[2] / "extras/fdvv-rig/src/fdvv_rig/circuit/circuit.toml"
     text = source.read_text().replace("V = 3.135, ohm = 1.0 }\npins.GND", "V = 4.75, ohm = 1.0 }\npins.GND")
     (tmp_path / "mine.toml").write_text(text)
     ran = fdvv("hardware", "circuit", "--file", "mine.toml")

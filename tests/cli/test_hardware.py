@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.command_line import Run
 
-HARDWARE = Path(__file__).resolve().parents[4] / "hardware"
+HARDWARE = Path(__file__).resolve().parents[2] / "hardware"
 WITHOUT_KERNEL = importlib.util.find_spec("build123d") is None
 
 
