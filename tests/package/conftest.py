@@ -40,8 +40,19 @@ def new_environment(folder: Path, *packages: str) -> Path:
     """Make a virtual environment with packages; return its Python."""
     subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
     python = folder / "bin" / "python"
-    pip = [str(python), "-m", "pip", "--disable-pip-version-check", "-q", "install"]
-    subprocess.run([*pip, *packages], check=True, env=clean_environment())
+    uv = [
+        str(Path(sys.executable).with_name("uv")),
+        "pip",
+        "install",
+        "-q",
+        "--python",
+        str(python),
+        *packages,
+    ]
+    # ten times faster; where it cannot reach what pip can, pip does the same work
+    if subprocess.run(uv, env=clean_environment(), capture_output=True, check=False).returncode:
+        pip = [str(python), "-m", "pip", "--disable-pip-version-check", "-q", "install", *packages]
+        subprocess.run(pip, check=True, env=clean_environment())
     return python
 
 

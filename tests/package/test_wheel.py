@@ -15,6 +15,7 @@ import pytest
 
 from fdvv._native.structures import HEADERS
 from tests.package.conftest import REPOSITORY, Builder, Packages, clean_environment, new_environment, unpacked
+from tests.support.campaign import in_turn
 
 pytestmark = pytest.mark.slow
 
@@ -165,7 +166,8 @@ def test_without_a_compiler_pip_fetches_one_and_the_wheel_is_whole(
     assert [name for name in NEEDED if f"fdvv/{name}" not in names] == []
 
 
-@pytest.mark.timeout(1800)  # installs all that a newcomer gets
+@in_turn(4)  # installs all that a newcomer gets, for minutes
+@pytest.mark.timeout(1800)
 def test_a_newcomer_gets_from_the_readme_to_a_button_a_studio_and_a_study(packages: Packages) -> None:
     script = REPOSITORY / "tools" / "newcomer.sh"
     # a newcomer's Python is not the one of this environment
