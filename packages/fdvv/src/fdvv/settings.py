@@ -18,6 +18,7 @@ from typing import Any, Literal, Self, dataclass_transform
 
 from msgspec import Meta, Struct, field, inspect, structs
 
+from fdvv import extras
 from fdvv.errors import ModelError
 
 
@@ -44,9 +45,22 @@ class Settings(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return structs.replace(self, **changes)
 
 
-def about(help: str, *, option: str = "", label: str = "", joined: bool = False, **bounds: Any) -> Meta:
-    """Return what is known of a setting: help, option, label and joined as of `Setting`, bounds of `Meta`."""
-    return Meta(description=help, extra={"option": option, "label": label, "joined": joined}, **bounds)
+def about(
+    help: str,
+    *,
+    option: str = "",
+    label: str = "",
+    joined: bool = False,
+    choices: Sequence[str] = (),
+    more: extras.Kind | None = None,
+    **bounds: Any,
+) -> Meta:
+    """Return what is known of a setting; its parts as of `Setting`, bounds as of `Meta`.
+
+    more : what other packages add, whose names are choices too.
+    """
+    shown = {"option": option, "label": label, "joined": joined}
+    return Meta(description=help, extra=shown | {"choices": tuple(choices), "more": more}, **bounds)
 
 
 class SettingError(ModelError):
@@ -174,6 +188,8 @@ def _setting(field: inspect.Field) -> Setting:
                 "least": getattr(part, "ge", None),
                 "most": getattr(part, "le", None),
             }
+    if more := facts.pop("more", None):
+        facts["choices"] += extras.names(more)
     return Setting(field.name, default=field.default, **facts)
 
 

@@ -15,8 +15,8 @@ from fdvv.cli import ui
 from fdvv.errors import InputError
 
 if TYPE_CHECKING:
+    from fdvv.compensation.method import Method
     from fdvv.compensation.paper import PaperLaw
-    from fdvv.compensation.rig_aware import RigAware
     from fdvv.device.contract import Device
     from fdvv.device.remote import Remote
     from fdvv.model.noticeable import Jnds
@@ -136,7 +136,7 @@ def law_of(
     save_rig: Path | None,
     prior: Path | None,
     sensor: Path | None,
-) -> PaperLaw | RigAware:
+) -> PaperLaw | Method[Any]:
     """Return the method with what files say of the rig and of its force sensor. SettingError, InputError."""
     from fdvv.compensation.identification.prior_file import load_prior, load_sensor
     from fdvv.compensation.identification.rig_file import load_learned_rig

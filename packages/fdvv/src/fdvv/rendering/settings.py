@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from msgspec import Meta
 
+from fdvv import extras
 from fdvv.settings import SettingError, Settings, about
 
 if TYPE_CHECKING:
     from fdvv.compensation.identification.rig_file import LearnedRig
+    from fdvv.compensation.method import Method
     from fdvv.compensation.paper import PaperLaw
-    from fdvv.compensation.rig_aware import RigAware
     from fdvv.vibration.templates import TemplateGrid
-    from fdvv.vibration.tune import Method
+    from fdvv.vibration.tune import Method as Question
 
 Speed = Annotated[float, Meta(ge=5, le=500)]
 """Mean speed of a stroke, mm/s."""
@@ -49,7 +50,9 @@ class PressSettings(Settings):
 class CompensateSettings(PressSettings):
     """How a rig learns to feel like a button."""
 
-    method: Annotated[Literal["rig-aware", "paper"], about("How to learn.")] = "rig-aware"
+    method: Annotated[str, about("How to learn.", choices=("rig-aware", "paper"), more="methods")] = (
+        "rig-aware"
+    )
     rounds: Annotated[
         Annotated[int, Meta(ge=0, le=20)] | None,
         about(
@@ -66,14 +69,14 @@ class CompensateSettings(PressSettings):
     literal: Annotated[bool, about("The paper's law exactly as printed.")] = False
 
     def check(self) -> None:
-        if self.method == "rig-aware":
-            self._refuse("paper", presses=self.presses, literal=self.literal)
-        else:
+        if self.method == "paper":
             self._refuse("rig-aware", rounds=self.rounds == 0)
+        else:
+            self._refuse("paper", presses=self.presses, literal=self.literal)
 
     @property
     def round_count(self) -> int:
-        return ROUNDS[self.method] if self.rounds is None else self.rounds
+        return ROUNDS.get(self.method, ROUNDS["rig-aware"]) if self.rounds is None else self.rounds
 
     @property
     def press_count(self) -> int:
@@ -82,18 +85,25 @@ class CompensateSettings(PressSettings):
 
     def check_known(self, **files: object) -> None:
         """Check what is known of the rig, by the names of the files. SettingError."""
-        if self.method == "paper":
+        if self.method != "rig-aware":
             self._refuse("rig-aware", **files)
 
-    def law(self, known: LearnedRig | None = None) -> PaperLaw | RigAware:
-        """Return the method; known : what the rig has taught before."""
-        from fdvv.compensation.paper import PaperLaw
-        from fdvv.compensation.rig_aware import RigAware
+    def law(self, known: LearnedRig | None = None) -> PaperLaw | Method[Any]:
+        """Return the method. known : what the rig has taught before, which only rig-aware uses.
 
+        Raises BuildError if it comes with a package that is not installed.
+        """
         if self.method == "rig-aware":
+            from fdvv.compensation.rig_aware import RigAware
+
             return RigAware(self.round_count, known)
-        make = PaperLaw.literal if self.literal else PaperLaw
-        return make(rounds=self.round_count, presses_per_round=self.press_count)
+        if self.method == "paper":
+            from fdvv.compensation.paper import PaperLaw
+
+            make = PaperLaw.literal if self.literal else PaperLaw
+            return make(rounds=self.round_count, presses_per_round=self.press_count)
+        method: Method[Any] = extras.load("methods", self.method)(self)
+        return method
 
     def _refuse(self, other: str, **values: object) -> None:
         for name, value in values.items():
@@ -152,7 +162,7 @@ class TuneSettings(PressSettings):
 
         return TemplateGrid(self.frequency_ratios, self.gain_ratios)
 
-    def question(self) -> Method:
+    def question(self) -> Question:
         """Return how they are asked about."""
         from fdvv.vibration.tune import Rating
         from fdvv.vibration.tune_compare import Comparing

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import json
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from msgspec.structs import replace
 
 from fdvv.compensation.identification.rig_file import load_learned_rig, save_rig
 from fdvv.compensation.identification.rig_model import RigModel
-from fdvv.compensation.method import Tuning
+from fdvv.compensation.method import Method, Tuning
 from fdvv.compensation.paper import PaperLaw
-from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.contract import Device
 from fdvv.io.files import write_atomic
 from fdvv.model.file import load_model
@@ -125,7 +124,7 @@ def _keep(work: Work, result: CompensationResult) -> None:
     work.tell(JobOutcome("compensate", result.outcome.sentence, *counts, result.simulated, curves))
 
 
-def _law(work: Work, order: CompensateOrder) -> PaperLaw | RigAware:
+def _law(work: Work, order: CompensateOrder) -> PaperLaw | Method[Any]:
     known = work.folder.known_rig
     return order.settings.law(load_learned_rig(known) if known.exists() else None)
 
