@@ -46,9 +46,11 @@ SHORTER = {
     "docs/tutorials/optimise.md": {
         "population": ("--people", "2", "--grid", "4"),
         "experiment": ("--people", "3", "--trials", "2"),
+        "clear-run": ("--trials", "4", "--retest", "2"),
+        "warm-run": ("--trials", "4", "--retest", "2"),
     }
 }
-"""Options that make a command of a page shorter; of an option given twice the last one counts."""
+"""Options that make a command of a page shorter, by a word of it; of one given twice the last counts."""
 
 
 def _showing() -> list[str]:
