@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -55,7 +56,7 @@ def start_studio(tmp_path: Path) -> Iterator[Callable[..., RunningStudio]]:
 
     yield start
     for studio in running:
-        studio.stop()
+        studio.stop(signal.SIGKILL)  # an orderly end takes half a second, and tests of the studio try it
 
 
 @pytest.fixture
