@@ -33,6 +33,29 @@ def test_balanced_one_way_variances_are_those_of_the_analysis_of_variance() -> N
     assert fit.contrast([1.0]).error == pytest.approx(error, rel=1e-4)
 
 
+def test_balanced_nested_variances_are_those_of_the_mean_squares_however_small_they_are() -> None:
+    compared = 0
+    for seed in range(60):
+        random = np.random.default_rng(seed)
+        people, kinds, rounds = shape = (12, 6, 3)
+        scores = 8 * random.standard_normal((people, 1, 1)) + 2.5 * random.standard_normal((people, kinds, 1))
+        scores = scores + 10 * random.standard_normal(shape)
+        cells, means = scores.mean(axis=2), scores.mean(axis=(1, 2))
+        apart = cells - means[:, None] - cells.mean(axis=0) + scores.mean()
+        within = scores.var(axis=2, ddof=1).mean()
+        between_kinds = rounds * (apart**2).sum() / ((people - 1) * (kinds - 1))
+        between_people = kinds * rounds * means.var(ddof=1)
+        kind = (between_kinds - within) / rounds
+        if kind <= 0 or between_people <= between_kinds:
+            continue  # there the likelihood ends at 0
+        compared += 1
+        person, column = (index.ravel().tolist() for index in np.indices(shape)[:2])
+        fit = fit_mixed(scores.ravel(), np.eye(kinds)[column], person, {"kind": column})
+        expected = [(between_people - between_kinds) / (kinds * rounds), kind, within]
+        assert list(fit.variances.values()) == pytest.approx(expected, rel=1e-3, abs=1e-2), seed
+    assert compared > 40
+
+
 def test_people_who_are_all_alike_have_no_variance_between_them() -> None:
     scores = np.tile([1.0, 5.0, 3.0], (6, 1))
     assert one_way(scores).variances["person"] == pytest.approx(0.0, abs=1e-6)
