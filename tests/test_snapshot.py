@@ -1,17 +1,72 @@
-"""What the snapshot of the commands' output leaves out, and how it names a difference."""
+"""What commands print and write is as it was, and how a difference from it is shown."""
 
 from __future__ import annotations
 
-import json
+import base64
+import zlib
+from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
-from tools.snapshot import Normaliser, differences, read_cases
+from msgspec import Struct, inspect
+from tools.snapshot.cases import EDITS
+from tools.snapshot.commands import Commands
+from tools.snapshot.compare import difference
+from tools.snapshot.contract import type_lines
+from tools.snapshot.files import text_of
+from tools.snapshot.kept import FOLDER, MACHINE, Kept, Snapshot, snapshots
+from tools.snapshot.normalise import Normaliser
+from tools.snapshot.values import lines_of, shorten_repeats
+
+from tests.support.campaign import campaign
+
+SNAPSHOTS = snapshots()
+
+
+@pytest.fixture(scope="session")
+def commands() -> Iterator[Commands]:
+    """A process that runs commands for all tests of this worker."""
+    with Commands() as commands:
+        yield commands
+
+
+@pytest.fixture(scope="session")
+def kept() -> Kept:
+    return Kept()
+
+
+@pytest.mark.parametrize("snapshot", [s for s in SNAPSHOTS if not s.slow], ids=lambda s: s.name)
+def test_nothing_differs_that_no_commit_changes(snapshot: Snapshot, commands: Commands, kept: Kept) -> None:
+    compare(snapshot, commands, kept)
+
+
+@pytest.mark.slow
+@campaign("snapshot", [s for s in SNAPSHOTS if s.slow], part=4)
+def test_nothing_long_differs_that_no_commit_changes(
+    snapshot: Snapshot, commands: Commands, kept: Kept
+) -> None:
+    compare(snapshot, commands, kept)
+
+
+def compare(snapshot: Snapshot, commands: Commands, kept: Kept) -> None:
+    """Take a snapshot and compare it with the one that is kept; skip where it cannot be taken."""
+    if not snapshot.possible:
+        pytest.skip("the real measurements (../shared/data or FDVV_SHARED) are not on this machine")
+    if kept.other_libraries:
+        pytest.skip(f"figures are those of {kept.other_libraries}")
+    differs = kept.differs(snapshot.name, snapshot.take(commands))
+    assert not differs, f"{differs}\nwhere it is meant: python -m tools.snapshot --write {snapshot.name}"
+
+
+def test_each_snapshot_has_a_name_of_its_own_and_a_text() -> None:
+    names = [snapshot.name for snapshot in SNAPSHOTS]
+    assert sorted(names) == sorted(path.stem for path in FOLDER.glob("*.txt") if path != MACHINE)
 
 
 @pytest.fixture
 def normaliser(tmp_path: Path) -> Normaliser:
-    return Normaliser({str(tmp_path): "<folder>"})
+    return Normaliser({"folder": tmp_path}, ["salt"])
 
 
 def test_paths_and_times_are_left_out(normaliser: Normaliser, tmp_path: Path) -> None:
@@ -19,41 +74,108 @@ def test_paths_and_times_are_left_out(normaliser: Normaliser, tmp_path: Path) ->
     assert normaliser.text(text) == "<folder>/a.csv at <time>"
 
 
-def test_a_varying_field_is_kept_as_a_name_and_every_other_one_counts(normaliser: Normaliser) -> None:
-    first, parts = normaliser.json('{"time_s": 1.0, "force_cN": [1, 2]}')
-    again, later = normaliser.json('{"time_s": 2.0, "force_cN": [1, 2]}')
-    other, moved = normaliser.json('{"time_s": 1.0, "force_cN": [1, 3]}')
-    assert first == again
-    assert parts == later
-    assert other != first
-    assert [key for key in parts if parts[key] != moved[key]] == ["force_cN"]
+def test_a_random_field_counts_by_its_name_and_every_other_one_by_its_value(normaliser: Normaliser) -> None:
+    record = {"crc32": 7, "salt": "x", "began_s": 1.79e9, "time_s": 2.5}
+    named = {"crc32": "<crc32>", "salt": "<salt>", "began_s": "<began_s>", "time_s": 2.5}
+    assert normaliser.value([record]) == [named]
 
 
-def test_the_order_of_fields_counts(normaliser: Normaliser) -> None:
-    assert normaliser.json('{"a": 1, "b": 2}')[0] != normaliser.json('{"b": 2, "a": 1}')[0]
+def test_the_order_of_fields_counts() -> None:
+    assert lines_of({"a": 1, "b": 2}) != lines_of({"b": 2, "a": 1})
 
 
-def test_a_journal_is_hashed_by_the_kind_of_its_lines(normaliser: Normaliser) -> None:
-    lines = [{"crc32": i, "record": {"press": i}} for i in range(3)] + [{"crc32": 9, "record": {"run": 1}}]
-    _, parts = normaliser.lines("\n".join(map(json.dumps, lines)))
-    assert list(parts) == ["press x3", "run x1"]
+def test_one_bit_of_a_long_list_changes_its_digest_and_a_large_change_its_figures() -> None:
+    values = [float(number) for number in range(100)]
+    (line,), (last_digit,), (large,) = (
+        lines_of(list_) for list_ in (values, [*values[:-1], 99.00000000000001], [*values[:-1], 999.0])
+    )
+    figures, _, digest = line.rpartition(" ")
+    assert last_digit.rpartition(" ")[0] == figures
+    assert last_digit.rpartition(" ")[2] != digest
+    assert large.rpartition(" ")[0] != figures
 
 
-def test_each_difference_is_a_line_that_says_where() -> None:
-    before = {
-        "a": {"sha256": "1", "parts": {"x": "1", "y": "1"}},
-        "b": {"sha256": "1"},
-        "c": {"sha256": "1", "status": 2},
-    }
-    after = {"a": {"sha256": "2", "parts": {"x": "1", "y": "2"}}, "c": {"sha256": "1"}, "d": {"sha256": "1"}}
-    assert list(differences("case", before, after)) == [
-        "case: b: gone",
-        "case: a: y differs",
-        "case: c: exit status 0, was 2",
-        "case: d: new",
+def test_a_table_of_records_is_shown_by_column_with_a_short_one_item_by_item() -> None:
+    records = [{"trial": number, "design": {"x": number / 2}} for number in range(6)]
+    assert lines_of(records) == [
+        "6 records:",
+        "trial: [0, 1, 2, 3, 4, 5]",
+        "design:",
+        "  6 records:",
+        "  x: [0.0, 0.5, 1.0, 1.5, 2.0, 2.5]",
     ]
+    assert lines_of(records[:1]) == ["- trial: 0", "  design:", "    x: 0.0"]
 
 
-def test_every_case_has_a_name_of_its_own() -> None:
-    names = [case.name for case in read_cases()]
-    assert len(names) == len(set(names))
+def test_a_block_that_was_there_before_is_one_line() -> None:
+    block = ["  curve:", "    a: 1", "    b: 2", "    c: 3"]
+    first, shorter = shorten_repeats(["x:", *block, "y:", *block]), [*block[:3], *block[:3]]
+    assert first[:6] == ["x:", *block, "y:"]
+    assert [line[:-12] for line in first[6:]] == ["  curve: ... as before #"]
+    assert shorten_repeats(shorter) == shorter
+
+
+def test_an_array_is_shown_by_its_numbers_however_it_was_compressed() -> None:
+    data = np.arange(20.0).tobytes()
+    texts = [f"<f8:{base64.b64encode(zlib.compress(data, level)).decode()}" for level in (1, 9)]
+    assert texts[0] != texts[1]
+    assert lines_of(texts[0]) == lines_of(texts[1]) == lines_of([float(number) for number in range(20)])
+
+
+def test_a_journal_is_shown_by_the_order_and_the_kind_of_its_lines(normaliser: Normaliser) -> None:
+    lines = b'{"crc32": 1, "record": {"press": 1}}\n' * 2 + b'{"crc32": 9, "record": {"run": 1}}\n'
+    text = text_of("a.jsonl", lines, normaliser)
+    assert text.startswith("order: press x2, run\npress:\n")
+
+
+def test_a_page_is_shown_by_its_words_and_a_drawing_by_its_geometry(normaliser: Normaliser) -> None:
+    page = (
+        b"<style>p {color: red}</style><h1>A  <b>report</b></h1><table><tr><td>1<td>2</table>"
+        b'<svg><path d="M0 1L2 3"/><text x="5">force</text></svg>'
+    )
+    *words, geometry = text_of("a.html", page, normaliser).splitlines()
+    assert words == ["A report", "1 | 2", "force"]
+    assert geometry.startswith("[3 elements, 5 numbers: 0 ... 5, rms 2.79284800875 #")
+
+
+BEFORE = "force_cN: 3 numbers: first 1.0, rms 2.00000000001 #0123456789ab\nname: mx-2"
+
+
+@pytest.mark.parametrize(
+    ("after", "same_here", "same_elsewhere"),
+    [
+        (BEFORE, True, True),
+        (BEFORE.replace("0123456789ab", "ba9876543210").replace("00001 ", "00002 "), False, True),
+        (BEFORE.replace("2.00000000001", "2.00000002"), False, False),
+        (BEFORE.replace("mx-2", "mx-3"), False, False),
+        (BEFORE.replace("3 numbers", "4 numbers"), False, False),
+        (BEFORE + "\n", True, True),
+        (BEFORE + "\nmore: 1", False, False),
+    ],
+)
+def test_last_digits_count_only_on_a_machine_that_rounds_alike(
+    after: str, same_here: bool, same_elsewhere: bool
+) -> None:
+    assert [not difference(BEFORE, after, exact) for exact in (True, False)] == [same_here, same_elsewhere]
+
+
+def test_a_file_is_cut_and_its_numbers_are_set(tmp_path: Path) -> None:
+    (tmp_path / "a.toml").write_text("rounds = 16 # of each\npeople = 3\nname = 'rounds = 1'\n")
+    EDITS["set"](tmp_path, "a.toml", "rounds=2", "trials=5")
+    EDITS["keep-lines"](tmp_path, "a.toml", "2")
+    assert (tmp_path / "a.toml").read_text() == "rounds = 2 # of each\npeople = 3\n"
+
+
+class Node(Struct):
+    name: str
+    left: int | None = None
+    inner: tuple[Node, ...] = ()
+
+
+def test_a_message_is_shown_by_its_fields_and_not_by_the_names_of_its_records() -> None:
+    assert type_lines(inspect.type_info(Node), ()) == [
+        "record",
+        "  name: text",
+        "  left: integer | null = null",
+        "  inner: list of record as above = []",
+    ]
