@@ -8,9 +8,9 @@ from typing import Any
 
 from fdvv.compensation.identification.rig_file import RigRecord
 from fdvv.compensation.identification.rig_model import RigModel
-from fdvv.model.file import ModelRecord
 from fdvv.model.jnd_file import JndRecord, MeasuredJnd
-from fdvv.program.file import ProgramRecord
+from fdvv.model.model import FDVVModel
+from fdvv.program.program import Program
 from fdvv.recording.file import Correction
 from fdvv.recording.records import BenchRecord, HeadRecord, MarkRecord, MendRecord, StreamRecord, TakeRecord
 from fdvv.recording.types import Bench, Mark, Recording, Stream, Take
@@ -74,12 +74,12 @@ def members(record: Any) -> tuple[type[Any], ...]:
 
 
 FILES = (
-    FileKind("Model", "`*.fdvv.json`", "A button. [More](model-file.md).", {"file": ModelRecord}),
+    FileKind("Model", "`*.fdvv.json`", "A button. [More](model-file.md).", {"file": FDVVModel}),
     FileKind(
         "Program",
         "`*.fdvv-program.json`",
         "A button of several states. [More](program-file.md).",
-        {"file": ProgramRecord},
+        {"file": Program},
     ),
     FileKind(
         "Recording",

@@ -10,7 +10,7 @@ This is the only place that converts, in both directions.
 
 from __future__ import annotations
 
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,12 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 """Numbers of double precision; (n,) where no other shape is stated."""
+
+if TYPE_CHECKING:
+    Column = FloatArray
+    Table = FloatArray
+else:  # as a file holds such a field; its record makes an array of it
+    Column, Table = list[float], list[list[float]]
 
 Value = TypeVar("Value", float, FloatArray)
 """One number or an array of them: what is converted stays what it was."""

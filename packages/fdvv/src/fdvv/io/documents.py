@@ -7,12 +7,24 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Callable, Collection, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import Field, dataclass, fields, is_dataclass
+from enum import Enum
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
 import msgspec
+from msgspec.inspect import (
+    DataclassType,
+    FloatType,
+    ListType,
+    Metadata,
+    Type,
+    UnionType,
+    VarTupleType,
+    type_info,
+)
 
 from fdvv.errors import InputError
 from fdvv.io.files import open_plain, read_limited
@@ -71,7 +83,7 @@ def read_document(
         if head.format != kind.format:
             reason = f'not {kind.name} ("format" must be "{kind.format}")'
             raise InputError(source, "$.format", reason, kind.remedy)
-        if head.version not in kind.versions:
+        if type(head.version) is not int or head.version not in kind.versions:
             reads = " or ".join(map(str, kind.versions))
             reason = f"file version {head.version!r:.40}, this fdvv reads version {reads}"
             raise InputError(source, "$.version", reason, "install the fdvv that wrote it, or a newer one")
@@ -141,6 +153,104 @@ def finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [finite(v) for v in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What the records of a file look like there, beyond their declaration.
+
+    Attributes
+    ----------
+    last : names of fields that follow the others, in this order; long ones are easier to read there.
+    needed : names of fields that a file must state, although their record has a default.
+    head : further names that the outermost object may have.
+    """
+
+    last: tuple[str, ...] = ()
+    needed: Collection[str] = ()
+    head: Collection[str] = ("format", "version")
+
+    def sort(self, names: Collection[str]) -> list[str]:
+        """Return the names of fields as they follow each other in a file."""
+        return sorted(names, key=lambda name: self.last.index(name) + 1 if name in self.last else 0)
+
+
+PLAIN = Layout()
+"""As the records are declared."""
+
+
+def decode(data: bytes, record: type[Read], layout: Layout = PLAIN) -> Read:
+    """Decode a file of one record. Raises msgspec.ValidationError with the place, also for unknown fields."""
+    value = msgspec.json.decode(data, type=record)
+    check_fields(msgspec.json.decode(data), record, layout)
+    return value
+
+
+def check_fields(plain: Any, record: type, layout: Layout = PLAIN) -> None:
+    """Raise msgspec.ValidationError for an unknown field or a missing one that the layout needs.
+
+    plain : what was decoded as the record, and is of its types.
+    """
+    _check(plain, _info(record), layout, "$")
+
+
+_info = cache(type_info)
+
+
+def _check(plain: Any, kind: Type, layout: Layout, place: str) -> None:
+    for part in _alternatives(kind):
+        if isinstance(part, DataclassType) and isinstance(plain, dict):
+            known = {field.name: field.type for field in part.fields}
+            for name in plain:
+                if name not in known and not (place == "$" and name in layout.head):
+                    raise msgspec.ValidationError(f"Object contains unknown field `{name}` - at `{place}`")
+            for name in known:
+                if name in plain:
+                    _check(plain[name], known[name], layout, f"{place}.{name}")
+                elif name in layout.needed:
+                    raise msgspec.ValidationError(f"Object missing required field `{name}` - at `{place}`")
+        elif isinstance(part, ListType | VarTupleType) and not isinstance(part.item_type, FloatType):
+            for i, item in enumerate(plain or ()):
+                _check(item, part.item_type, layout, f"{place}[{i}]")
+
+
+def _alternatives(kind: Type) -> Iterator[Type]:
+    if isinstance(kind, Metadata):
+        yield from _alternatives(kind.type)
+    elif isinstance(kind, UnionType):
+        for part in kind.types:
+            yield from _alternatives(part)
+    else:
+        yield kind
+
+
+def to_plain(
+    value: Any,
+    layout: Layout = PLAIN,
+    keep: Callable[[Field[Any], Any], bool] = lambda _field, _value: True,
+    special: Callable[[Any], Any] = lambda value: value,
+) -> Any:
+    """Turn a record into plain values: objects, lists, numbers, words.
+
+    keep : whether a field with this value is written. special : replaces values that JSON holds in their own
+    form; by default an array becomes lists.
+    """
+    value = special(value)
+    if is_dataclass(value):
+        held = {f.name: part for f in fields(value) if keep(f, part := getattr(value, f.name))}
+        return {name: to_plain(held[name], layout, keep, special) for name in layout.sort(held)}
+    if isinstance(value, Mapping):
+        return {str(name): to_plain(part, layout, keep, special) for name, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [to_plain(part, layout, keep, special) for part in value]
+    if isinstance(value, Enum):
+        return value.value
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def document(record: object, kind: Kind, version: int | None = None, **how: Any) -> dict[str, Any]:
+    """Return the document of a record with its head; how : as for `to_plain`."""
+    return {"format": kind.format, "version": version or kind.version, **to_plain(record, **how)}
 
 
 def tidy_schema(value: Any) -> Any:

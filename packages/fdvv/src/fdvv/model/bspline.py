@@ -123,7 +123,8 @@ class ExactlyEqual:
     """A record with arrays that equals another if all fields do, arrays to the bit."""
 
     def _key(self) -> tuple[object, ...]:
-        return tuple(v.tobytes() if isinstance(v, np.ndarray) else v for v in vars(self).values())
+        values = (getattr(self, name) for name in type(self).__dataclass_fields__)
+        return tuple(v.tobytes() if isinstance(v, np.ndarray) else v for v in values)
 
     def __eq__(self, other: object) -> bool:
         return self._key() == other._key() if isinstance(other, type(self)) else NotImplemented

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Protocol
+from typing import Annotated, Protocol
 
 import numpy as np
 import numpy.typing as npt
+from msgspec import Meta
 
 from fdvv.errors import ModelError
 from fdvv.model import bspline
 from fdvv.model.bspline import ExactlyEqual, LARGEST_cN, LARGEST_mm, check_size, check_velocity, set_columns
 from fdvv.model.spread import CurveSpread
-from fdvv.units import FloatArray
+from fdvv.units import Column, FloatArray
 
 
 class Stroke(StrEnum):
@@ -110,10 +111,10 @@ class ForceCurve(ExactlyEqual):
     """
 
     stroke: Stroke
-    velocity_mm_s: float | None
-    degree: int
-    knots_mm: FloatArray
-    control_points_cN: FloatArray
+    velocity_mm_s: Annotated[float, Meta(gt=0)] | None
+    degree: Annotated[int, Meta(ge=1, le=5)]
+    knots_mm: Annotated[Column, Meta(min_length=4)]
+    control_points_cN: Annotated[Column, Meta(min_length=2)]
     spread: CurveSpread | None = None
 
     def __post_init__(self) -> None:

@@ -6,129 +6,26 @@ line, so that a round trip is exact and a diff shows which curve changed.
 
 from __future__ import annotations
 
+from dataclasses import Field
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any
 
 import msgspec
-import numpy as np
-from msgspec import Meta
 
 from fdvv.errors import InputError
-from fdvv.io.documents import Kind, pretty, read_document, tidy_schema
+from fdvv.io.documents import Head, Kind, Layout, decode, document, pretty, read_document
 from fdvv.io.files import read_limited, write_atomic
-from fdvv.model.curve import Stroke
+from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.model import FDVVModel
-from fdvv.model.spread import CurveSpreadRecord, PointSpreadRecord, VibrationSpreadRecord
 from fdvv.model.velocity import Interpolation
+from fdvv.model.vibration import Vibration
 
 FORMAT = "fdvv-model"
 
 VERSION = 2
 """Of a file with spreads; one without is of version 1, which had no place for them."""
-
-Positive = Annotated[float, Meta(gt=0)]
-NotNegative = Annotated[float, Meta(ge=0)]
-StrokeName = Annotated[Stroke, Meta(description="press or release")]
-
-
-class CurveRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """Force on displacement for one stroke at one velocity, as a clamped B-spline."""
-
-    stroke: StrokeName
-    velocity_mm_s: Annotated[
-        Positive | None,
-        Meta(description="mean speed of the stroke, mm/s; null if unknown, and then the stroke's only curve"),
-    ]
-    degree: Annotated[int, Meta(ge=1, le=5, description="polynomial degree k")]
-    knots_mm: Annotated[
-        list[float],
-        Meta(
-            min_length=4,
-            description="n + k + 1 knots, mm, not falling; the first and last k + 1 equal, the curve's ends",
-        ),
-    ]
-    control_points_cN: Annotated[
-        list[float], Meta(min_length=2, description="n coefficients, cN, one per basis function")
-    ]
-    spread: Annotated[
-        CurveSpreadRecord | None, Meta(description="between presses; null or absent if not measured")
-    ] = None
-
-
-class ModeRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """One sinusoid of the cap's acceleration, amplitude exp(-decay t) sin(2 pi frequency t + phase)."""
-
-    frequency_Hz: Annotated[float, Meta(gt=0, description="frequency, Hz")]
-    amplitude_m_s2: Annotated[float, Meta(description="acceleration at the onset, m/s²")]
-    decay_1_s: Annotated[float, Meta(ge=0, description="decay, 1/s")]
-    phase_rad: Annotated[float, Meta(description="phase at the onset, rad")] = 0.0
-
-
-class VibrationRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """The vibration of one stroke at one velocity."""
-
-    stroke: StrokeName
-    velocity_mm_s: Annotated[
-        Positive | None, Meta(description="speed it was found at, mm/s; null if it serves every speed")
-    ]
-    onset_mm: Annotated[float, Meta(description="displacement at which it starts, mm")]
-    duration_s: Annotated[float, Meta(gt=0, description="length, s; the signal is zero after it")]
-    modes: Annotated[list[ModeRecord], Meta(min_length=1, description="the sinusoids that add up to it")]
-    spread: Annotated[
-        VibrationSpreadRecord | None, Meta(description="between presses; null or absent if not measured")
-    ] = None
-
-
-class ProvenanceRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """Where the model comes from."""
-
-    source: Annotated[str, Meta(description="the button and who measured it")] = ""
-    licence: Annotated[str, Meta(description="of the measurements, as their publisher states it")] = ""
-    citation: Annotated[str, Meta(description="how to credit it")] = ""
-    method: Annotated[str, Meta(description="how the curves were made from the source, and edits since")] = ""
-    assumptions: Annotated[list[str], Meta(description="what no measurement backs, one sentence each")] = []
-    simulated: Annotated[bool, Meta(description="whether the numbers come from the twin")] = False
-
-
-class ModelRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """A button as force over displacement and velocity, with its vibration (FDVV)."""
-
-    format: Annotated[Literal["fdvv-model"], Meta(description="tells the file from other JSON")]
-    version: Annotated[Literal[1, 2], Meta(description="of this format; 2 if the file tells of spreads")]
-    name: Annotated[str, Meta(min_length=1, description="short, as a file would be called")]
-    travel_mm: Annotated[float, Meta(gt=0, description="from first contact to bottom-out, mm")]
-    actuation_mm: Annotated[
-        NotNegative | None, Meta(description="where the contact closes on the press, mm; null if unknown")
-    ]
-    reset_mm: Annotated[
-        NotNegative | None, Meta(description="where the contact opens on the release, mm; null if unknown")
-    ]
-    interpolation: Annotated[Interpolation, Meta(description="how force is found between the velocities")]
-    curves: Annotated[
-        list[CurveRecord], Meta(min_length=1, description="no two of one stroke and velocity; in any order")
-    ]
-    vibrations: Annotated[list[VibrationRecord], Meta(description="no two of one stroke and velocity")] = []
-    provenance: Annotated[ProvenanceRecord, Meta(description="where the model comes from")] = msgspec.field(
-        default_factory=ProvenanceRecord
-    )
-    travel_spread: Annotated[
-        PointSpreadRecord | None, Meta(description="of travel_mm; null or absent if not measured")
-    ] = None
-    actuation_spread: Annotated[
-        PointSpreadRecord | None, Meta(description="of actuation_mm; null or absent if not measured")
-    ] = None
-    reset_spread: Annotated[
-        PointSpreadRecord | None, Meta(description="of reset_mm; null or absent if not measured")
-    ] = None
-
-
-def schema() -> dict[str, Any]:
-    """Return the JSON schema of the file format, as published in docs/reference/fdvv.schema.json."""
-    found = msgspec.json.schema(ModelRecord)
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **tidy_schema(found)}
-
 
 MODEL_SUFFIX = ".fdvv.json"
 """How a model file's name ends."""
@@ -140,32 +37,40 @@ _REMEDY = "compare with docs/reference/model-file.md, or fit the measurement aga
 
 _KIND = Kind(FORMAT, VERSION, "an FDVV model", _REMEDY, oldest=1)
 
-_POINTS = ("travel_spread", "actuation_spread", "reset_spread")
+_SPREADS = ("travel_spread", "actuation_spread", "reset_spread")
+
+_ACHIEVED = ("achieved_mm_s", "achieved_spread_mm_s")
+
+_LAYOUT = Layout(
+    # a line of numbers is easier to read after their count
+    last=("curves", "vibrations", "provenance", *_SPREADS, "displacement_mm", "spread_cN", *_ACHIEVED),
+    needed=("actuation_mm", "reset_mm", "interpolation"),
+)
 
 _CHOICES = {"stroke": Stroke, "interpolation": Interpolation}
 
 
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of the file format, as published in docs/reference/fdvv.schema.json."""
+    from fdvv.io.schema import schema_of
+
+    return schema_of(FDVVModel, _KIND, _LAYOUT)
+
+
 def model_to_json(model: FDVVModel) -> str:
     """Write a model as the text of a ``*.fdvv.json`` file, of version 1 unless it holds spreads."""
-    head = {"format": FORMAT, "version": VERSION if _has_spreads(model) else 1}
-    fields = head | msgspec.to_builtins(model, enc_hook=lambda array: array.tolist())
-    return pretty(_written({name: fields[name] for name in ModelRecord.__struct_fields__})) + "\n"
+    version = VERSION if _has_spreads(model) else 1
+    return pretty(document(model, _KIND, version, layout=_LAYOUT, keep=_is_written)) + "\n"
 
 
-def _written(value: Any) -> Any:
+def _is_written(field: Field[Any], value: object) -> bool:
     """Leave out the spreads that are not known, for which files of version 1 had no place."""
-    if isinstance(value, list | tuple):
-        return [_written(item) for item in value]
-    if not isinstance(value, dict):
-        return value
-    if "spread_cN" in value:  # of a curve: a line of numbers is easier to read after their count
-        value = {"presses": value["presses"], **value}
-    return {k: _written(v) for k, v in value.items() if not (v is None and k.endswith("spread"))}
+    return value is not None or not field.name.endswith("spread")
 
 
-def _has_spreads(model: FDVVModel | ModelRecord) -> bool:
-    parts = (*model.curves, *model.vibrations)
-    return any(getattr(model, name) for name in _POINTS) or any(part.spread for part in parts)
+def _has_spreads(model: FDVVModel) -> bool:
+    parts: tuple[ForceCurve | Vibration, ...] = (*model.curves, *model.vibrations)
+    return any(getattr(model, name) for name in _SPREADS) or any(part.spread for part in parts)
 
 
 def model_from_json(text: str | bytes, source: object = "model") -> FDVVModel:
@@ -178,19 +83,17 @@ def model_from_json(text: str | bytes, source: object = "model") -> FDVVModel:
         text,
         source,
         _KIND,
-        lambda data: _model(msgspec.json.decode(data, type=ModelRecord), source),
+        lambda data: _model(data, source),
         lambda place: _CHOICES.get(place.rpartition(".")[2]),
     )
 
 
-def _model(record: ModelRecord, source: object) -> FDVVModel:
-    if record.version == 1 and _has_spreads(record):
+def _model(data: bytes, source: object) -> FDVVModel:
+    model = decode(data, FDVVModel, _LAYOUT)
+    if _has_spreads(model) and msgspec.json.decode(data, type=Head).version == 1:
         reason, remedy = "a file of version 1 has no spreads", "write 2, or take them out"
         raise InputError(source, "$.version", reason, remedy)
-    # a ModelError of a part comes out as msgspec's own error, with the place of that part
-    return msgspec.convert(
-        record, FDVVModel, from_attributes=True, dec_hook=lambda _, column: np.array(column)
-    )
+    return model
 
 
 def save_model(model: FDVVModel, path: Path | str) -> None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Annotated
 
 import numpy as np
+from msgspec import Meta
 from numpy.typing import ArrayLike
 
 from fdvv.errors import ModelError
@@ -67,11 +69,11 @@ class FDVVModel:
     Raises ModelError on anything else. Equality is of all numbers, exactly.
     """
 
-    name: str
-    travel_mm: float
-    curves: tuple[ForceCurve, ...]
-    actuation_mm: float | None = None
-    reset_mm: float | None = None
+    name: Annotated[str, Meta(min_length=1)]
+    travel_mm: Annotated[float, Meta(gt=0)]
+    curves: Annotated[tuple[ForceCurve, ...], Meta(min_length=1)]
+    actuation_mm: Annotated[float, Meta(ge=0)] | None = None
+    reset_mm: Annotated[float, Meta(ge=0)] | None = None
     vibrations: tuple[Vibration, ...] = ()
     interpolation: Interpolation = Interpolation.PCHIP
     provenance: Provenance = field(default_factory=Provenance)

@@ -7,9 +7,8 @@ what all of them share, such as a sensor's scale or the finger that pressed, is 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import msgspec
 import numpy as np
 import numpy.typing as npt
 from msgspec import Meta
@@ -25,7 +24,14 @@ from fdvv.model.bspline import (
     check_velocity,
     set_columns,
 )
-from fdvv.units import FloatArray
+from fdvv.units import Column, FloatArray
+
+Presses = Annotated[int, Meta(ge=2)]
+Deviation = Annotated[float, Meta(ge=0)]
+if TYPE_CHECKING:
+    Deviations = FloatArray
+else:
+    Deviations = list[Deviation]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +50,11 @@ class CurveSpread(ExactlyEqual):
     Equality is of all numbers, exactly. Raises ModelError on anything else.
     """
 
-    displacement_mm: FloatArray
-    spread_cN: FloatArray
-    presses: int
-    achieved_mm_s: float | None = None
-    achieved_spread_mm_s: float | None = None
+    displacement_mm: Annotated[Column, Meta(min_length=2)]
+    spread_cN: Annotated[Deviations, Meta(min_length=2)]
+    presses: Presses
+    achieved_mm_s: Annotated[float, Meta(gt=0)] | None = None
+    achieved_spread_mm_s: Deviation | None = None
 
     def __post_init__(self) -> None:
         set_columns(self, "displacement_mm", "spread_cN")
@@ -77,10 +83,16 @@ class CurveSpread(ExactlyEqual):
 
 @dataclass(frozen=True)
 class PointSpread:
-    """How a place in the travel differs: standard deviation between presses, and of how many."""
+    """How a place in the travel differs between presses.
 
-    spread_mm: float
-    presses: int
+    Attributes
+    ----------
+    spread_mm : standard deviation.
+    presses : how many, 2 or more.
+    """
+
+    spread_mm: Deviation
+    presses: Presses
 
     def __post_init__(self) -> None:
         check_spread(self.spread_mm, "spread_mm")
@@ -94,11 +106,17 @@ class PointSpread:
 
 @dataclass(frozen=True)
 class ModeSpread:
-    """Standard deviations between presses of a mode's fields of the same names; None if unknown."""
+    """How a mode differs between presses.
 
-    frequency_Hz: float | None = None
-    amplitude_m_s2: float | None = None
-    decay_1_s: float | None = None
+    Attributes
+    ----------
+    frequency_Hz, amplitude_m_s2, decay_1_s : standard deviations of the mode's fields of the same names; None
+        if unknown.
+    """
+
+    frequency_Hz: Deviation | None = None
+    amplitude_m_s2: Deviation | None = None
+    decay_1_s: Deviation | None = None
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
@@ -116,9 +134,9 @@ class VibrationSpread:
     modes : one for each mode of the vibration; empty if unknown.
     """
 
-    presses: int
-    onset_mm: float | None = None
-    duration_s: float | None = None
+    presses: Presses
+    onset_mm: Deviation | None = None
+    duration_s: Deviation | None = None
     modes: tuple[ModeSpread, ...] = ()
 
     def __post_init__(self) -> None:
@@ -126,50 +144,3 @@ class VibrationSpread:
         check_presses(self.presses)
         for name in ("onset_mm", "duration_s"):
             check_spread(getattr(self, name), f"the spread of {name}")
-
-
-Presses = Annotated[int, Meta(ge=2, description="how many presses")]
-
-Deviation = Annotated[float, Meta(ge=0)] | None
-
-
-class PointSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """How a point of the travel differs between presses."""
-
-    spread_mm: Annotated[float, Meta(ge=0, description="standard deviation between presses, mm")]
-    presses: Presses
-
-
-class CurveSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """How the force of a curve differs between presses."""
-
-    presses: Presses
-    displacement_mm: Annotated[list[float], Meta(min_length=2, description="places, mm, strictly rising")]
-    spread_cN: Annotated[
-        list[Annotated[float, Meta(ge=0)]],
-        Meta(min_length=2, description="standard deviation between presses at each place, cN"),
-    ]
-    achieved_mm_s: Annotated[
-        Annotated[float, Meta(gt=0)] | None,
-        Meta(description="mean speed that the presses really had, mm/s; null if unknown"),
-    ] = None
-    achieved_spread_mm_s: Annotated[
-        Deviation, Meta(description="its standard deviation between presses, mm/s; null if unknown")
-    ] = None
-
-
-class ModeSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """Standard deviations between presses of one mode."""
-
-    frequency_Hz: Annotated[Deviation, Meta(description="of the frequency, Hz; null if unknown")] = None
-    amplitude_m_s2: Annotated[Deviation, Meta(description="of the amplitude, m/s²; null if unknown")] = None
-    decay_1_s: Annotated[Deviation, Meta(description="of the decay, 1/s; null if unknown")] = None
-
-
-class VibrationSpreadRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """How a vibration differs between presses."""
-
-    presses: Presses
-    onset_mm: Annotated[Deviation, Meta(description="of the onset, mm; null if unknown")] = None
-    duration_s: Annotated[Deviation, Meta(description="of the duration, s; null if unknown")] = None
-    modes: Annotated[list[ModeSpreadRecord], Meta(description="one for each mode; empty if unknown")] = []

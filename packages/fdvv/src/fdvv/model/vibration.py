@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
+from msgspec import Meta
 
 from fdvv.errors import ModelError
 from fdvv.model.bspline import check_velocity
@@ -26,9 +28,9 @@ class Mode:
     phase_rad : phase at the onset.
     """
 
-    frequency_Hz: float
+    frequency_Hz: Annotated[float, Meta(gt=0)]
     amplitude_m_s2: float
-    decay_1_s: float
+    decay_1_s: Annotated[float, Meta(ge=0)]
     phase_rad: float = 0.0
 
     def __post_init__(self) -> None:
@@ -52,10 +54,10 @@ class Vibration:
     """
 
     stroke: Stroke
-    velocity_mm_s: float | None
+    velocity_mm_s: Annotated[float, Meta(gt=0)] | None
     onset_mm: float
-    duration_s: float
-    modes: tuple[Mode, ...]
+    duration_s: Annotated[float, Meta(gt=0)]
+    modes: Annotated[tuple[Mode, ...], Meta(min_length=1)]
     spread: VibrationSpread | None = None
 
     def __post_init__(self) -> None:

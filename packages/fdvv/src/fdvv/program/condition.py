@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
+from msgspec import Meta
 
 from fdvv.errors import ModelError
 from fdvv.protocol.tables import Condition as Code
@@ -80,6 +84,19 @@ class Condition:
         if self.when in WHOLE and self.value != int(self.value):
             raise ModelError(f"{self.when} must be a whole number, got {self.value}")
 
+    @classmethod
+    def of(cls, stated: Mapping[When, Any]) -> Condition:
+        """Return the condition that a file states as {when: value}, {when: true} where it has none."""
+        ((when, value),) = stated.items()
+        if (value is True) != (when in BARE):
+            wanted = "true" if when in BARE else "a number"
+            raise ModelError(f"{when} takes {wanted}, got {json.dumps(value)}")
+        return cls(when, 0.0 if value is True else value)
+
+    def stated(self) -> dict[str, float | Literal[True]]:
+        """Return the condition as a file states it."""
+        return {str(self.when): True if self.when in BARE else float(self.value)}
+
     def __str__(self) -> str:
         name, _, unit = self.when.rpartition("_")
         if self.when in BARE:
@@ -89,6 +106,23 @@ class Condition:
         if self.when in (When.FASTER_THAN, When.SLOWER_THAN):
             name, unit = self.when.removesuffix("_mm_s"), "mm/s"
         return f"{name.replace('_', ' ')} {self.value:g} {unit}"
+
+
+Name = Annotated[str, Meta(min_length=1, max_length=40)]
+"""Of a state, a surface or a signal."""
+
+if TYPE_CHECKING:
+    Stated = Condition
+else:
+    Stated = Annotated[
+        dict[When, float | Literal[True]],
+        Meta(
+            min_length=1,
+            max_length=1,
+            description="one condition and its value; true for always, turned_to_press and turned_to_release",
+            extra_json_schema={"propertyNames": {"enum": list(map(str, When))}},
+        ),
+    ]
 
 
 @dataclass(frozen=True)
@@ -103,10 +137,15 @@ class Transition:
     signal : what vibrates on the way, instead of what the entered state plays; or None.
     """
 
-    to: str
-    when: Condition
-    only_if: Condition | None = None
-    signal: str | None = None
+    to: Name
+    when: Stated
+    only_if: Stated | None = None
+    signal: Name | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("when", "only_if"):
+            if isinstance(stated := getattr(self, name), dict):
+                object.__setattr__(self, name, Condition.of(stated))
 
     @property
     def conditions(self) -> tuple[Condition, ...]:

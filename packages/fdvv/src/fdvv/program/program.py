@@ -7,13 +7,15 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import islice
+from typing import Annotated
 
 import numpy as np
+from msgspec import Meta
 
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.vibration import Mode, Vibration
-from fdvv.program.condition import Transition
+from fdvv.program.condition import Name, Transition
 from fdvv.program.surface import Surface, check_name
 from fdvv.protocol.tables import Stroke as Direction
 from fdvv.protocol.tables import VelocitySource
@@ -62,9 +64,9 @@ class Signal:
     modes : damped sinusoids that add up to the cap's acceleration.
     """
 
-    name: str
-    duration_s: float
-    modes: tuple[Mode, ...]
+    name: Name
+    duration_s: Annotated[float, Meta(gt=0)]
+    modes: Annotated[tuple[Mode, ...], Meta(min_length=1)]
 
     def __post_init__(self) -> None:
         check_name(self.name)
@@ -85,16 +87,17 @@ class VibrationEvent:
     signal : name of what is played.
     at_mm : where it is to be felt.
     stroke : in which direction.
-    slowest_mm_s, fastest_mm_s : it is played at or above the one and below the other; None: no bound.
+    slowest_mm_s : it is played only at or above this velocity; None: no bound.
+    fastest_mm_s : it is played only below this velocity; None: no bound.
     states : names of the states in which it is played; none named: in all.
     """
 
-    signal: str
+    signal: Name
     at_mm: float
     stroke: During = During.PRESS
     slowest_mm_s: float | None = None
     fastest_mm_s: float | None = None
-    states: tuple[str, ...] = ()
+    states: tuple[Name, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "stroke", During(self.stroke))
@@ -115,29 +118,33 @@ class State:
     Attributes
     ----------
     name : how transitions refer to it.
-    press, release : names of the surfaces looked up while the cap goes down and up.
+    press : name of the surface looked up while the cap goes down.
+    release : name of the surface looked up while it comes up.
     transitions : tried in this order at every tick; the first that holds is taken.
     key : reported to the host: 0 up, else the level that is down.
     velocity : which velocity chooses the row of the surfaces.
     enter_signal : played on entering, or None.
-    repeat_signal, repeat_ms : played again and again in the state with that period, or None and 0.
+    repeat_signal : played again and again in the state, or None.
+    repeat_ms : its period; 0 with none.
     fade_ms : time in which the force moves from the last state's to this one's.
-    bias_cN, bias_end_cN, bias_ms : added to the surface's force: from the first to the second in that time.
+    bias_cN : added to the surface's force.
+    bias_end_cN : what the bias has become after bias_ms.
+    bias_ms : time over which the bias changes; 0: it does not.
     """
 
-    name: str
-    press: str
-    release: str
+    name: Name
+    press: Name
+    release: Name
     transitions: tuple[Transition, ...] = ()
-    key: int = 0
+    key: Annotated[int, Meta(ge=0, le=LARGEST["key"])] = 0
     velocity: Velocity = Velocity.DECIDED
-    enter_signal: str | None = None
-    repeat_signal: str | None = None
-    repeat_ms: int = 0
-    fade_ms: int = 0
+    enter_signal: Name | None = None
+    repeat_signal: Name | None = None
+    repeat_ms: Annotated[int, Meta(ge=0, le=LARGEST["repeat_ms"])] = 0
+    fade_ms: Annotated[int, Meta(ge=0, le=LARGEST["fade_ms"])] = 0
     bias_cN: float = 0.0
     bias_end_cN: float = 0.0
-    bias_ms: int = 0
+    bias_ms: Annotated[int, Meta(ge=0, le=LARGEST["bias_ms"])] = 0
 
     def __post_init__(self) -> None:
         check_name(self.name)
@@ -170,7 +177,7 @@ class Program:
     name : short, as a file would be called.
     travel_mm : where the bottom stop is set.
     start : name of the state entered first.
-    states, surfaces, signals : each with names of its own; every name referred to exists.
+    states, surfaces, signals : no two of one name; every name referred to exists.
     vibrations : signals tied to displacements.
     description : what the button does, for people.
 
@@ -178,11 +185,11 @@ class Program:
     `check_program`.
     """
 
-    name: str
-    travel_mm: float
-    start: str
-    states: tuple[State, ...]
-    surfaces: tuple[Surface, ...]
+    name: Name
+    travel_mm: Annotated[float, Meta(gt=0)]
+    start: Name
+    states: Annotated[tuple[State, ...], Meta(min_length=1)]
+    surfaces: Annotated[tuple[Surface, ...], Meta(min_length=1)]
     signals: tuple[Signal, ...] = ()
     vibrations: tuple[VibrationEvent, ...] = ()
     description: str = ""

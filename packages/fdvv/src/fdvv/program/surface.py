@@ -6,13 +6,16 @@ import math
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
+from msgspec import Meta
 
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
+from fdvv.program.condition import Name
 from fdvv.protocol.messages import CN64_PER_cN, MM_S16_PER_mm_s, UM16_PER_mm
 from fdvv.protocol.tables import SURFACE_DISPLACEMENTS, Settings
 from fdvv.protocol.tables import Surface as ImageSurface
@@ -37,10 +40,10 @@ class Surface:
     velocity_mm_s : rising from 0 or more, one per row.
     """
 
-    name: str
-    displacement_mm: tuple[float, ...]
-    force_cN: tuple[tuple[float, ...], ...]
-    velocity_mm_s: tuple[float, ...] = (0.0,)
+    name: Name
+    displacement_mm: Annotated[tuple[float, ...], Meta(min_length=2)]
+    force_cN: Annotated[tuple[tuple[float, ...], ...], Meta(min_length=1)]
+    velocity_mm_s: Annotated[tuple[float, ...], Meta(min_length=1)] = (0.0,)
 
     def __post_init__(self) -> None:
         check_name(self.name)
