@@ -12,8 +12,7 @@ from fdvv.model.jnd_file import JndRecord, MeasuredJnd
 from fdvv.model.model import FDVVModel
 from fdvv.program.program import Program
 from fdvv.recording.file import Correction
-from fdvv.recording.records import BenchRecord, HeadRecord, MarkRecord, MendRecord, StreamRecord, TakeRecord
-from fdvv.recording.types import Bench, Mark, Recording, Stream, Take
+from fdvv.recording.types import Recording, Take
 from fdvv.rendering.actuation_file import ActuationRecord
 from fdvv.rendering.run_summary import RunSummary
 from fdvv.rendering.session import Manifest
@@ -85,7 +84,7 @@ FILES = (
         "Recording",
         "`*.recording.jsonl`",
         "An [event log](#journals). [More](recording-file.md).",
-        {"head": HeadRecord, "take": TakeRecord, "mend": MendRecord},
+        {"head": Recording, "take": Take, "mend": Correction},
     ),
     FileKind(
         "Actuation",
@@ -241,12 +240,6 @@ FILES = (
     ),
 )
 IN_MEMORY: dict[type[Any], type[Any]] = {
-    HeadRecord: Recording,
-    BenchRecord: Bench,
-    TakeRecord: Take,
-    StreamRecord: Stream,
-    MarkRecord: Mark,
-    MendRecord: Correction,
     RigRecord: RigModel,
     ExciterRecord: KnownExciter,
 }

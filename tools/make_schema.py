@@ -9,7 +9,7 @@ from typing import Any
 from fdvv.io.files import write_atomic
 from fdvv.model.file import schema
 from fdvv.program.file import schema as program_schema
-from fdvv.recording.records import schema as recording_schema
+from fdvv.recording.file import schema as recording_schema
 
 REFERENCE = Path(__file__).parents[1] / "docs" / "reference"
 OUTPUT = REFERENCE / "fdvv.schema.json"

@@ -13,9 +13,8 @@ import jsonschema
 import numpy as np
 import pytest
 
-from fdvv.recording.file import load_recording
+from fdvv.recording.file import load_recording, schema
 from fdvv.recording.read import read_log
-from fdvv.recording.records import schema
 
 REFERENCE = Path(__file__).resolve().parents[4] / "docs" / "reference"
 

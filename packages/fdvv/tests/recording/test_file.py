@@ -204,7 +204,7 @@ BAD: dict[str, tuple[list[dict[str, object]], str]] = {
     ),
     "no column": (
         [{"head": head()}, {"take": {**TAKE, "streams": [{**STREAM, "t_s": "<f8:!", "raw": EMPTY}]}}],
-        "line 2: ",
+        r"line 2, \$.streams\[0\]: ",
     ),
     "an unknown quantity": (
         [{"head": head()}, {"take": {**TAKE, "streams": [NO_QUANTITY]}}],

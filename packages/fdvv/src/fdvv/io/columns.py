@@ -10,13 +10,24 @@ from __future__ import annotations
 import base64
 import re
 import zlib
-from typing import Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
+from msgspec import Meta
 
 KINDS = ("?", "|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<i8", "<u8", "<f4", "<f8")
 """Kinds of number that an array may hold, as NumPy writes them."""
+if TYPE_CHECKING:
+    Packed = npt.NDArray[Any]
+else:  # as a file holds such a field; its record makes an array of it
+    Packed = Annotated[
+        str,
+        Meta(
+            pattern=r"^(\?|\|[iu]1|<[iu][248]|<f[48])(\[\d+(,\d+)+\])?:",
+            description="kind, shape, base64 of zlib of the numbers",
+        ),
+    ]
 _HEAD = re.compile(r"([^\[:]+)(?:\[(\d+(?:,\d+)+)\])?\Z", re.ASCII)
 
 
@@ -29,6 +40,13 @@ def pack_column(column: npt.NDArray[Any]) -> str:
     shape = f"[{','.join(map(str, column.shape))}]" if column.ndim > 1 else ""
     data = zlib.compress(np.ascontiguousarray(column, dtype=kind).tobytes())
     return f"{kind}{shape}:{base64.b64encode(data).decode()}"
+
+
+def unpack_fields(record: object, *names: str) -> None:
+    """Make arrays of those fields of a frozen record that are text. Raises ValueError."""
+    for name in names:
+        if isinstance(text := getattr(record, name), str):
+            object.__setattr__(record, name, unpack_column(text))
 
 
 def unpack_column(text: str) -> npt.NDArray[Any]:

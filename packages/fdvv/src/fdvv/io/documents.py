@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 import math
 import re
@@ -80,13 +79,7 @@ def read_document(
     data = text.encode(errors="surrogatepass") if isinstance(text, str) else text
     try:
         head = msgspec.json.decode(data, type=Head)
-        if head.format != kind.format:
-            reason = f'not {kind.name} ("format" must be "{kind.format}")'
-            raise InputError(source, "$.format", reason, kind.remedy)
-        if type(head.version) is not int or head.version not in kind.versions:
-            reads = " or ".join(map(str, kind.versions))
-            reason = f"file version {head.version!r:.40}, this fdvv reads version {reads}"
-            raise InputError(source, "$.version", reason, "install the fdvv that wrote it, or a newer one")
+        check_head(head, source, kind)
         return read(data)
     except msgspec.ValidationError as error:
         reason, _, path = str(error).partition(" - at ")
@@ -97,6 +90,17 @@ def read_document(
     except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
         place = _place(data, str(error))
         raise InputError(source, place, f"not valid JSON ({error})", kind.remedy) from error
+
+
+def check_head(head: Head, source: object, kind: Kind, at: str = "$") -> None:
+    """Raise InputError unless a head is of that kind, and of a version that is read; at : its place."""
+    if head.format != kind.format:
+        reason = f'not {kind.name} ("format" must be "{kind.format}")'
+        raise InputError(source, f"{at}.format", reason, kind.remedy)
+    if type(head.version) is not int or head.version not in kind.versions:
+        reads = " or ".join(map(str, kind.versions))
+        reason = f"file version {head.version!r:.40}, this fdvv reads version {reads}"
+        raise InputError(source, f"{at}.version", reason, "install the fdvv that wrote it, or a newer one")
 
 
 def read_record(path: Path, kind: Kind, record: type[Read], largest_bytes: int) -> Read:
@@ -182,15 +186,19 @@ PLAIN = Layout()
 def decode(data: bytes, record: type[Read], layout: Layout = PLAIN) -> Read:
     """Decode a file of one record. Raises msgspec.ValidationError with the place, also for unknown fields."""
     value = msgspec.json.decode(data, type=record)
-    check_fields(msgspec.json.decode(data), record, layout)
+    _check_fields(msgspec.json.decode(data), record, layout)
     return value
 
 
-def check_fields(plain: Any, record: type, layout: Layout = PLAIN) -> None:
-    """Raise msgspec.ValidationError for an unknown field or a missing one that the layout needs.
+def convert(plain: Any, record: type[Read], layout: Layout = PLAIN) -> Read:
+    """Make a record of plain values. Raises as `decode`."""
+    value = msgspec.convert(plain, record)
+    _check_fields(plain, record, layout)
+    return value
 
-    plain : what was decoded as the record, and is of its types.
-    """
+
+def _check_fields(plain: Any, record: Any, layout: Layout) -> None:
+    """Raise msgspec.ValidationError for an unknown field, or a missing one that the layout needs."""
     _check(plain, _info(record), layout, "$")
 
 
@@ -203,15 +211,20 @@ def _check(plain: Any, kind: Type, layout: Layout, place: str) -> None:
             known = {field.name: field.type for field in part.fields}
             for name in plain:
                 if name not in known and not (place == "$" and name in layout.head):
-                    raise msgspec.ValidationError(f"Object contains unknown field `{name}` - at `{place}`")
+                    raise _refusal(f"Object contains unknown field `{name}`", place)
             for name in known:
                 if name in plain:
                     _check(plain[name], known[name], layout, f"{place}.{name}")
                 elif name in layout.needed:
-                    raise msgspec.ValidationError(f"Object missing required field `{name}` - at `{place}`")
+                    raise _refusal(f"Object missing required field `{name}`", place)
         elif isinstance(part, ListType | VarTupleType) and not isinstance(part.item_type, FloatType):
             for i, item in enumerate(plain or ()):
                 _check(item, part.item_type, layout, f"{place}[{i}]")
+
+
+def _refusal(reason: str, place: str) -> msgspec.ValidationError:
+    """Return an error in msgspec's own words."""
+    return msgspec.ValidationError(reason if place == "$" else f"{reason} - at `{place}`")
 
 
 def _alternatives(kind: Type) -> Iterator[Type]:
@@ -251,17 +264,6 @@ def to_plain(
 def document(record: object, kind: Kind, version: int | None = None, **how: Any) -> dict[str, Any]:
     """Return the document of a record with its head; how : as for `to_plain`."""
     return {"format": kind.format, "version": version or kind.version, **to_plain(record, **how)}
-
-
-def tidy_schema(value: Any) -> Any:
-    """Strip the indentation that Python before 3.13 leaves in docstrings, and so in descriptions."""
-    if isinstance(value, dict):
-        # a property may itself be called "description"; then it is an object
-        return {
-            k: inspect.cleandoc(v) if k == "description" and isinstance(v, str) else tidy_schema(v)
-            for k, v in value.items()
-        }
-    return [tidy_schema(v) for v in value] if isinstance(value, list) else value
 
 
 MODEL, ACTUATION = "an FDVV model", "an actuation"

@@ -4,27 +4,51 @@ from __future__ import annotations
 
 import inspect
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import msgspec
 
-from fdvv.io.documents import PLAIN, Kind, Layout, tidy_schema
+from fdvv.io.documents import PLAIN, Kind, Layout
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+def tidy_schema(value: Any) -> Any:
+    """Strip the indentation that Python before 3.13 leaves in docstrings, and so in descriptions."""
+    if isinstance(value, dict):
+        # a property may itself be called "description"; then it is an object
+        return {
+            k: inspect.cleandoc(v) if k == "description" and isinstance(v, str) else tidy_schema(v)
+            for k, v in value.items()
+        }
+    return [tidy_schema(v) for v in value] if isinstance(value, list) else value
 
 
 def schema_of(record: type, kind: Kind, layout: Layout = PLAIN) -> dict[str, Any]:
     """Return the JSON schema of a file of one record."""
-    schema = tidy_schema(msgspec.json.schema(record))
-    for part in schema["$defs"].values():
+    (ref,), parts = components([record], layout)
+    add_head(parts[record.__name__], kind)
+    return {"$schema": DIALECT, **ref, "$defs": parts}
+
+
+def components(records: Sequence[type], layout: Layout = PLAIN) -> tuple[list[Any], dict[str, Any]]:
+    """Return a reference to each record, and the schemas of all of them and of their parts by name."""
+    refs, parts = msgspec.json.schema_components(records, ref_template="#/$defs/{name}")
+    for part in parts.values():
         if "properties" in part:
             describe(part, layout)
-    top = schema["$defs"][record.__name__]
+    return list(refs), tidy_schema(parts)
+
+
+def add_head(schema: dict[str, Any], kind: Kind) -> None:
+    """Put the head of a kind before the fields of a record."""
     head = {
         "format": {"description": "tells the file from other JSON", "enum": [kind.format]},
         "version": {"description": "of this format", "enum": list(kind.versions)},
     }
-    top["properties"] = head | top["properties"]
-    top["required"] = [*head, *top["required"]]
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+    schema["properties"] = head | schema["properties"]
+    schema["required"] = [*head, *schema["required"]]
 
 
 ENTRY = re.compile(r"^(\w+(?:, \w+)*) : (.*(?:\n .*)*)", re.MULTILINE)
@@ -43,6 +67,8 @@ def describe(schema: dict[str, Any], layout: Layout) -> None:
     schema["properties"] = {
         name: {"description": meanings[name], **properties[name]} for name in layout.sort(properties)
     }
+    for name in properties.keys() & set(layout.needed):
+        schema["properties"][name].pop("default", None)
     schema["required"] = [
         name for name in schema["properties"] if name in schema["required"] or name in layout.needed
     ]

@@ -7,6 +7,7 @@ de Boor's (A Practical Guide to Splines, ch. IX), evaluated by SciPy.
 from __future__ import annotations
 
 import ctypes
+from dataclasses import fields
 
 import numpy as np
 import numpy.typing as npt
@@ -123,7 +124,7 @@ class ExactlyEqual:
     """A record with arrays that equals another if all fields do, arrays to the bit."""
 
     def _key(self) -> tuple[object, ...]:
-        values = (getattr(self, name) for name in type(self).__dataclass_fields__)
+        values = (getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
         return tuple(v.tobytes() if isinstance(v, np.ndarray) else v for v in values)
 
     def __eq__(self, other: object) -> bool:

@@ -38,7 +38,6 @@ _REMEDY = "compare with docs/reference/model-file.md, or fit the measurement aga
 _KIND = Kind(FORMAT, VERSION, "an FDVV model", _REMEDY, oldest=1)
 
 _SPREADS = ("travel_spread", "actuation_spread", "reset_spread")
-
 _ACHIEVED = ("achieved_mm_s", "achieved_spread_mm_s")
 
 _LAYOUT = Layout(

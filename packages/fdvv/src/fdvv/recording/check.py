@@ -12,8 +12,7 @@ import numpy as np
 
 from fdvv.errors import InputError
 from fdvv.eventlog import read_records
-from fdvv.recording.file import CUT, KIND, REMEDY, read_file
-from fdvv.recording.records import VERSION
+from fdvv.recording.file import CUT, KIND, LINES, REMEDY, read_file
 from fdvv.recording.types import UNITS, Recording, Stage, Stream, Take
 
 
@@ -143,8 +142,7 @@ def _stream(name: str, found: list[Stream]) -> dict[str, Any]:
 def missing(stream: Stream) -> np.ndarray[Any, np.dtype[np.bool_]]:
     if stream.raw.dtype.kind != "f":
         return np.zeros(stream.t_s.size, dtype=np.bool_)
-    lost: np.ndarray[Any, np.dtype[np.bool_]] = np.isnan(stream.raw).reshape(stream.t_s.size, -1).any(axis=1)
-    return lost
+    return np.asarray(np.isnan(stream.raw).reshape(stream.t_s.size, -1).any(axis=1))
 
 
 A_RECORDING = "a recording"
@@ -162,8 +160,8 @@ def check_recording(path: Path | str) -> FileCheck:
     remedy = f"go on with it, which cuts the rest off; takes kept: {len(recording.takes)}"
     problems = [FileProblem("end of file", CUT, remedy)] if end < size else []
     problems += _problems(recording)
-    corrections = sum("mend" in record for record, _ in read_records(path, KIND))
-    facts = {"version": VERSION, "size_bytes": size, **facts_of(recording), "corrections": corrections}
+    corrections = sum("mend" in record for record, _ in read_records(path, LINES))
+    facts = {"version": KIND.version, "size_bytes": size, **facts_of(recording), "corrections": corrections}
     return FileCheck(path, A_RECORDING, facts, tuple(problems), recording.warnings)
 
 

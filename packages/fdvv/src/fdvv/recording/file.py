@@ -7,13 +7,14 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-import msgspec
+import numpy as np
 
 from fdvv.errors import InputError, ModelError
 from fdvv.eventlog import JournalKind, line_of, read_bodies
+from fdvv.io.columns import pack_column
+from fdvv.io.documents import Head, Kind, Layout, check_head, convert, document, to_plain
 from fdvv.io.files import write_atomic
-from fdvv.recording.records import FORMAT, VERSION, MendRecord, pack_head, pack_take, unpack_head, unpack_take
-from fdvv.recording.types import Bench, Recording, Take
+from fdvv.recording.types import Bench, Recording, Stream, Take
 
 STREAM = ("scale", "zero")
 TAKE = ("stage", "velocity_mm_s", "remark")
@@ -23,7 +24,8 @@ BENCH = tuple(f.name for f in fields(Bench))
 RECORDING_SUFFIX = ".recording.jsonl"
 """How a recording's name ends."""
 REMEDY = "compare with docs/reference/recording-file.md"
-KIND = JournalKind({"head": Any, "take": Any, "mend": Any}, REMEDY)
+KIND = Kind("fdvv-recording", 1, "a recording", REMEDY)
+LINES = JournalKind({"head": Any, "take": Any, "mend": Any}, REMEDY)
 CUT = "the last record is not whole and is left out"
 
 
@@ -38,12 +40,14 @@ class Correction:
     take : number of the take that it is for; None for all that were made before it.
     stream : name of the stream that it is for; None corrects the take, or without a take the recording.
     why : what was found out, for the reader of the file.
+    made : when, as ISO 8601.
     """
 
     values: Mapping[str, Any]
     take: int | None = None
     stream: str | None = None
     why: str = ""
+    made: str = ""
 
     def __post_init__(self) -> None:
         whole = self.take is None and self.stream is None
@@ -54,6 +58,64 @@ class Correction:
         for key, value in self.values.items():
             if not _fits(key, value):
                 raise ModelError(f"a correction cannot set {key} to {value!r:.40}")
+
+
+TAKES = {"takes"}
+"""No field of the head: each is a line."""
+LAYOUT = Layout(
+    last=("sources", "warnings", "marks", "streams", "t_s", "raw"),
+    needed={f.name for kind in (Recording, Bench, Take, Stream, Correction) for f in fields(kind)} - TAKES,
+    head=(),
+)
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of one line, as published in docs/reference/fdvv-recording.schema.json."""
+    from fdvv.io.schema import DIALECT, add_head, components
+
+    refs, parts = components((Recording, Take, Correction), LAYOUT)
+    del parts["Recording"]["properties"]["takes"]
+    add_head(parts["Recording"], KIND)
+    records = [
+        {"type": "object", "properties": {key: ref}, "required": [key], "additionalProperties": False}
+        for key, ref in zip(LINES.types, refs, strict=True)
+    ]
+    checksum = {"type": "integer", "minimum": 0, "maximum": 2**32 - 1}
+    return {
+        "$schema": DIALECT,
+        "title": "A line of a recording",
+        "type": "object",
+        "properties": {"crc32": checksum, "record": {"oneOf": records}},
+        "required": ["crc32", "record"],
+        "additionalProperties": False,
+        "$defs": parts,
+    }
+
+
+def pack_head(recording: Recording) -> dict[str, Any]:
+    return document(recording, KIND, layout=LAYOUT, keep=lambda field, _value: field.name not in TAKES)
+
+
+def pack_take(take: Take) -> dict[str, Any]:
+    """Encode a take. ModelError for a kind of number that no file holds."""
+    try:
+        return dict(to_plain(take, LAYOUT, special=_pack))
+    except ValueError as error:
+        raise ModelError(f"take {take.number}: {error}") from error
+
+
+def _pack(value: Any) -> Any:
+    return pack_column(value) if isinstance(value, np.ndarray) else value
+
+
+def _unpack_head(path: Path, found: Any) -> Recording:
+    """Decode a recording without takes. Raises ValueError, InputError."""
+    facts = dict(found) if isinstance(found, dict) else {}
+    head = Head(facts.pop("format", None), facts.pop("version", None))
+    check_head(head, path, KIND, "line 1, $")
+    if TAKES & facts.keys():
+        raise ValueError("Object contains unknown field `takes`")
+    return convert(facts, Recording, LAYOUT)
 
 
 def _fits(key: str, value: object) -> bool:
@@ -136,20 +198,19 @@ def _read(path: Path) -> tuple[Recording | None, int]:
     recording: Recording | None = None
     takes: list[Take] = []
     end = 0
-    for number, (key, found, after) in enumerate(read_bodies(path, KIND), 1):
+    for number, (key, found, after) in enumerate(read_bodies(path, LINES), 1):
         if (key == "head") != (number == 1):
             reason = "begins with no head" if number == 1 else "holds a second head"
             raise InputError(path, f"line {number}", reason, REMEDY)
         try:
             if key == "head":
-                recording = unpack_head(_known(path, found))
+                recording = _unpack_head(path, found)
             elif key == "take":
-                takes.append(take := unpack_take(found))
+                takes.append(take := convert(found, Take, LAYOUT))
                 if take.number != len(takes):
                     raise ModelError(f"take {len(takes)} bears the number {take.number}")
             elif recording is not None:
-                mend = msgspec.convert(found, MendRecord)
-                correction = Correction(mend.values, mend.take, mend.stream, mend.why)
+                correction = convert(found, Correction, LAYOUT)
                 recording = corrected(replace(recording, takes=tuple(takes)), correction)
                 takes = list(recording.takes)
         except (ModelError, ValueError, TypeError) as error:
@@ -158,14 +219,3 @@ def _read(path: Path) -> tuple[Recording | None, int]:
             raise InputError(path, f"line {number}{inside}", reason, REMEDY) from error
         end = after
     return (replace(recording, takes=tuple(takes)) if recording else None), end
-
-
-def _known(path: Path, found: Any) -> Any:
-    head = found if isinstance(found, dict) else {}
-    if head.get("format") != FORMAT:
-        reason = f'not a recording ("format" must be "{FORMAT}")'
-        raise InputError(path, "line 1, $.format", reason, REMEDY)
-    if head.get("version") != VERSION:
-        reason = f"file version {head.get('version')!r:.40}, this fdvv reads version {VERSION}"
-        raise InputError(path, "line 1, $.version", reason, "install the fdvv that wrote it, or a newer one")
-    return found

@@ -8,8 +8,8 @@ from typing import Self
 
 from fdvv.errors import InputError, ModelError
 from fdvv.eventlog import Journal
-from fdvv.recording.file import CUT, Correction, corrected, read_file
-from fdvv.recording.records import pack_head, pack_take
+from fdvv.io.documents import to_plain
+from fdvv.recording.file import CUT, Correction, corrected, pack_head, pack_take, read_file
 from fdvv.recording.types import Recording, Take
 
 MUST_AGREE = ("name", "bench", "licence", "person", "simulated")
@@ -80,7 +80,7 @@ class RecordingLog:
         made : when, as ISO 8601. Raises ModelError if it names what is not there, OSError.
         """
         found = corrected(self.recording, mend)
-        self._journal.write({"mend": {**vars(mend), "values": dict(mend.values), "made": made}})
+        self._journal.write({"mend": to_plain(replace(mend, made=made or mend.made))})
         self.recording = found
 
     def close(self) -> None:

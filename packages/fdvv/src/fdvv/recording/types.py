@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from fdvv.errors import ModelError
+from fdvv.io.columns import Packed, unpack_fields
 from fdvv.units import FloatArray
 
 
@@ -62,13 +61,16 @@ class Stream:
     name: str
     quantity: Quantity
     clock: str
-    t_s: FloatArray
-    raw: npt.NDArray[Any]
+    t_s: Packed
+    raw: Packed
     scale: float = 1.0
     zero: float = 0.0
 
     def __post_init__(self) -> None:
+        unpack_fields(self, "t_s", "raw")
         object.__setattr__(self, "quantity", Quantity(self.quantity))
+        object.__setattr__(self, "scale", float(self.scale))
+        object.__setattr__(self, "zero", float(self.zero))
         if self.raw.ndim not in (1, 2) or self.raw.shape[0] != self.t_s.size or self.t_s.ndim != 1:
             raise ModelError(
                 f"stream {self.name!r} needs one row for each time, got {self.raw.shape} for {self.t_s.shape}"
@@ -98,7 +100,8 @@ class Mark:
     Attributes
     ----------
     name : what happened.
-    clock, t_s : when, on which clock.
+    clock : of t_s.
+    t_s : when.
     """
 
     name: str
@@ -106,6 +109,7 @@ class Mark:
     t_s: float
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "t_s", float(self.t_s))
         if not np.isfinite(self.t_s):
             raise ModelError(f"mark {self.name!r} needs a finite time, got {self.t_s}")
 
@@ -151,8 +155,10 @@ class Take:
             raise ModelError(f"the streams of a take need different names, got {names}")
         if self.number < 1:
             raise ModelError(f"takes are counted from 1, got {self.number}")
-        if self.velocity_mm_s is not None and not 0 < self.velocity_mm_s < np.inf:
-            raise ModelError(f"velocity_mm_s must be finite and above 0, got {self.velocity_mm_s}")
+        if self.velocity_mm_s is not None:
+            object.__setattr__(self, "velocity_mm_s", float(self.velocity_mm_s))
+            if not 0 < self.velocity_mm_s < np.inf:
+                raise ModelError(f"velocity_mm_s must be finite and above 0, got {self.velocity_mm_s}")
 
     def of(self, quantity: Quantity | str) -> tuple[Stream, ...]:
         """Return the streams of one quantity, in order; empty if there is none."""
@@ -196,7 +202,12 @@ class Bench:
 
 @dataclass(frozen=True)
 class Source:
-    """A file that a recording was read from."""
+    """A file that a recording was read from.
+
+    Attributes
+    ----------
+    name, sha256, format : of the file.
+    """
 
     name: str
     sha256: str
@@ -213,7 +224,8 @@ class Recording:
     takes : in the order they were made, numbered from 1.
     bench : what is known of the instruments.
     sources : files it was read from; empty for one made live.
-    licence, person : of the data; a word for who pressed, never a name.
+    licence : of the data.
+    person : a word for who pressed, never a name.
     simulated : it comes from the twin.
     warnings : what was repaired or is missing, one sentence each.
     """
