@@ -6,7 +6,6 @@ import typing
 from dataclasses import dataclass
 from typing import Any
 
-from fdvv.compensation.identification.rig_file import RigRecord
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.model.jnd_file import JndRecord, MeasuredJnd
 from fdvv.model.model import FDVVModel
@@ -17,7 +16,7 @@ from fdvv.rendering.actuation_file import ActuationRecord
 from fdvv.rendering.run_summary import RunSummary
 from fdvv.rendering.session import Manifest
 from fdvv.rendering.session_log import AnswerRecord, PressEntry, SessionRun
-from fdvv.vibration.exciter import ExciterRecord, KnownExciter
+from fdvv.vibration.exciter import KnownExciter
 from fdvv_campaigns.sweep.plan import SweepPlan
 from fdvv_people.optimize.experiment.setup import ExperimentSetup
 from fdvv_people.optimize.population.plan import PopulationPlan
@@ -96,13 +95,13 @@ FILES = (
         "Known rig",
         "`*.rig.json`",
         "The identified rig ([how](../explanation/identification.md)) and what was learned on it.",
-        {"file": RigRecord},
+        {"file": RigModel},
     ),
     FileKind(
         "Known exciter",
         "`*.exciter.json`",
         "The identified exciter of a rig ([how](../explanation/vibration-rendering.md)).",
-        {"file": ExciterRecord},
+        {"file": KnownExciter},
     ),
     FileKind(
         "JNDs",
@@ -239,8 +238,3 @@ FILES = (
         {"file": SelftestReceipt},
     ),
 )
-IN_MEMORY: dict[type[Any], type[Any]] = {
-    RigRecord: RigModel,
-    ExciterRecord: KnownExciter,
-}
-"""Records of files whose fields are documented at the record in memory."""

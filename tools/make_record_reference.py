@@ -8,7 +8,7 @@ from inspect import isclass
 from typing import Any
 
 from msgspec import NODEFAULT, inspect, to_builtins
-from tools.file_kinds import FILES, IN_MEMORY, FileKind, members
+from tools.file_kinds import FILES, FileKind, members
 from tools.make_studio_types import shown_settings
 from tools.markdown import escaped, slug, table
 from tools.record_docs import FieldDoc, describe
@@ -86,7 +86,7 @@ def messages() -> list[type[Any]]:
 
 
 def _record(record: type[Any]) -> str:
-    doc = describe(record, IN_MEMORY.get(record))
+    doc = describe(record)
     texts = [doc.text.summary, *doc.text.paragraphs] if doc.text else []
     rows = [_row(field, doc.fields[field.name]) for field in fields(record)]
     info = inspect.type_info(record)

@@ -109,11 +109,9 @@ def unit_of(name: str) -> str:
     return next((UNITS[end] for end in ends if end in UNITS), "")
 
 
-def describe(record: type[Any], same: type[Any] | None = None) -> RecordDoc:
-    """Describe a record; the meanings of ``same``, a record in memory with these fields, go first."""
+def describe(record: type[Any]) -> RecordDoc:
+    """Describe a record."""
     text, meanings, doc = _own(record)
-    if same is not None:
-        meanings |= {name: meaning for name, meaning in _own(same)[1].items() if meaning}
     found = {}
     for field in fields(record):
         own_type = _has_own_type(field.type)

@@ -17,7 +17,7 @@ import msgspec
 import pytest
 from tools import make_site
 from tools.docstrings import read
-from tools.file_kinds import FILES, IN_MEMORY
+from tools.file_kinds import FILES
 from tools.make_record_reference import messages
 from tools.record_docs import describe
 from tools.record_types import fields, reached
@@ -87,7 +87,7 @@ def test_fields_of_files_and_messages_are_described() -> None:
     assert (len(records) > 60, len(messages()) > 150) == (True, True)
     silent = []
     for record in [*records, *messages()]:
-        doc = describe(record, IN_MEMORY.get(record))
+        doc = describe(record)
         silent += [f"{record.__name__}.{f.name}" for f in doc.fields.values() if not f.explained]
         silent += [] if doc.text else [record.__name__]
     assert silent == [], "write `name : meaning` into the docstring, or into tools/field_words.toml"

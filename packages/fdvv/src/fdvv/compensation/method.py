@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, fields
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -111,6 +111,12 @@ class Trial:
     vibrating: bool = False
 
 
+if TYPE_CHECKING:
+    Error = float
+else:  # as a file holds it; NaN where it is not known
+    Error = float | None
+
+
 @dataclass(frozen=True)
 class CurveOutcome:
     """Result of one curve, as the rig measured it while it learned (not the force on the finger).
@@ -118,16 +124,22 @@ class CurveOutcome:
     Attributes
     ----------
     error_cN : error_k of every press used, in order.
-    mean_error_cN, max_error_cN : of |target - rendered| over the bins, for the table that is returned.
-    sentence : summary for people.
+    mean_error_cN, max_error_cN : of |target - rendered| over the bins, for the table that is returned; NaN if
+        not known.
+    explanation : for people.
     """
 
     stroke: Stroke
     velocity_mm_s: float
     error_cN: tuple[float, ...]
-    mean_error_cN: float
-    max_error_cN: float
-    sentence: str
+    mean_error_cN: Error
+    max_error_cN: Error
+    explanation: str
+
+    def __post_init__(self) -> None:
+        for name in ("mean_error_cN", "max_error_cN"):
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, float("nan"))
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,7 @@ from msgspec.inspect import (
     FloatType,
     ListType,
     Metadata,
+    StructType,
     Type,
     UnionType,
     VarTupleType,
@@ -104,9 +105,9 @@ def check_head(head: Head, source: object, kind: Kind, at: str = "$") -> None:
 
 
 def read_record(path: Path, kind: Kind, record: type[Read], largest_bytes: int) -> Read:
-    """Read a file of one msgspec struct, which no words restrict. Raises InputError."""
+    """Read a file of one record, which no words restrict. Raises InputError."""
     text = read_limited(path, largest_bytes, kind.remedy)
-    return read_document(text, path, kind, msgspec.json.Decoder(record).decode, lambda _place: None)
+    return read_document(text, path, kind, lambda data: decode(data, record), lambda _place: None)
 
 
 def read_toml(data: bytes | str, source: object, remedy: str) -> dict[str, Any]:
@@ -167,12 +168,12 @@ class Layout:
     ----------
     last : names of fields that follow the others, in this order; long ones are easier to read there.
     needed : names of fields that a file must state, although their record has a default.
-    head : further names that the outermost object may have.
+    beside : places of further fields, which no record holds.
     """
 
     last: tuple[str, ...] = ()
     needed: Collection[str] = ()
-    head: Collection[str] = ("format", "version")
+    beside: Collection[str] = ("$.format", "$.version")
 
     def sort(self, names: Collection[str]) -> list[str]:
         """Return the names of fields as they follow each other in a file."""
@@ -180,11 +181,13 @@ class Layout:
 
 
 PLAIN = Layout()
-"""As the records are declared."""
 
 
 def decode(data: bytes, record: type[Read], layout: Layout = PLAIN) -> Read:
-    """Decode a file of one record. Raises msgspec.ValidationError with the place, also for unknown fields."""
+    """Decode a file of one record. Raises msgspec.ValidationError with the place, also for unknown fields.
+
+    Structs see to their own fields; msgspec lets a dataclass have unknown ones.
+    """
     value = msgspec.json.decode(data, type=record)
     _check_fields(msgspec.json.decode(data), record, layout)
     return value
@@ -207,24 +210,24 @@ _info = cache(type_info)
 
 def _check(plain: Any, kind: Type, layout: Layout, place: str) -> None:
     for part in _alternatives(kind):
-        if isinstance(part, DataclassType) and isinstance(plain, dict):
-            known = {field.name: field.type for field in part.fields}
-            for name in plain:
-                if name not in known and not (place == "$" and name in layout.head):
-                    raise _refusal(f"Object contains unknown field `{name}`", place)
-            for name in known:
-                if name in plain:
-                    _check(plain[name], known[name], layout, f"{place}.{name}")
-                elif name in layout.needed:
-                    raise _refusal(f"Object missing required field `{name}`", place)
+        if isinstance(part, DataclassType | StructType) and isinstance(plain, dict):
+            if isinstance(part, DataclassType):
+                _check_names(plain, [field.name for field in part.fields], layout, place)
+            for field in part.fields:
+                if field.name in plain:
+                    _check(plain[field.name], field.type, layout, f"{place}.{field.name}")
         elif isinstance(part, ListType | VarTupleType) and not isinstance(part.item_type, FloatType):
             for i, item in enumerate(plain or ()):
                 _check(item, part.item_type, layout, f"{place}[{i}]")
 
 
-def _refusal(reason: str, place: str) -> msgspec.ValidationError:
-    """Return an error in msgspec's own words."""
-    return msgspec.ValidationError(reason if place == "$" else f"{reason} - at `{place}`")
+def _check_names(plain: Collection[str], names: Collection[str], layout: Layout, place: str) -> None:
+    unknown = [name for name in plain if name not in names and f"{place}.{name}" not in layout.beside]
+    missing = [name for name in names if name in layout.needed and name not in plain]
+    for what, wrong in (("contains unknown", unknown), ("missing required", missing)):
+        if wrong:
+            at = "" if place == "$" else f" - at `{place}`"  # in msgspec's own words
+            raise msgspec.ValidationError(f"Object {what} field `{wrong[0]}`{at}")
 
 
 def _alternatives(kind: Type) -> Iterator[Type]:

@@ -65,7 +65,7 @@ TAKES = {"takes"}
 LAYOUT = Layout(
     last=("sources", "warnings", "marks", "streams", "t_s", "raw"),
     needed={f.name for kind in (Recording, Bench, Take, Stream, Correction) for f in fields(kind)} - TAKES,
-    head=(),
+    beside=(),
 )
 
 

@@ -11,12 +11,12 @@ import msgspec
 import numpy as np
 
 from fdvv.compensation.force_loop.constants import of_earlier_version
-from fdvv.compensation.identification.rig_file import RigRecord, rig_document, rig_of
+from fdvv.compensation.identification.rig_file import RIG, RIG_FIELDS
+from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.compensation.method import CurveOutcome, Outcome, Tuning
 from fdvv.errors import InputError, ModelError
-from fdvv.io.documents import ACTUATION, own_kind
+from fdvv.io.documents import ACTUATION, Head, Layout, check_head, convert, document, own_kind, to_plain
 from fdvv.io.files import read_limited, write_atomic
-from fdvv.model.curve import Stroke
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.compensate import CompensationResult
 from fdvv.rendering.run_summary import RunSummary, read_run_summary
@@ -29,17 +29,6 @@ READ = (1, 2, 3)
 LARGEST_bytes = 20_000_000
 """Version 1 had no receipt."""
 SUFFIX = ".actuation.json"
-
-
-class CurveRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """How one curve was learned."""
-
-    stroke: Literal["press", "release"]
-    velocity_mm_s: float
-    error_cN: list[float]
-    mean_error_cN: float | None
-    max_error_cN: float | None
-    explanation: str
 
 
 class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
@@ -58,14 +47,17 @@ class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
     velocity_mm_s: list[float]
     press_cN: list[list[float]]
     release_cN: list[list[float]]
-    curves: list[CurveRecord]
+    curves: tuple[CurveOutcome, ...]
     presses: int
     skipped: list[str]
     explanation: str
     simulated: bool
     receipt: RunSummary | None = None
     tuning: dict[str, float | bool | dict[str, Any]] = {}
-    rig: RigRecord | None = None
+    rig: RigModel | None = None
+
+
+LAYOUT = Layout(needed=RIG_FIELDS, beside=("$.rig.format", "$.rig.version"))
 
 
 def save_actuation(result: CompensationResult, path: Path | str) -> None:
@@ -75,12 +67,12 @@ def save_actuation(result: CompensationResult, path: Path | str) -> None:
         "version": LOOP_VERSION if result.outcome.tuning.loop or result.known_rig else VERSION,
         **result.to_dict(),
         "travel_mm": result.travel_mm,
-        **{name: column.tolist() for name, column in vars(result.surface).items()},
+        **to_plain(result.surface),
         "tuning": result.outcome.tuning.to_dict(),
         "receipt": result.receipt.to_dict() if result.receipt else None,
     }
     if result.known_rig:
-        record["rig"] = rig_document(result.known_rig)
+        record["rig"] = document(result.known_rig, RIG)
     write_atomic(Path(path), json.dumps(record, indent=1, allow_nan=False) + "\n")
 
 
@@ -93,7 +85,10 @@ def load_actuation(path: Path | str) -> CompensationResult:
             got = f"{record.get('format')!r} version {record.get('version')!r}"
             reason = f"expected {FORMAT!r} version {' or '.join(map(str, READ))}, got {got}"
             raise InputError(path, "$.format", reason, remedy)
-        return _result(msgspec.convert(record, ActuationRecord))
+        result = _result(convert(record, ActuationRecord, LAYOUT))
+        if rig := record.get("rig"):
+            check_head(Head(rig.get("format"), rig.get("version")), path, RIG, "$.rig")
+        return result
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError, ModelError) as error:
         reason, _, place = str(error).partition(" - at ")
         raise InputError(path, place.strip("`") or "whole file", reason, remedy) from error
@@ -112,18 +107,6 @@ def open_run_summary(path: Path) -> RunSummary | None:
 
 def _result(record: ActuationRecord) -> CompensationResult:
     surface = ForceSurface(**{f.name: np.array(getattr(record, f.name)) for f in fields(ForceSurface)})
-    nan = float("nan")
-    curves = tuple(
-        CurveOutcome(
-            Stroke(c.stroke),
-            c.velocity_mm_s,
-            tuple(c.error_cN),
-            nan if c.mean_error_cN is None else c.mean_error_cN,
-            nan if c.max_error_cN is None else c.max_error_cN,
-            c.explanation,
-        )
-        for c in record.curves
-    )
     learned = record.presses - len(record.skipped)
     unknown = sorted(set(record.tuning) - {f.name for f in fields(Tuning)})
     if unknown:
@@ -132,8 +115,7 @@ def _result(record: ActuationRecord) -> CompensationResult:
     if isinstance(loop := held.get("loop"), dict):
         held = {**held, "loop": of_earlier_version(loop)}
     tuning = msgspec.convert(held, Tuning)
-    outcome = Outcome(surface, curves, learned, True, record.explanation, tuning)
+    outcome = Outcome(surface, record.curves, learned, True, record.explanation, tuning)
     names = record.method, record.model, record.device, record.travel_mm
-    known = rig_of(record.rig) if record.rig else None
     about = tuple(record.skipped), record.simulated, record.receipt
-    return CompensationResult(*names, outcome, *about, known_rig=known)
+    return CompensationResult(*names, outcome, *about, known_rig=record.rig)

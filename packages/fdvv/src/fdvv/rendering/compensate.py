@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -20,6 +19,7 @@ from fdvv.device.contract import Device, ForceLoopDevice
 from fdvv.device.lacking import lacking
 from fdvv.device.remote import Remote
 from fdvv.errors import DeviceError, InputError
+from fdvv.io.documents import finite, to_plain
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import CellSpec, ForceLoopGains
@@ -84,23 +84,9 @@ class CompensationResult:
             "presses": self.presses,
             "skipped": list(self.skipped),
             "explanation": self.outcome.sentence,
-            "curves": [
-                {
-                    "stroke": str(curve.stroke),
-                    "velocity_mm_s": curve.velocity_mm_s,
-                    "error_cN": list(curve.error_cN),
-                    "mean_error_cN": _known(curve.mean_error_cN),
-                    "max_error_cN": _known(curve.max_error_cN),
-                    "explanation": curve.sentence,
-                }
-                for curve in self.outcome.curves
-            ],
+            "curves": finite(to_plain(self.outcome.curves)),
             "simulated": self.simulated,
         }
-
-
-def _known(error_cN: float) -> float | None:
-    return error_cN if math.isfinite(error_cN) else None
 
 
 def compensate(

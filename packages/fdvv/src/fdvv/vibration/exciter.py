@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
 
-import msgspec
 import numpy as np
 import numpy.typing as npt
-from msgspec.json import Decoder
 
-from fdvv.errors import FitError, InputError, ModelError
-from fdvv.io.documents import Kind, pretty, read_document
-from fdvv.io.files import read_limited, write_atomic
+from fdvv.errors import FitError, ModelError
+from fdvv.io.documents import Kind, document, pretty, read_record
+from fdvv.io.files import write_atomic
 from fdvv.units import FloatArray
 
 DRIFT = 3
@@ -226,33 +223,11 @@ def _moved_m(numbers: FloatArray, frequency_Hz: FloatArray, bench: ToneBench) ->
     return np.asarray(bench.drive_V * gripped / turn**2 * seen)
 
 
-class ExciterRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """A known exciter in its file; the names are those of KnownExciter."""
-
-    format: Literal["fdvv-exciter"]
-    version: Literal[1]
-    gain_m_s2_V: float
-    resonance_Hz: float
-    quality: float
-    latency_s: float | None = None
-    error: dict[str, float] = {}
-    residual_ratio: float = 0.0
-    tones: int = 0
-    simulated: bool = False
-
-
 def save_exciter(exciter: KnownExciter, path: Path | str) -> None:
     """Write a known exciter to an ``*.exciter.json`` file, whole or not at all. Raises OSError."""
-    head = {"format": _KIND.format, "version": _KIND.version}
-    write_atomic(Path(path), pretty({**head, **asdict(exciter)}) + "\n")
+    write_atomic(Path(path), pretty(document(exciter, _KIND)) + "\n")
 
 
 def load_exciter(path: Path | str) -> KnownExciter:
     """Read an ``*.exciter.json`` file. InputError names the place in it and the remedy."""
-    text = read_limited(path, LIMIT_bytes, _REMEDY)
-    found = read_document(text, path, _KIND, Decoder(ExciterRecord).decode, lambda _: None)
-    numbers = {f.name: getattr(found, f.name) for f in fields(KnownExciter)}
-    try:
-        return KnownExciter(**numbers)
-    except ModelError as error:
-        raise InputError(path, "numbers", str(error), _REMEDY) from error
+    return read_record(Path(path), _KIND, KnownExciter, LIMIT_bytes)

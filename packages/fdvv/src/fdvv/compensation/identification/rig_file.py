@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, Literal
 
 import msgspec
 import numpy as np
-from msgspec.json import Decoder
 
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import InputError, ModelError
-from fdvv.io.documents import Kind, pretty, read_document
+from fdvv.io.documents import Kind, Layout, decode, document, pretty, read_document, to_plain
 from fdvv.io.files import read_limited, write_atomic
 from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray
@@ -75,7 +73,7 @@ class LearnedRig:
 
 LIMIT_bytes = 4_000_000
 _REMEDY = "identify the rig again"
-_KIND = Kind("fdvv-rig", 1, "an identified rig", _REMEDY)
+RIG = Kind("fdvv-rig", 1, "an identified rig", _REMEDY)
 
 
 class LearnedRecord(msgspec.Struct, forbid_unknown_fields=True):
@@ -89,55 +87,26 @@ class LearnedRecord(msgspec.Struct, forbid_unknown_fields=True):
     error_cN: tuple[list[float], list[float]]
 
 
-class RigRecord(msgspec.Struct, forbid_unknown_fields=True):
-    """A rig in its file; names as in RigModel."""
+class _Learned(msgspec.Struct):
+    """The part of a rig's file that is beside its model."""
 
-    format: Literal["fdvv-rig"]
-    version: Literal[1]
-    gain: tuple[float, float, float]
-    delay_s: float
-    electric_lag_s: float
-    position_lag_s: float
-    drag_N_s_m: float
-    back_emf_N_s_m: float
-    friction_cN: float
-    weight_cN: float
-    mass_g: float
-    play_cN: float
-    position_noise_mm: float
-    force_noise_cN: float
-    residual_cN: float
-    presses: int
-    error: dict[str, float]
-    stick_cN: float = 0.0
-    side_ratio: float = 0.0
-    own_cN: tuple[float, ...] = ()
-    own_step_mm: float = 0.25
-    at_bound: tuple[str, ...] = ()
-    misfit: str = ""
     learned: LearnedRecord | None = None
+
+
+LATER = ("stick_cN", "side_ratio", "own_cN", "own_step_mm", "at_bound", "misfit")
+"""Fields that the first files lack."""
+RIG_FIELDS = frozenset(f.name for f in fields(RigModel) if f.name not in LATER)
+"""Fields that every file states."""
+_LAYOUT = Layout(needed=RIG_FIELDS, beside=("$.format", "$.version", "$.learned"))
 
 
 def save_rig(rig: RigModel | LearnedRig, path: Path | str) -> None:
     """Write a rig, or a learned rig, to a ``*.rig.json`` file, atomically. Raises OSError."""
-    numbers = rig_document(rig.rig if isinstance(rig, LearnedRig) else rig)
+    numbers = document(rig.rig if isinstance(rig, LearnedRig) else rig, RIG)
     if isinstance(rig, LearnedRig):
-        tables = {name: column.tolist() for name, column in vars(rig.residual).items()}
+        tables = to_plain(rig.residual)
         numbers["learned"] = {"travel_mm": rig.travel_mm, **tables, "error_cN": rig.error_cN.tolist()}
     write_atomic(Path(path), pretty(numbers) + "\n")
-
-
-def rig_document(model: RigModel) -> dict[str, Any]:
-    """Return the document of a rig alone, as JSON holds it."""
-    numbers = {f.name: getattr(model, f.name) for f in fields(model)}
-    numbers |= {"gain": list(model.gain), "error": dict(model.error)}
-    numbers |= {"own_cN": list(model.own_cN), "at_bound": list(model.at_bound)}
-    return {"format": _KIND.format, "version": _KIND.version, **numbers}
-
-
-def rig_of(record: RigRecord) -> RigModel:
-    """Return the rig of a record. Raises ModelError on values that no rig has."""
-    return RigModel(**{f.name: getattr(record, f.name) for f in fields(RigModel)})
 
 
 def load_rig(path: Path | str) -> RigModel:
@@ -156,14 +125,15 @@ def load_learned_rig(path: Path | str) -> LearnedRig:
 
 def _read(path: Path | str) -> tuple[RigModel, LearnedRig | None]:
     text = read_limited(path, LIMIT_bytes, "pass a *.rig.json file")
-    record = read_document(text, path, _KIND, Decoder(RigRecord).decode, lambda _place: None)
-    place = "$"
+    rig, learned = read_document(text, path, RIG, _decode, lambda _place: None)
     try:
-        rig = rig_of(record)
-        place = "$.learned"
-        return rig, _learned_rig(rig, record.learned) if record.learned else None
-    except ValueError as error:  # rows of different lengths, or values the records reject
-        raise InputError(path, place, str(error), _REMEDY) from error
+        return rig, _learned_rig(rig, learned) if learned else None
+    except ValueError as error:  # rows of different lengths, or values that no surface has
+        raise InputError(path, "$.learned", str(error), _REMEDY) from error
+
+
+def _decode(data: bytes) -> tuple[RigModel, LearnedRecord | None]:
+    return decode(data, RigModel, _LAYOUT), msgspec.json.decode(data, type=_Learned).learned
 
 
 def _learned_rig(rig: RigModel, learned: LearnedRecord) -> LearnedRig:
