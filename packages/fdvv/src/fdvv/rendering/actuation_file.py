@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
-import numpy as np
 
 from fdvv.compensation.force_loop.constants import of_earlier_version
 from fdvv.compensation.identification.rig_file import RIG, RIG_FIELDS
@@ -20,6 +19,7 @@ from fdvv.io.files import read_limited, write_atomic
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.compensate import CompensationResult
 from fdvv.rendering.run_summary import RunSummary, read_run_summary
+from fdvv.units import Column, Table
 
 FORMAT = "fdvv-actuation"
 VERSION, LOOP_VERSION = 2, 3
@@ -43,10 +43,10 @@ class ActuationRecord(msgspec.Struct, forbid_unknown_fields=True):
     model: str
     device: str
     travel_mm: float
-    displacement_mm: list[float]
-    velocity_mm_s: list[float]
-    press_cN: list[list[float]]
-    release_cN: list[list[float]]
+    displacement_mm: Column
+    velocity_mm_s: Column
+    press_cN: Table
+    release_cN: Table
     curves: tuple[CurveOutcome, ...]
     presses: int
     skipped: list[str]
@@ -89,7 +89,7 @@ def load_actuation(path: Path | str) -> CompensationResult:
         if rig := record.get("rig"):
             check_head(Head(rig.get("format"), rig.get("version")), path, RIG, "$.rig")
         return result
-    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError, ModelError) as error:
+    except (msgspec.MsgspecError, ValueError, RecursionError) as error:
         reason, _, place = str(error).partition(" - at ")
         raise InputError(path, place.strip("`") or "whole file", reason, remedy) from error
 
@@ -106,7 +106,8 @@ def open_run_summary(path: Path) -> RunSummary | None:
 
 
 def _result(record: ActuationRecord) -> CompensationResult:
-    surface = ForceSurface(**{f.name: np.array(getattr(record, f.name)) for f in fields(ForceSurface)})
+    grid = record.displacement_mm, record.velocity_mm_s
+    surface = ForceSurface(*grid, record.press_cN, record.release_cN)
     learned = record.presses - len(record.skipped)
     unknown = sorted(set(record.tuning) - {f.name for f in fields(Tuning)})
     if unknown:

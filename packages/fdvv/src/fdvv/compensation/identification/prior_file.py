@@ -7,9 +7,11 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from msgspec import Meta
+from msgspec.inspect import type_info
 
 from fdvv.compensation.identification.balance import Sensor
 from fdvv.compensation.identification.rig_model import Plausible, Prior
@@ -72,13 +74,13 @@ class SensorSheet:
         0 g and 0 N/mm: it is no load cell in the cap, and the force loop stays open.
     """
 
-    range_N: float
-    noise_cN: float
-    delay_ms: float
-    moving_g: float = 0.0
-    plate_g: float = 0.0
-    stiffness_N_mm: float = 0.0
-    damping_ratio: float = 0.05
+    range_N: Annotated[float, Meta(ge=0.05, le=1000.0)]
+    noise_cN: Annotated[float, Meta(ge=0.0, le=100.0)]
+    delay_ms: Annotated[float, Meta(ge=0.0, le=20.0)]
+    moving_g: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
+    plate_g: Annotated[float, Meta(ge=0.0, le=100.0)] = 0.0
+    stiffness_N_mm: Annotated[float, Meta(ge=0.0, le=1e5)] = 0.0
+    damping_ratio: Annotated[float, Meta(ge=0.0, le=2.0)] = 0.05
 
     @property
     def sensor(self) -> Sensor:
@@ -98,19 +100,6 @@ class SensorSheet:
             damping_N_s_m=damping,
             filter_s=1e-3 * self.delay_ms,
         )
-
-
-SHEET: Mapping[str, tuple[float, float]] = {
-    "range_N": (0.05, 1000.0),
-    "noise_cN": (0.0, 100.0),
-    "delay_ms": (0.0, 20.0),
-    "moving_g": (0.0, 100.0),
-    "plate_g": (0.0, 100.0),
-    "stiffness_N_mm": (0.0, 1e5),
-    "damping_ratio": (0.0, 2.0),
-}
-"""Keys of a sensor's file and their ranges; the first three must be there."""
-NEEDED = ("range_N", "noise_cN", "delay_ms")
 
 
 def load_prior(path: Path | str) -> Prior:
@@ -154,14 +143,16 @@ def load_sensor(path: Path | str) -> SensorSheet:
     """Read the data sheet of a force sensor. Raises InputError as load_prior does."""
     path = Path(path)
     data = _read(path)
+    sheet_type: Any = type_info(SensorSheet)
+    known = {field.name: field for field in sheet_type.fields}
     for key, value in data.items():
-        if key not in SHEET:
-            raise _unknown(path, key, SHEET)
-        number, (low, high) = _number(path, key, value), SHEET[key]
+        if key not in known:
+            raise _unknown(path, key, known)
+        number, (low, high) = _number(path, key, value), (known[key].type.ge, known[key].type.le)
         if not low <= number <= high:
             raise InputError(path, key, f"is {number:g}, not {low:g} to {high:g}", "check its unit")
-    for key in NEEDED:
-        if key not in data:
+    for key, field in known.items():
+        if field.required and key not in data:
             raise InputError(path, key, "is missing", "take it from the sensor's data sheet")
     sheet = SensorSheet(**{key: float(value) for key, value in data.items()})
     if bool(sheet.plate_g) != bool(sheet.stiffness_N_mm):

@@ -13,7 +13,7 @@ from fdvv.errors import InputError, ModelError
 from fdvv.io.documents import Kind, Layout, decode, document, pretty, read_document, to_plain
 from fdvv.io.files import read_limited, write_atomic
 from fdvv.model.surface import ForceSurface
-from fdvv.units import FloatArray
+from fdvv.units import Column, FloatArray, Table
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,10 +80,10 @@ class LearnedRecord(msgspec.Struct, forbid_unknown_fields=True):
     """The residual learned on a rig; names as in LearnedRig and its residual."""
 
     travel_mm: float
-    displacement_mm: list[float]
-    velocity_mm_s: list[float]
-    press_cN: list[list[float]]
-    release_cN: list[list[float]]
+    displacement_mm: Column
+    velocity_mm_s: Column
+    press_cN: Table
+    release_cN: Table
     error_cN: tuple[list[float], list[float]]
 
 
@@ -137,5 +137,6 @@ def _decode(data: bytes) -> tuple[RigModel, LearnedRecord | None]:
 
 
 def _learned_rig(rig: RigModel, learned: LearnedRecord) -> LearnedRig:
-    columns = {f.name: np.array(getattr(learned, f.name)) for f in fields(ForceSurface)}
-    return LearnedRig(rig, ForceSurface(**columns), learned.travel_mm, np.array(learned.error_cN))
+    grid = learned.displacement_mm, learned.velocity_mm_s
+    surface = ForceSurface(*grid, learned.press_cN, learned.release_cN)
+    return LearnedRig(rig, surface, learned.travel_mm, np.array(learned.error_cN))
