@@ -1,5 +1,4 @@
 import contextlib
-import importlib.util
 import json
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tools import make_schema
 
 from fdvv.errors import InputError
 from fdvv.model.curve import ForceCurve, Stroke
@@ -133,6 +133,7 @@ def drop(*path: str | int) -> Callable[[dict[str, Any]], object]:
         (drop("version"), "$.version", "file version None"),
         (put("format", value="other"), "$.format", "not an FDVV model"),
         (drop("travel_mm"), "$", "missing required field `travel_mm`"),
+        (drop("reset_mm"), "$", "missing required field `reset_mm`"),
         (put("colour", value="red"), "$", "unknown field `colour`"),
         (put("curves", 3, "colour", value="red"), "$.curves[3]", "unknown field `colour`"),
         (put("travel_mm", value="4"), "$.travel_mm", "Expected `float`, got `str`"),
@@ -278,6 +279,11 @@ def test_what_differs_in_nothing_but_a_spread_is_another_model() -> None:
     assert replace(model, curves=(replace(model.curves[0], spread=other), *model.curves[1:])) != model
 
 
+def test_the_order_of_keys_makes_no_difference() -> None:
+    turned = json.loads(SPREAD, object_pairs_hook=lambda pairs: dict(reversed(pairs)))
+    assert model_from_json(json.dumps(turned)) == spread_model()
+
+
 def test_spreads_come_back_as_they_were() -> None:
     model = model_from_json(SPREAD)
     spread = model.curves[0].spread
@@ -317,18 +323,8 @@ def test_a_file_that_is_too_large_is_refused_before_it_fills_the_memory(tmp_path
         load_model(tmp_path / "large.fdvv.json")
 
 
-def make_schema() -> Any:
-    spec = importlib.util.spec_from_file_location("make_schema", ROOT / "tools" / "make_schema.py")
-    assert spec is not None
-    assert spec.loader is not None
-    tool = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(tool)
-    return tool
-
-
 def test_the_published_schema_is_up_to_date() -> None:
-    tool = make_schema()
-    assert tool.OUTPUT.read_text() == tool.text(), "run python tools/make_schema.py"
+    assert make_schema.OUTPUT.read_text() == make_schema.text(), "run python tools/make_schema.py"
 
 
 @pytest.mark.parametrize("name", builtin_names())

@@ -90,6 +90,7 @@ def edited(change: Callable[[dict[str, Any]], object]) -> str:
             "deeper_than_mm",
         ),
         (lambda p: p["surfaces"][0]["displacement_mm"].reverse(), "$.surfaces[0]", "rising"),
+        (lambda p: p["surfaces"][0].pop("velocity_mm_s"), "$.surfaces[0]", "missing required field"),
         (lambda p: p["surfaces"][1]["force_cN"][0].pop(), "$.surfaces[1]", "one force per displacement"),
     ],
 )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import re
 from contextlib import chdir, redirect_stdout
@@ -12,6 +11,7 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
+from tools import make_schema
 
 from fdvv.recording.file import load_recording, schema
 from fdvv.recording.read import read_log
@@ -40,14 +40,8 @@ def test_the_example_of_the_recording_file_is_one(example: Path) -> None:
 
 
 def test_the_published_schema_is_up_to_date_and_knows_every_line_of_the_example(example: Path) -> None:
-    path = REFERENCE.parents[1] / "tools" / "make_schema.py"
-    spec = importlib.util.spec_from_file_location("make_schema", path)
-    assert spec is not None
-    assert spec.loader is not None
-    tool = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(tool)
-    published = tool.RECORDING_OUTPUT.read_text()
-    assert published == tool.text(schema()), "run python tools/make_schema.py"
+    published = make_schema.RECORDING_OUTPUT.read_text()
+    assert published == make_schema.text(schema()), "run python tools/make_schema.py"
     validator = jsonschema.Draft202012Validator(json.loads(published))
     for line in example.read_text().splitlines():
         found = json.loads(line)
