@@ -70,7 +70,7 @@ def read_document(
     source: object,
     kind: Kind,
     read: Callable[[bytes], Read],
-    choices: Callable[[str], Iterable[str] | None],
+    choices: Callable[[str], Iterable[str] | None] = lambda _place: None,
 ) -> Read:
     """Read a document whose head says that it is one of that kind.
 
@@ -107,7 +107,7 @@ def check_head(head: Head, source: object, kind: Kind, at: str = "$") -> None:
 def read_record(path: Path, kind: Kind, record: type[Read], largest_bytes: int) -> Read:
     """Read a file of one record, which no words restrict. Raises InputError."""
     text = read_limited(path, largest_bytes, kind.remedy)
-    return read_document(text, path, kind, lambda data: decode(data, record), lambda _place: None)
+    return read_document(text, path, kind, lambda data: decode(data, record))
 
 
 def read_toml(data: bytes | str, source: object, remedy: str) -> dict[str, Any]:

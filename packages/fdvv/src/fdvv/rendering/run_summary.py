@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
-from msgspec.json import Decoder
 
 from fdvv.compensation.method import CurveOutcome
-from fdvv.io.documents import Kind, pretty, read_document
-from fdvv.io.files import read_limited, write_atomic
+from fdvv.io.documents import Kind, pretty, read_record
+from fdvv.io.files import write_atomic
 from fdvv.model.curve import Stroke
 from fdvv.rendering.session import (
     MANIFEST,
@@ -138,8 +137,7 @@ def read_run_summary(path: Path) -> RunSummary | None:
         return None
     manifest = read_manifest(path / MANIFEST)
     if (path / RECEIPT).is_file():
-        text = read_limited(path / RECEIPT, LARGEST_bytes, KIND.remedy)
-        return read_document(text, path / RECEIPT, KIND, Decoder(RunSummary).decode, lambda _: None)
+        return read_record(path / RECEIPT, KIND, RunSummary, LARGEST_bytes)
     if manifest.task == "tune":
         runs, answers, _ = AnswerLog.read(path / ANSWERS)
         return make_run_summary(manifest, runs, [answer.entry for answer in answers])

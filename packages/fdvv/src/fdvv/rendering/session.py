@@ -15,15 +15,14 @@ from typing import Any, Literal, TypeVar
 
 import msgspec
 import numpy as np
-from msgspec.json import Decoder
 
 from fdvv._version import __version__
 from fdvv.compensation.presses import AcceptanceLimits
 from fdvv.device.contract import Device
 from fdvv.device.remote import Remote
 from fdvv.errors import InputError
-from fdvv.io.documents import Kind, pretty, read_document
-from fdvv.io.files import read_limited, write_atomic
+from fdvv.io.documents import Kind, pretty, read_record
+from fdvv.io.files import write_atomic
 from fdvv.model.file import model_to_json
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
@@ -117,8 +116,7 @@ def now() -> str:
 
 
 def read_manifest(path: Path) -> Manifest:
-    text = read_limited(path, LARGEST_bytes, KIND.remedy)
-    return read_document(text, path, KIND, Decoder(Manifest).decode, lambda _: None)
+    return read_record(path, KIND, Manifest, LARGEST_bytes)
 
 
 def differences(there: Manifest, now: Manifest) -> list[str]:

@@ -125,7 +125,7 @@ def load_learned_rig(path: Path | str) -> LearnedRig:
 
 def _read(path: Path | str) -> tuple[RigModel, LearnedRig | None]:
     text = read_limited(path, LIMIT_bytes, "pass a *.rig.json file")
-    rig, learned = read_document(text, path, RIG, _decode, lambda _place: None)
+    rig, learned = read_document(text, path, RIG, _decode)
     try:
         return rig, _learned_rig(rig, learned) if learned else None
     except ValueError as error:  # rows of different lengths, or values that no surface has
