@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import remote
-from fdvv.rendering.tuning import program_image
-from fdvv_people.task.task import TaskPress
-from fdvv_strip.check import StripCheck, check_strip
-from fdvv_strip.run import rendering
+
+if TYPE_CHECKING:
+    from fdvv_people.task.task import TaskPress
+    from fdvv_strip.check import StripCheck
 
 
 @click.command()
@@ -36,6 +36,7 @@ def strip(spec: str, device: str | None, button: str, as_json: bool, **asked: An
     Press the key of the rig when the white pixel reaches the middle of the green zone; each press is shown
     in ms after that, early ones with a minus. Exit status 1 if the key line never rose.
     """
+    from fdvv_strip.check import check_strip
 
     def heard(index: int, press: TaskPress) -> None:
         if not as_json:
@@ -54,6 +55,9 @@ def strip(spec: str, device: str | None, button: str, as_json: bool, **asked: An
 @contextmanager
 def _rendered(device: str | None, button: str) -> Iterator[Callable[[], None] | None]:
     """Render a button on a device, if there is one; give what keeps it at that."""
+    from fdvv.rendering.tuning import program_image
+    from fdvv_strip.run import rendering
+
     if device is None:
         yield None
         return

@@ -5,6 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from fdvv.model.file import load_model
+from fdvv_people.cli.optimize.group import group
+from fdvv_people.cli.optimize.optimize import run
+from fdvv_people.optimize.group.playoff import BLOCKS
+from fdvv_people.optimize.people.groups import GROUPS
+from fdvv_people.optimize.run.setup import WISHES
 from tests.cli.test_optimize import run_optimize
 from tests.support.command_line import Run
 
@@ -33,3 +38,10 @@ def test_wrong_runs_are_refused_in_one_line_and_nothing_is_written(fdvv: Run, tm
     assert ran.status != 0
     assert "comes twice" in ran.err
     assert not (tmp_path / "all").exists()
+
+
+def test_words_and_numbers_of_options_are_those_of_what_they_set() -> None:
+    options = {option.name: option for option in (*run.params, *group.params)}
+    assert tuple(options["also"].type.choices) == WISHES
+    assert set(options["group"].type.choices) == set(GROUPS)
+    assert options["blocks"].default == BLOCKS

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from fdvv.cli.main import cli
-from fdvv_people.cli.study.kinds import KINDS
+from fdvv_people.cli.study.declare import KINDS
 from fdvv_people.study.plan.plan_file import template_names
 from fdvv_people.timing.plan.plan_file import TEMPLATE_NAMES
 

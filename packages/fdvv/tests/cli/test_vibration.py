@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fdvv.cli.vibration import vibration
 from fdvv.model.file import load_builtin
 from fdvv.vibration.exciter import KnownExciter, load_exciter, save_exciter
+from fdvv.vibration.sound import LEAST_CARRIED
 from fdvv.vibration.wave import read_wav, to_wav
 from tests.support.command_line import Run
 
@@ -116,3 +118,7 @@ def test_a_device_that_plays_in_presses_only_is_refused(fdvv: Run) -> None:
     ran = fdvv("device", "exciter", "--device", "twin")
     assert (ran.status, ran.err.count("\n")) == (2, 1)
     assert "use host or serial:PORT" in ran.err
+
+
+def test_a_sound_is_refused_below_the_part_that_an_import_refuses() -> None:
+    assert {option.name: option.default for option in vibration.params}["least_carried"] == LEAST_CARRIED

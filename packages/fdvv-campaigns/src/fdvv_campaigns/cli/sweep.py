@@ -11,8 +11,6 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.options import Workers, executor_options
 from fdvv.force_text import ForceTitle, force_name
-from fdvv_campaigns.sweep.plan import read_sweep_plan
-from fdvv_campaigns.sweep.sweep import preview_sweep, run_sweep, sweep_summary
 
 
 @click.command()
@@ -30,6 +28,8 @@ def sweep(plan: Path, output: Path | None, preview: bool, where: Workers, as_jso
     Parquet file with a column for each factor and figure; one that fails is a row with its reason. Whatever
     ended a sweep, the same command goes on. The result is the same however many processes work on it.
     """
+    from fdvv_campaigns.sweep.plan import read_sweep_plan
+
     sweep_plan = read_sweep_plan(plan)
     if preview:
         _preview(sweep_plan, plan, output, where.processes or where.workers, as_json)
@@ -41,6 +41,8 @@ def sweep(plan: Path, output: Path | None, preview: bool, where: Workers, as_jso
 
 
 def _run(sweep_plan: Any, plan: Path, output: Path, where: Workers, as_json: bool) -> None:
+    from fdvv_campaigns.sweep.sweep import run_sweep, sweep_summary
+
     with where.at_work(output, "cells", sweep_plan.count) as (executor, tell):
         result = run_sweep(sweep_plan, output, executor, tell, plan.parent)
     document = {**result.to_dict(), "summary": sweep_summary(result)}
@@ -67,6 +69,8 @@ def _run(sweep_plan: Any, plan: Path, output: Path, where: Workers, as_json: boo
 
 
 def _preview(sweep_plan: Any, plan: Path, output: Path | None, processes: int | None, as_json: bool) -> None:
+    from fdvv_campaigns.sweep.sweep import preview_sweep
+
     found = preview_sweep(sweep_plan, output, plan.parent)
     count = processes or len(os.sched_getaffinity(0))
     ui.print_warnings([f"a cell that was tried failed: {reason}" for reason in found.failed])

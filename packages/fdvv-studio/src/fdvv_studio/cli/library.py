@@ -10,11 +10,6 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.options import Workers, executor_options, jnds_option, opened_jnds
 from fdvv.force_text import force_name
-from fdvv.model.file import builtin_names, load_builtin
-from fdvv.model.landmarks import landmarks
-from fdvv_studio.library.build import build_library
-from fdvv_studio.library.library import By as LikeBy
-from fdvv_studio.library.library import Library, library_query, write_hits
 
 COUNT = ui.option("-n", "--count", type=click.IntRange(1), default=10, help="Show so many.")
 CSV = ui.option("-o", "--output", type=ui.PATH, help="Write every hit into this .csv too.")
@@ -39,6 +34,9 @@ def library(ctx: click.Context, as_json: bool) -> None:
 @ui.json_option
 def list_(as_json: bool) -> None:
     """List the built-in buttons."""
+    from fdvv.model.file import builtin_names, load_builtin
+    from fdvv.model.landmarks import landmarks
+
     models = [load_builtin(name) for name in builtin_names()]
     marks = [landmarks(model).to_dict() for model in models]
     if as_json:
@@ -70,6 +68,8 @@ def build(folders: tuple[Path, ...], output: Path, where: Workers, as_json: bool
     Parquet file (docs/reference/library-files.md); a file that cannot be used is kept with its reason.
     Whatever ended a build, the same command goes on; files that did not change are not read again.
     """
+    from fdvv_studio.library.build import build_library
+
     ui.check_folder(output)
     with where.at_work(output, "files", 1) as (executor, tell):
         found = build_library(folders, output, executor, tell)
@@ -98,6 +98,8 @@ def search(
     WORDS must all match name, folder or what the maker states; a condition is a column with a bound, quoted
     for the shell: 'peak_cN>=50' 'travel_mm=3..3.5' kind=tactile,dome. Without words all are found.
     """
+    from fdvv_studio.library.library import Library, library_query
+
     ui.check_output(output, ".csv")
     query = library_query(" ".join(words), **order)
     opened = Library(folder)
@@ -123,6 +125,9 @@ def like(
     BUTTON is a built-in, a *.fdvv.json file, a measured file, or the id of one of the library. Distances are
     in just noticeable differences (docs/explanation/library.md); they are an estimate, not tried on people.
     """
+    from fdvv_studio.library.library import By as LikeBy
+    from fdvv_studio.library.library import Library
+
     ui.check_output(output, ".csv")
     assert by in get_args(LikeBy)
     opened, jnds = Library(folder), opened_jnds(jnds_from)
@@ -138,6 +143,8 @@ def like(
 @ui.json_option
 def refused(folder: Path, as_json: bool) -> None:
     """List the files of a library's folders that could not be used, and why."""
+    from fdvv_studio.library.library import Library
+
     found = list(Library(folder).refused())
     if as_json:
         ui.print_json({"refused": [{"place": place, "reason": reason} for place, reason in found]})
@@ -149,6 +156,8 @@ def refused(folder: Path, as_json: bool) -> None:
 def _print_hits(
     hits: list[Any], count: int, output: Path | None, as_json: bool, document: dict[str, Any]
 ) -> None:
+    from fdvv_studio.library.library import write_hits
+
     if output:
         write_hits(output, hits)
     if as_json:

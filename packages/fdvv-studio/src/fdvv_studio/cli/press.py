@@ -9,7 +9,6 @@ import click
 
 from fdvv.cli import ui
 from fdvv.force_text import ForceTitle, force_text
-from fdvv_studio.live.simulated_press import press_button
 
 FIGURES = {
     "asked_mm_s": "asked mm/s",
@@ -38,6 +37,8 @@ def press(output: Path | None, as_json: bool, **options: Any) -> None:
     are those on the cap, before the stop and over the whole press; the circuit's closing counts from the
     cap's first 0.05 mm.
     """
+    from fdvv_studio.live.simulated_press import press_button
+
     ui.check_output(output, ".csv")
     found = press_button(**options)
     if output:

@@ -13,7 +13,6 @@ import click
 from fdvv.cli import ui
 from fdvv.errors import InputError
 from fdvv.force_text import shown_in
-from fdvv_studio.library.library import Library
 from fdvv_studio.studio.auth import opening_file
 from fdvv_studio.studio.server import serve
 from fdvv_studio.studio.studio import Studio
@@ -54,6 +53,8 @@ def studio(
     The address holds a token, a new one at each start: whoever has it can use the studio. Ctrl-C ends it;
     everything is kept.
     """
+    from fdvv_studio.library.library import Library
+
     _check_host(host, share)
     # refuse at once what the background could not read
     for library in libraries:

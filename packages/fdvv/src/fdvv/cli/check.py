@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.check_file import check_file
 from fdvv.errors import InputError
-from fdvv.recording.check import FileCheck, unusable
+
+if TYPE_CHECKING:
+    from fdvv.recording.check import FileCheck
 
 EMPTY: tuple[Any, ...] = (None, "", [], {})
 """Facts that tell nothing; 0 and no do."""
@@ -30,6 +31,9 @@ def check(files: tuple[str, ...], rate_Hz: float | None, as_json: bool) -> None:
     force curves that fdvv reads are checked as well. Exit status: 0 all are whole; 1 all can be read, but
     there are problems; 2 one cannot be used.
     """
+    from fdvv.cli.check_file import check_file
+    from fdvv.recording.check import unusable
+
     found = []
     for file in files:
         try:

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from fdvv.cli import ui
-from fdvv.cli.demo_report import demo_report
-from fdvv.cli.demo_run import DemoResult
-from fdvv.cli.demo_run import demo as run
 from fdvv.force_text import ForceTitle, force_number, force_unit
 from fdvv.io.files import write_atomic
-from fdvv.model.file import MODEL_SUFFIX, save_model
-from fdvv.rendering.tuning import open_device
+
+if TYPE_CHECKING:
+    from fdvv.cli.demo_run import DemoResult
 
 
 @click.command()
@@ -35,6 +34,11 @@ def demo(
     Fits a real switch, learns to render the published button at four velocities, judges the rendering on
     fresh presses, prints the table and writes OUTPUT/report.html. Rendering figures are simulated.
     """
+    from fdvv.cli.demo_report import demo_report
+    from fdvv.cli.demo_run import demo as run
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+    from fdvv.rendering.tuning import open_device
+
     ui.check_folder(output)
     with ui.stages() as stage:
         result = run(lambda chosen: open_device("twin", rig, finger, chosen), switch, seed, stage)

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from fdvv import extras
-from fdvv.button.export_file import export_button, export_format, export_formats, is_recording
-from fdvv.button.fit import FitSettings
-from fdvv.button.import_file import ImportSettings, import_file
-from fdvv.button.plausible import OPTION
 from fdvv.cli import ui
 from fdvv.force_text import ForceTitle, force_name, force_number
-from fdvv.formats.exchange.exchange_format import ExportSettings
-from fdvv.formats.exchange.exported import Exported
-from fdvv.model.curve import Stroke
-from fdvv.model.file import MODEL_SUFFIX, save_model
+
+if TYPE_CHECKING:
+    from fdvv.formats.exchange.exported import Exported
 
 
 def _list(ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
+    from fdvv.button.export_file import export_formats
+
     if not wanted or ctx.resilient_parsing:
         return
     ui.print_table(
@@ -60,6 +57,10 @@ def export(source: str, form: str | None, output: Path, stroke: str, as_json: bo
     SOURCE is a built-in, a *.fdvv.json or a measured file, or a *.recording.jsonl. The output lists
     what the file keeps, what it cannot hold, and by how much it differs (docs/reference/exchange-formats.md).
     """
+    from fdvv.button.export_file import export_button, export_format, is_recording
+    from fdvv.formats.exchange.exchange_format import ExportSettings
+    from fdvv.model.curve import Stroke
+
     of = "recording" if is_recording(source) else "button"
     ui.check_output(output, export_format(form, output, of).suffix)
     ui.check_folder(output.parent)
@@ -105,7 +106,7 @@ def _figure(name: str, value: float | None) -> list[str]:
     type=ui.POSITIVE,
     help="What 1 stands for, if the file does not say.",
 )
-@ui.option(OPTION, is_flag=True, help="Take also curves that cannot be a button's.")
+@ui.option("--accept-implausible", is_flag=True, help="Take also curves that cannot be a button's.")
 @ui.option("-o", "--output", type=ui.PATH, required=True, help="The *.fdvv.json to write.")
 @ui.json_option
 def import_(
@@ -117,6 +118,11 @@ def import_(
     .haptic, HJIF or WAV, which is given to the button that --into names. Formats are known by their
     content.
     """
+    from fdvv.button.fit import FitSettings
+    from fdvv.button.import_file import ImportSettings, import_file
+    from fdvv.model.curve import Stroke
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+
     ui.check_output(output, MODEL_SUFFIX)
     if output.exists() and output.samefile(file):
         raise click.UsageError(f"{output} is the file itself; give the model another name")

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.button.fit import FitSettings, FolderFit, ModelFit, fit_file, fit_files, measured_files, summarise
-from fdvv.button.plausible import OPTION
 from fdvv.cli import ui
 from fdvv.force_text import ForceTitle, force_text
-from fdvv.model.file import MODEL_SUFFIX, save_model
-from fdvv.model.fit import FitMethod
+
+if TYPE_CHECKING:
+    from fdvv.button.fit import FitSettings, FolderFit, ModelFit
 
 
 def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) -> int | None:
@@ -43,7 +42,7 @@ def _control_points(_ctx: click.Context, _param: click.Parameter, value: str) ->
     default=0.0,
     help="Sigma of a Gaussian before the fit; errors are against the raw curve.",
 )
-@ui.option(OPTION, is_flag=True, help="Fit also what cannot be a button's force and travel.")
+@ui.option("--accept-implausible", is_flag=True, help="Fit also what cannot be a button's force and travel.")
 @ui.option("-o", "--output", type=ui.PATH, help="Where to write the model (a folder's models: a folder).")
 @ui.option(
     "--max-rmse-cN", "max_rmse_cN", type=ui.Force(min=0), help="Exit status 1 above this error of a curve."
@@ -57,6 +56,9 @@ def fit(
     PATH is a file in any known format (docs/reference/force-files.md) or a folder of them. The report
     tells the error against the raw curve, how much of the bump is kept, and what was repaired.
     """
+    from fdvv.button.fit import FitSettings
+    from fdvv.model.fit import FitMethod
+
     settings = FitSettings(FitMethod(method), **options)
     worst, where = (_folder if path.is_dir() else _file)(path, settings, output, as_json)
     if max_rmse_cN is not None and worst > max_rmse_cN:
@@ -65,6 +67,9 @@ def fit(
 
 
 def _file(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> tuple[float, str]:
+    from fdvv.button.fit import fit_file
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+
     ui.check_output(output, MODEL_SUFFIX)
     if output and output.exists() and output.samefile(path):
         raise click.UsageError(f"{output} is the measurement itself; give the model another name")
@@ -100,6 +105,9 @@ def _print_fit(found: ModelFit) -> None:
 
 
 def _folder(path: Path, settings: FitSettings, output: Path | None, as_json: bool) -> tuple[float, str]:
+    from fdvv.button.fit import fit_files, measured_files, summarise
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+
     if output:
         ui.check_folder(output)
     results = []

@@ -79,18 +79,8 @@ GROUPS = {
 """The commands as help lists them, where they are installed; those of other packages come last."""
 
 
-class MainGroup(click.Group):
-    """A group that knows the names and short helps of its commands without importing them."""
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        return sorted(command_helps())
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import a command; BuildError if it comes with a package that is not installed."""
-        if cmd_name in COMMANDS:
-            return ui.imported(COMMANDS[cmd_name][0], cmd_name)
-        # lists every installed distribution: not worth its time for a command of the core
-        return ui.extra_command("commands", cmd_name)
+class MainGroup(ui.LazyGroup):
+    """A group that knows also the short helps of its commands without importing them."""
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         helps = command_helps()
@@ -122,7 +112,11 @@ class Interrupted(Exception):  # noqa: N818 - nothing failed
 
 
 @click.group(
-    cls=MainGroup, context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True
+    cls=MainGroup,
+    modules={name: module for name, (module, _) in COMMANDS.items()},
+    extra="commands",
+    context_settings={"help_option_names": ["-h", "--help"]},
+    invoke_without_command=True,
 )
 @click.version_option(__version__, prog_name="fdvv")
 @click.option(

@@ -7,11 +7,8 @@ from typing import Any
 
 import click
 
-from fdvv.button.open import merge_parts, one_curve, open_button
 from fdvv.cli import ui
 from fdvv.errors import ModelError
-from fdvv.model.edit import assign as assign_curve
-from fdvv.model.file import MODEL_SUFFIX, save_model
 
 OUTPUT = ui.option("-o", "--output", type=ui.NEW_FILE, required=True, help="The *.fdvv.json to write.")
 
@@ -32,6 +29,9 @@ def merge(parts: tuple[str, ...], output: Path, **options: Any) -> None:
     PARTS are FILE[:press|:release][@VELOCITY]: a built-in, a *.fdvv.json or a measured file; only that
     stroke of it; declared to be of that velocity in mm/s. Example: merge slow.csv@0.5 fast.csv:press@100
     """
+    from fdvv.button.open import merge_parts
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+
     ui.check_output(output, MODEL_SUFFIX)
     try:
         model = merge_parts(parts, **options)
@@ -64,6 +64,10 @@ def assign(button: str, curve: str, output: Path, **options: Any) -> None:
     BUTTON is the model that is changed (a copy is written); CURVE is FILE[:press|:release], whose own
     stroke and velocity do not matter.
     """
+    from fdvv.button.open import one_curve, open_button
+    from fdvv.model.edit import assign as assign_curve
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+
     ui.check_output(output, MODEL_SUFFIX)
     model = assign_curve(open_button(button), one_curve(curve), **options)
     save_model(model, output)

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.options import jnds_option
 from fdvv.errors import InputError
 from fdvv.force_text import force_name, force_number, force_text
 from fdvv.io.files import write_atomic
-from fdvv.program.check import Report, check_program, require_accepted
-from fdvv.program.compile import compile_program
-from fdvv.program.describe import describe
-from fdvv.program.file import PROGRAM_SUFFIX, save_program
-from fdvv.program.library import make as make_shipped
-from fdvv.program.library import open_program, programs
-from fdvv.program.program import Program, State
-from fdvv.program.surface import Limits
+
+if TYPE_CHECKING:
+    from fdvv.program.check import Report
+    from fdvv.program.program import Program, State
+    from fdvv.program.surface import Limits
 
 weight_option = ui.option(
     "--weight-cN",
@@ -50,6 +46,8 @@ def program() -> None:
 @ui.json_option
 def list_(as_json: bool) -> None:
     """List the shipped programs and their parameters."""
+    from fdvv.program.library import programs
+
     found = programs()
     if as_json:
         entries = [
@@ -73,6 +71,9 @@ def show(program: str, as_json: bool) -> None:
 
     PROGRAM may also be a compiled image, whose parts are numbered.
     """
+    from fdvv.program.describe import describe
+    from fdvv.program.library import open_program
+
     path = Path(program)
     if path.is_file() and path.read_bytes()[:4] == b"FDVP":
         parts: Any = describe(path.read_bytes(), path)
@@ -116,6 +117,11 @@ def make(name: str, base: str | None, given: tuple[str, ...], output: Path) -> N
 
     NAME is one of fdvv program list, as in: make rapid-trigger --set press_mm=0.1 -o r.fdvv-program.json
     """
+    from fdvv.button.open import open_button
+    from fdvv.program.check import check_program
+    from fdvv.program.file import PROGRAM_SUFFIX, save_program
+    from fdvv.program.library import make as make_shipped
+
     ui.check_output(output, PROGRAM_SUFFIX)
     model = None if base is None else open_button(base)
     made = make_shipped(name, model, **dict(map(_parameter, given)))
@@ -149,6 +155,9 @@ def check(program: str, weight_cN: float | None, opposing_cN: float | None, as_j
 
     Exit status 1 if it is refused. What is proven is in docs/explanation/programs.md.
     """
+    from fdvv.program.check import check_program
+    from fdvv.program.library import open_program
+
     opened = open_program(program)
     report = check_program(opened, _limits(weight_cN, opposing_cN))
     if as_json:
@@ -168,6 +177,8 @@ def check(program: str, weight_cN: float | None, opposing_cN: float | None, as_j
 
 
 def _limits(weight_cN: float | None, opposing_cN: float | None) -> Limits:
+    from fdvv.program.surface import Limits
+
     limits: dict[str, Any] = {"weight_cN": weight_cN, "opposing_cN": opposing_cN}
     return Limits(**{name: value for name, value in limits.items() if value is not None})
 
@@ -198,6 +209,10 @@ def compile_(
 
     Columns of a surface are evenly spaced in an image; the output says what that and rounding cost.
     """
+    from fdvv.program.check import require_accepted
+    from fdvv.program.compile import compile_program
+    from fdvv.program.library import open_program
+
     ui.check_output(output, ".fdvv-image")
     opened = open_program(program)
     limits = _limits(weight_cN, opposing_cN)

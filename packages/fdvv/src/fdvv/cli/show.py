@@ -4,23 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.button.compare import Comparison, spread_reports
-from fdvv.button.compare import compare as compare_models
-from fdvv.button.kind import kind_sentence
-from fdvv.button.open import button_files, open_button, open_files, open_models
 from fdvv.cli import ui
 from fdvv.cli.options import jnds_option, opened_jnds
 from fdvv.errors import InputError
 from fdvv.force_text import ForceTitle, force_name, force_number, force_unit
 from fdvv.io.documents import ACTUATION, own_kind
-from fdvv.model.curve import Stroke
-from fdvv.model.landmarks import LandmarkError, landmark_errors, landmarks
-from fdvv.model.model import FDVVModel
-from fdvv.model.noticeable import LITERATURE, Jnds
+
+if TYPE_CHECKING:
+    from fdvv.button.compare import Comparison
+    from fdvv.model.landmarks import LandmarkError
+    from fdvv.model.model import FDVVModel
+    from fdvv.model.noticeable import Jnds
 
 LABEL_WIDTH, NAME_WIDTH = 19, 28
 """Of the names of landmarks, and what the columns of LANDMARKS or TABLE leave for the names of buttons."""
@@ -52,6 +50,10 @@ def compare(
     BUTTONS are two or more built-ins, *.fdvv.json files, files of measured curves or folders of either.
     The first is the reference; displacement counts from each button's contact.
     """
+    from fdvv.button.compare import compare as compare_models
+    from fdvv.button.open import open_models
+    from fdvv.model.curve import Stroke
+
     ui.check_output(figure, *ui.FIGURES)
     ui.check_output(report, ".html")
     jnds = opened_jnds(jnds_from)
@@ -99,9 +101,7 @@ def _draw(models: Sequence[FDVVModel], velocity_mm_s: float | None) -> None:
         print_curves(models, velocity_mm_s)
 
 
-def _write_page(
-    path: Path, models: Sequence[FDVVModel], velocity_mm_s: float | None, jnds: Jnds = LITERATURE
-) -> None:
+def _write_page(path: Path, models: Sequence[FDVVModel], velocity_mm_s: float | None, jnds: Jnds) -> None:
     from fdvv.button.page import buttons_page
     from fdvv.report.report import write_report
 
@@ -154,6 +154,11 @@ def show(
     table, one line per button). Of an *.actuation.json file, or of the folder of a session, the receipt is
     shown: rig, method, presses, errors.
     """
+    from fdvv.button.compare import spread_reports
+    from fdvv.button.kind import kind_sentence
+    from fdvv.button.open import open_button
+    from fdvv.model.landmarks import landmark_errors, landmarks
+
     ui.check_output(figure, *ui.FIGURES)
     ui.check_output(report, ".html")
     if _show_receipt(button, as_json):
@@ -175,7 +180,7 @@ def show(
 
         ui.save_figure(plot_model(model).figure, figure)
     if report:
-        _write_page(report, [model], velocity_mm_s)
+        _write_page(report, [model], velocity_mm_s, opened_jnds(None))
     if as_json:
         uncertain = {name: vars(error) for name, error in errors.items()}
         source = model.provenance.source
@@ -257,6 +262,9 @@ def _show_receipt(button: str, as_json: bool) -> bool:
 
 
 def _show_folder(folder: Path, velocity_mm_s: float | None, as_json: bool) -> None:
+    from fdvv.button.open import button_files, open_files
+    from fdvv.model.landmarks import landmarks
+
     found, refused = [], []
     files = button_files(folder)
     with ui.progress("opening", len(files)) as advance:

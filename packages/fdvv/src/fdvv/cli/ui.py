@@ -47,28 +47,11 @@ def options(*several: Callable[[Command], Command]) -> Callable[[Command], Comma
     return add
 
 
-def imported(module: str, name: str) -> click.Command:
-    """Import a command: a function of the command's name, in a module."""
-    # a function cannot be called import
-    function = f"{name}_" if keyword.iskeyword(name) else name
-    found = getattr(importlib.import_module(module), function)
-    assert isinstance(found, click.Command)
-    return found
-
-
-def extra_command(kind: extras.Kind, name: str) -> click.Command | None:
-    """Import a command of an extra; None if no extra has it, BuildError if the extra is not installed."""
-    if name not in extras.names(kind):
-        return None
-    found = extras.load(kind, name)
-    assert isinstance(found, click.Command)
-    return found
-
-
 class LazyGroup(click.Group):
     """A group that imports some of its commands when they are asked for: they load much that others do not.
 
-    modules : by the command's name, see ``imported``. extra : kind of commands that extras add to it, if any.
+    modules : by a command's name, the module with a function of that name. extra : kind of commands that
+        extras add to it, if any.
     """
 
     def __init__(
@@ -83,10 +66,15 @@ class LazyGroup(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import a command; BuildError if it comes with an extra that is not installed."""
+        command: click.Command | None = super().get_command(ctx, cmd_name)
         if cmd_name in self.modules:
-            return imported(self.modules[cmd_name], cmd_name)
-        found = super().get_command(ctx, cmd_name)
-        return extra_command(self.extra, cmd_name) if self.extra and not found else found
+            # a function cannot be called import
+            function = f"{cmd_name}_" if keyword.iskeyword(cmd_name) else cmd_name
+            command = getattr(importlib.import_module(self.modules[cmd_name]), function)
+        elif self.extra and not command and cmd_name in extras.names(self.extra):
+            # names lists every installed distribution: not worth its time for a command of the core
+            command = extras.load(self.extra, cmd_name)
+        return command
 
 
 def choice_option(name: str, choices: Sequence[str], help: str) -> Callable[[Command], Command]:

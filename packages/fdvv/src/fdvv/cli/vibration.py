@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.button.export_file import vibration_of
-from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.options import exciter_option, opened_exciter
-from fdvv.cli.vibration_sound import is_sound, show_sound
 from fdvv.errors import InputError
-from fdvv.model.vibration import Vibration
-from fdvv.program.render_vibration import render_vibration, vibration_wav
-from fdvv.vibration.exciter import KnownExciter
-from fdvv.vibration.sound import LEAST_CARRIED
+
+if TYPE_CHECKING:
+    from fdvv.model.vibration import Vibration
+    from fdvv.vibration.exciter import KnownExciter
 
 
 @click.command()
@@ -29,7 +26,7 @@ from fdvv.vibration.sound import LEAST_CARRIED
 @ui.option(
     "--least-carried",
     type=ui.Finite(min=0, max=1),
-    default=LEAST_CARRIED,
+    default=0.5,
     help="Refuse a sound whose modes carry less of its energy.",
 )
 @ui.json_option
@@ -49,6 +46,11 @@ def vibration(
     acceleration is as loud as 16 bits allow; its full scale is printed. Of a WAV, FLAC, OGG or MP3 file of
     one key press the onset, the modes and their part of the energy are shown.
     """  # fmt: skip
+    from fdvv.button.export_file import vibration_of
+    from fdvv.button.open import open_button
+    from fdvv.cli.vibration_sound import is_sound, show_sound
+    from fdvv.program.render_vibration import vibration_wav
+
     if is_sound(button):
         if exciter or wav or board:
             raise click.UsageError("--exciter, --wav and --board are of a button, not of a sound")
@@ -72,6 +74,8 @@ def vibration(
 
 
 def _about(found: Vibration, exciter: KnownExciter | None) -> dict[str, Any]:
+    from fdvv.program.render_vibration import render_vibration
+
     strongest = max(found.modes, key=lambda mode: abs(mode.amplitude_m_s2))
     about: dict[str, Any] = {
         "stroke": str(found.stroke),

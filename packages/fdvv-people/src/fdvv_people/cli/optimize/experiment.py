@@ -4,26 +4,19 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import kept_on_interrupt
 from fdvv.errors import DeviceError
-from fdvv.model.file import save_model
 from fdvv.parallel.open import open_executor
 from fdvv_people.cli.optimize.options import engine_option, rig_option
-from fdvv_people.optimize.experiment.experiment import (
-    ExperimentResult,
-    Stage,
-    judge_experiment,
-    run_experiment,
-)
-from fdvv_people.optimize.experiment.html import write_experiment
-from fdvv_people.optimize.experiment.setup import ExperimentSetup
-from fdvv_people.optimize.experiment.winner import RenderedWinner, render_best
-from fdvv_people.optimize.run.begin import experiment_prior
+
+if TYPE_CHECKING:
+    from fdvv_people.optimize.experiment.experiment import ExperimentResult, Stage
+    from fdvv_people.optimize.experiment.winner import RenderedWinner
 
 
 @click.command()
@@ -65,6 +58,11 @@ def experiment(
     in counter-balanced order. The folder then holds every trial, report.html, result.json and, with --winner,
     winner.fdvv.json. Ctrl-C or a kill loses no finished trial; the same command goes on.
     """
+    from fdvv_people.optimize.experiment.experiment import judge_experiment, run_experiment
+    from fdvv_people.optimize.experiment.html import write_experiment
+    from fdvv_people.optimize.experiment.setup import ExperimentSetup
+    from fdvv_people.optimize.run.begin import experiment_prior
+
     ui.check_folder(folder)
     begun_s = time.perf_counter()
     prior = experiment_prior(priors, options["seed"])
@@ -83,6 +81,9 @@ def experiment(
 
 
 def _rendered(result: ExperimentResult, folder: Path, stage: Stage) -> RenderedWinner | None:
+    from fdvv.model.file import save_model
+    from fdvv_people.optimize.experiment.winner import render_best
+
     stage("winner", 0, 1)
     try:
         found = render_best(result)

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from fdvv.cli import ui
 from fdvv.io.documents import pretty
 from fdvv.io.files import require_new_folder, write_atomic
-from fdvv.model.file import MODEL_SUFFIX, save_model
-from fdvv.report.report import write_report
-from fdvv_people.optimize.group.group import GROUP, Group, group_of, read_personal_runs
-from fdvv_people.optimize.group.playoff import BLOCKS, Playoff, play_off
-from fdvv_people.optimize.group.report import group_html, group_report
+
+if TYPE_CHECKING:
+    from fdvv_people.optimize.group.group import Group
+    from fdvv_people.optimize.group.playoff import Playoff
 
 REPORT_FILE, FIGURES_FILE = "report.html", "group.json"
 
@@ -25,7 +24,7 @@ REPORT_FILE, FIGURES_FILE = "report.html", "group.json"
 @ui.option(
     "--blocks",
     type=click.IntRange(0, 1000),
-    default=BLOCKS,
+    default=16,
     help="In each of which simulated people play both buttons again; 0 and 1: only what the runs let expect.",
 )
 @ui.json_option
@@ -36,6 +35,11 @@ def group(runs: tuple[Path, ...], folder: Path, blocks: int, as_json: bool) -> N
     both buttons again. Of real people the gain is what their scores let expect. FOLDER holds the group's
     button, group.json and report.html.
     """
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+    from fdvv.report.report import write_report
+    from fdvv_people.optimize.group.group import GROUP, group_of, read_personal_runs
+    from fdvv_people.optimize.group.report import group_html, group_report
+
     ui.check_folder(folder)
     require_new_folder(folder, "name a new one")
     found = group_of(read_personal_runs(runs))
@@ -54,6 +58,8 @@ def group(runs: tuple[Path, ...], folder: Path, blocks: int, as_json: bool) -> N
 
 
 def _play(found: Group, blocks: int) -> Playoff:
+    from fdvv_people.optimize.group.playoff import play_off
+
     with ui.progress("people", len(found.runs)) as move:
         return play_off(found, blocks, move)
 

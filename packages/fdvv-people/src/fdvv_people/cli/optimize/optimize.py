@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from msgspec.structs import asdict
 
 from fdvv.cli import ui
 from fdvv.cli.settings import settings_options
-from fdvv.report.report import write_report
 from fdvv_people.cli.optimize.options import (
     ON_STRIP,
     Play,
@@ -23,17 +22,11 @@ from fdvv_people.cli.optimize.options import (
     strip_options,
     weight_option,
 )
-from fdvv_people.optimize.problem import Trial
-from fdvv_people.optimize.run.assessor import assessor_of
-from fdvv_people.optimize.run.begin import RunRequest, begin_run
-from fdvv_people.optimize.run.ending import beaten_by
-from fdvv_people.optimize.run.front import front_mark, score_digits
-from fdvv_people.optimize.run.player import POINTING, played_min, player_of
-from fdvv_people.optimize.run.replay import replay_differences
-from fdvv_people.optimize.run.report import optimize_html, optimize_report
-from fdvv_people.optimize.run.session import Optimization
 from fdvv_people.optimize.run.settings import RunSettings
-from fdvv_people.optimize.run.verdict import verdict_kind
+
+if TYPE_CHECKING:
+    from fdvv_people.optimize.problem import Trial
+    from fdvv_people.optimize.run.session import Optimization
 
 LAST = 8
 """Trials that are printed; --json has all."""
@@ -103,6 +96,8 @@ def run(folder: Path, strip: str | None, device: str, verbose: bool, as_json: bo
 
     The same options give the same trials. Ctrl-C stops between two trials; fdvv optimize resume goes on.
     """
+    from fdvv_people.optimize.run.begin import begin_run
+
     ui.check_folder(folder)
     wanted = _request(strip=strip, **arguments)
     with on_strip(strip, device) as play, begin_run(folder, wanted) as session:
@@ -116,6 +111,8 @@ def run(folder: Path, strip: str | None, device: str, verbose: bool, as_json: bo
 @ui.json_option
 def resume(folder: Path, strip: str | None, device: str, verbose: bool, as_json: bool) -> None:
     """Go on with the run in FOLDER that was stopped or killed; the next design is as if it had not been."""
+    from fdvv_people.optimize.run.session import Optimization
+
     with on_strip(strip, device) as play, Optimization.open(folder) as session:
         _play(session, play, as_json, verbose)
 
@@ -128,6 +125,9 @@ def replay(folder: Path, as_json: bool) -> None:
 
     Exit status 1 if one is not: another version of a library, or a folder that was changed by hand.
     """
+    from fdvv_people.optimize.run.replay import replay_differences
+    from fdvv_people.optimize.run.session import Optimization
+
     with Optimization.open(folder) as session:
         engine, asks_for = session.setup.engine, session.asks_for
         suggested = sum(trial.origin == engine for trial in session.trials)
@@ -149,6 +149,10 @@ def replay(folder: Path, as_json: bool) -> None:
 @ui.json_option
 def report(folder: Path, output: Path | None, as_json: bool) -> None:
     """Write the run in FOLDER as a page: the design found, the scores, every trial."""
+    from fdvv.report.report import write_report
+    from fdvv_people.optimize.run.report import optimize_html, optimize_report
+    from fdvv_people.optimize.run.session import Optimization
+
     ui.check_output(output, ".html")
     path = output or folder / "report.html"
     with Optimization.open(folder) as session:
@@ -167,6 +171,9 @@ def _request(
     strip: str | None,
     **arguments: Any,
 ) -> Any:
+    from fdvv_people.optimize.run.begin import RunRequest
+    from fdvv_people.optimize.run.player import POINTING
+
     if strip and arguments["task"] != POINTING:
         raise click.UsageError(f"on a strip one plays {POINTING}, not {arguments['task']}")
     if strip and (gone := [name for name in arguments["also"] if name not in ON_STRIP]):
@@ -180,6 +187,10 @@ def _request(
 
 
 def _play(session: Optimization, play: Play | None, as_json: bool, verbose: bool) -> None:
+    from fdvv_people.optimize.run.assessor import assessor_of
+    from fdvv_people.optimize.run.player import played_min, player_of
+    from fdvv_people.optimize.run.report import optimize_report
+
     ui.print_warnings(session.warnings)
     at_end = session.retest_left + len(session.retests)
     budget = session.setup.budget + at_end
@@ -248,6 +259,8 @@ def _print(session: Optimization, document: dict[str, Any]) -> None:
 
 def _print_front(document: dict[str, Any]) -> None:
     """Print the compromises, each value a posterior mean with its standard deviation."""
+    from fdvv_people.optimize.run.front import front_mark, score_digits
+
     names = document["objectives"]
     rows = [
         [
@@ -262,6 +275,9 @@ def _print_front(document: dict[str, Any]) -> None:
 
 
 def _next_step(session: Optimization) -> str:
+    from fdvv_people.optimize.run.ending import beaten_by
+    from fdvv_people.optimize.run.verdict import verdict_kind
+
     if beaten := beaten_by(session):
         return f"take {beaten}; fdvv optimize report {session.folder} draws the designs"
     if verdict_kind(session) in ("better", "mixed"):

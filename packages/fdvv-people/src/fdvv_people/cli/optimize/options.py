@@ -12,8 +12,6 @@ import click
 from fdvv import extras
 from fdvv.cli import ui
 from fdvv.cli.options import remote
-from fdvv_people.optimize.people.groups import GROUPS
-from fdvv_people.optimize.run.setup import WISHES
 
 if TYPE_CHECKING:
     from fdvv_people.optimize.problem import Trial
@@ -79,16 +77,18 @@ run_engine_option = ui.option(
 level_option = ui.choice_option("--level", ("easy", "hard"), help="Of the task.")
 
 group_option = ui.choice_option(
-    "--group", tuple(GROUPS), help="Of simulated people: as in the paper, or with best buttons that differ."
+    "--group",
+    ("paper", "diverse"),
+    help="Of simulated people: as in the paper, or with best buttons that differ.",
 )
 
 ON_STRIP = ("lost_ratio",)
-"""Of WISHES what a strip can score: it measures no force and asks nothing."""
+"""What a strip can score of --also: it measures no force and asks nothing."""
 
 also_option = ui.option(
     "--also",
     multiple=True,
-    type=click.Choice(WISHES),
+    type=click.Choice((*ON_STRIP, "effort_N_s", "liking")),
     help="Another wish beside the task's own; repeatable. The run ends with a front of compromises.",
 )
 

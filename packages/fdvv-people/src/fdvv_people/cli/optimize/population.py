@@ -10,14 +10,6 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.options import Workers, executor_options
 from fdvv_people.cli.optimize.options import group_option
-from fdvv_people.optimize.engines.registry import check_engine, engine_of
-from fdvv_people.optimize.paper_space import paper_model, paper_space
-from fdvv_people.optimize.people.simulate import simulate_task
-from fdvv_people.optimize.population.plan import PopulationPlan
-from fdvv_people.optimize.population.population import run_population
-from fdvv_people.optimize.run.begin import read_grid
-from fdvv_people.optimize.run.player import POINTING
-from fdvv_people.task.pointing import TemporalPointing
 
 
 @click.command()
@@ -47,6 +39,9 @@ def population(
     FOLDER keeps every part that is done: whatever ended the run, the same command goes on with it. The result
     is the same however many processes work on it. Everything is simulated.
     """
+    from fdvv_people.optimize.population.population import run_population
+    from fdvv_people.optimize.run.begin import read_grid
+
     plan = _plan(grid=grid, **options)
     trials = read_grid(prior).prior() if prior else ()
     label = "people" if grid is None else "grid"
@@ -56,6 +51,13 @@ def population(
 
 
 def _plan(grid: int | None, level: str, engine: str, shifts: tuple[str, ...], **options: Any) -> Any:
+    from fdvv_people.optimize.engines.registry import check_engine, engine_of
+    from fdvv_people.optimize.paper_space import paper_model, paper_space
+    from fdvv_people.optimize.people.simulate import simulate_task
+    from fdvv_people.optimize.population.plan import PopulationPlan
+    from fdvv_people.optimize.run.player import POINTING
+    from fdvv_people.task.pointing import TemporalPointing
+
     check_engine(engine, POINTING)
     engine_of(engine)
     found = PopulationPlan(

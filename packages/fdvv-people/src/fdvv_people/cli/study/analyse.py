@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import msgspec
@@ -11,23 +11,12 @@ import msgspec
 from fdvv.cli import ui
 from fdvv.errors import InputError
 from fdvv.io.files import read_limited
-from fdvv.model.jnd_file import FILE_NAME, jnds_of, save_jnds
-from fdvv.model.noticeable import LITERATURE
-from fdvv_people.cli.study.timing import timing_analyse, timing_export
-from fdvv_people.study.admin.study import Study
-from fdvv_people.study.analysis.analyse import analyse as analysed
-from fdvv_people.study.analysis.code_book import write_answers
-from fdvv_people.study.analysis.columns import ColumnMap
-from fdvv_people.study.analysis.export import analysis_dict, write_analysis
-from fdvv_people.study.analysis.jnd_record import jnd_record
-from fdvv_people.study.analysis.jnds import standards_of
-from fdvv_people.study.analysis.read_answers import AnswersTable, read_table
-from fdvv_people.study.analysis.records import StudyAnalysis
-from fdvv_people.study.analysis.report import study_summary, write_study_report
-from fdvv_people.study.plan.answers import Answers
-from fdvv_people.study.plan.plan import StudyPlan
-from fdvv_people.study.plan.plan_file import STUDY_FILE, read_plan_text
-from fdvv_people.timing.plan.plan_file import is_timing
+
+if TYPE_CHECKING:
+    from fdvv_people.study.analysis.read_answers import AnswersTable
+    from fdvv_people.study.analysis.records import StudyAnalysis
+    from fdvv_people.study.plan.answers import Answers
+    from fdvv_people.study.plan.plan import StudyPlan
 
 table_options = ui.options(
     click.option(
@@ -73,6 +62,11 @@ def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool,
     thresholds, and the test of the main claim; with --report as a page with figures. Of a timing study: the
     paper's analysis of variance and pairs, a mixed model with intervals, and the claim.
     """
+    from fdvv_people.cli.study.timing import timing_analyse
+    from fdvv_people.study.analysis.export import analysis_dict
+    from fdvv_people.study.analysis.report import write_study_report
+    from fdvv_people.timing.plan.plan_file import is_timing
+
     ui.check_output(report, ".html")
     if source.is_dir() and is_timing(source):
         timing_analyse(source, report, as_json)
@@ -103,6 +97,11 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
     answers.csv has a row a trial, people.csv a row a person, codebook.json tells what the columns mean,
     analysis.json holds every figure.
     """
+    from fdvv_people.cli.study.timing import timing_export
+    from fdvv_people.study.analysis.code_book import write_answers
+    from fdvv_people.study.analysis.export import write_analysis
+    from fdvv_people.timing.plan.plan_file import is_timing
+
     ui.check_folder(folder)
     if source.is_dir() and is_timing(source):
         timing_export(source, folder, as_json)
@@ -136,6 +135,12 @@ def jnds(folder: Path, project: Path | None, output: Path | None, as_json: bool)
     project's jnds.json. Its studio's distances between buttons, verdicts on renderings and findings count in
     them from then on and say so. Without the file they count in JNDs from the literature.
     """
+    from fdvv.model.jnd_file import FILE_NAME, jnds_of, save_jnds
+    from fdvv.model.noticeable import LITERATURE
+    from fdvv_people.study.admin.study import Study
+    from fdvv_people.study.analysis.jnd_record import jnd_record
+    from fdvv_people.timing.plan.plan_file import is_timing
+
     ui.check_output(output, ".json")
     if is_timing(folder):
         raise InputError(folder, "study", "a timing study measures no JND", "name one of kind thresholds")
@@ -156,6 +161,9 @@ def jnds(folder: Path, project: Path | None, output: Path | None, as_json: bool)
 
 
 def _analysed(answers: Answers, declared: StudyPlan | None, source: Path) -> StudyAnalysis:
+    from fdvv_people.study.analysis.analyse import analyse as analysed
+    from fdvv_people.study.analysis.jnds import standards_of
+
     standards = standards_of(declared, source) if declared and source.is_dir() else {}
     return analysed(answers, declared, "" if declared else source.name, standards)
 
@@ -178,6 +186,11 @@ def _print_columns(read: AnswersTable) -> None:
 def _opened(
     source: Path, plan: Path | None, table: dict[str, Any]
 ) -> tuple[AnswersTable, StudyPlan | None, str]:
+    from fdvv_people.study.admin.study import Study
+    from fdvv_people.study.analysis.columns import ColumnMap
+    from fdvv_people.study.analysis.read_answers import read_table
+    from fdvv_people.study.plan.plan_file import STUDY_FILE, read_plan_text
+
     column_map = ColumnMap(
         kind=table["kind"],
         stimuli=tuple(name.strip() for name in table["stimuli"].split(",") if name.strip()),
@@ -209,6 +222,8 @@ def _pairs(option: str, texts: tuple[str, ...]) -> dict[str, str]:
 
 
 def _print(found: StudyAnalysis) -> None:
+    from fdvv_people.study.analysis.report import study_summary
+
     screening = found.screening
     counts = f"{screening.counted} of {screening.planned} trials count, {screening.people_counted} people"
     click.echo(f"{found.title} ({found.kind}): {counts}")

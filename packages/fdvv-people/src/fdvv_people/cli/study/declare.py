@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from fdvv.cli import ui
-from fdvv.report.report import Section, write_report
-from fdvv_people.cli.study.kinds import KINDS, kind_named, refuse_timing, write_kind
-from fdvv_people.cli.study.timing import check_timing
-from fdvv_people.study.admin.preview import (
-    preview_dict,
-    preview_html,
-    preview_sections,
-    preview_summary,
-    preview_title,
-    summarise_plan,
-)
-from fdvv_people.study.admin.review import StudyReview, review_study
-from fdvv_people.timing.plan.plan_file import is_timing
+from fdvv.errors import InputError
+
+if TYPE_CHECKING:
+    from fdvv.report.report import Section
+    from fdvv_people.study.admin.review import StudyReview
+
+TIMING = ("timing", "tapping")
+KINDS = ("realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase", "thresholds", *TIMING)
+DEFAULT = "realism"
 
 study_argument = click.argument("study", type=ui.PATH)
 
@@ -45,6 +42,29 @@ def new(folder: Path, kind: str | None) -> None:
     click.echo(f"its kind is {chosen}; edit it, then: fdvv study check {folder}")
 
 
+def kind_named(folder: Path, kind: str | None) -> str:
+    """Return the kind of a new study: as asked, or as its folder is called, or the paper's study."""
+    name = folder.absolute().name
+    return kind or (name if name in KINDS else DEFAULT)
+
+
+def write_kind(kind: str, folder: Path) -> Path:
+    """Write a shipped study of a kind, called as its folder; return its file. InputError, OSError."""
+    from fdvv_people.study.plan.plan_file import write_template
+    from fdvv_people.timing.plan.plan_file import timing_template
+
+    write = timing_template if kind in TIMING else write_template
+    return write(kind, folder, folder.absolute().name)
+
+
+def refuse_timing(study: Path, command: str, instead: str) -> None:
+    """Refuse a command that timing studies have no use for. InputError."""
+    from fdvv_people.timing.plan.plan_file import is_timing
+
+    if is_timing(study):
+        raise InputError(study, command, "is for studies that ask about what is rendered", instead)
+
+
 @click.command()
 @study_argument
 @ui.json_option
@@ -53,6 +73,11 @@ def check(study: Path, as_json: bool) -> None:
 
     STUDY is a study.toml, or the folder of one. All that is wrong is listed at once.
     """
+    from fdvv_people.cli.study.timing import check_timing
+    from fdvv_people.study.admin.preview import summarise_plan
+    from fdvv_people.study.admin.review import review_study
+    from fdvv_people.timing.plan.plan_file import is_timing
+
     if is_timing(study):
         check_timing(study, as_json)
         return
@@ -67,6 +92,8 @@ def check(study: Path, as_json: bool) -> None:
 
 
 def _print_check(look: StudyReview) -> None:
+    from fdvv_people.study.admin.preview import summarise_plan
+
     _print_problems(look)
     if look.problems:
         return
@@ -97,6 +124,16 @@ def preview(study: Path, html: Path | None, as_json: bool) -> None:
     STUDY is a study.toml, or the folder of one. Nothing is drawn: what labels will hide, not even this knows.
     Exit status 1 where the study cannot be run.
     """
+    from fdvv.report.report import write_report
+    from fdvv_people.study.admin.preview import (
+        preview_dict,
+        preview_html,
+        preview_sections,
+        preview_summary,
+        preview_title,
+    )
+    from fdvv_people.study.admin.review import review_study
+
     ui.check_output(html, ".html")
     refuse_timing(study, "preview", "see what it comes to: fdvv study check")
     look = review_study(study)

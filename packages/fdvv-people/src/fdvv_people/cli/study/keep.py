@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import time
 from collections import Counter
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from fdvv.cli import ui
 from fdvv.io.files import read_limited
-from fdvv_people.cli.study.people_table import PeopleTable
-from fdvv_people.cli.study.timing import timed_people
-from fdvv_people.study.admin.kept import KeptStudy
-from fdvv_people.study.admin.operator_view import operator_view
-from fdvv_people.study.admin.study import Study
-from fdvv_people.study.files.layout import UNSEALED
-from fdvv_people.timing.analysis.unseal import unseal_timing
-from fdvv_people.timing.files.study import AnyStudy, TimingStudy, open_study
+
+if TYPE_CHECKING:
+    from fdvv_people.study.admin.kept import KeptStudy
+    from fdvv_people.study.admin.study import Study
+    from fdvv_people.timing.files.study import AnyStudy
 
 folder_argument = click.argument("folder", type=ui.FOLDER)
 passphrase_option = ui.option(
@@ -42,6 +40,8 @@ def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
     hide, and who opens the sessions whenever fdvv studio was started; nobody can restore it. The fingerprint
     goes into the preregistration.
     """
+    from fdvv_people.timing.files.study import open_study
+
     study = open_study(folder)
     fingerprint = study.freeze(_passphrase(passphrase_file, new=True))
     if as_json:
@@ -66,6 +66,8 @@ def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
 @ui.json_option
 def verify(folder: Path, marks: bool, passphrase_file: Path | None, as_json: bool, **held: Any) -> None:
     """Verify that the study in FOLDER is as it was frozen and its logs as written; status 1 if not."""
+    from fdvv_people.timing.files.study import open_study
+
     study = open_study(folder)
     passphrase = _passphrase(passphrase_file) if marks or passphrase_file else ""
     problems = study.verify(passphrase=passphrase, **held)
@@ -92,6 +94,9 @@ def verify(folder: Path, marks: bool, passphrase_file: Path | None, as_json: boo
 @ui.json_option
 def status(folder: Path, as_json: bool) -> None:
     """Show how far the study in FOLDER is and what was done with it, but not what labels hide."""
+    from fdvv_people.cli.study.timing import timed_people
+    from fdvv_people.timing.files.study import TimingStudy, open_study
+
     study = open_study(folder)
     table = timed_people(study) if isinstance(study, TimingStudy) else _people(study)
     document = _status(study, table.people)
@@ -133,6 +138,10 @@ def unseal(
     were frozen with the study say in answers.csv what does not count, and why. Of a timing study it writes
     scores.csv, rounds.csv, training.csv and pages.csv.
     """
+    from fdvv_people.study.files.layout import UNSEALED
+    from fdvv_people.timing.analysis.unseal import unseal_timing
+    from fdvv_people.timing.files.study import TimingStudy, open_study
+
     study, passphrase = open_study(folder), _passphrase(passphrase_file)
     if isinstance(study, TimingStudy):
         scores = unseal_timing(study, passphrase, who, why, keeper, despite)
@@ -166,6 +175,8 @@ def withdraw(folder: Path, person: str, keep: bool, yes: bool, as_json: bool) ->
     FOLDER is the study's, PERSON what fdvv study status calls them.
     What was unsealed of the study is deleted too, for it holds their answers: unseal it again.
     """
+    from fdvv_people.timing.files.study import open_study
+
     study = open_study(folder)
     person = study.person(person).name
     if not (yes or as_json):
@@ -207,7 +218,26 @@ def _status(study: AnyStudy, people: list[dict[str, Any]]) -> dict[str, Any]:
     }  # fmt: skip
 
 
+@dataclass(frozen=True)
+class PeopleTable:
+    """The people of a study.
+
+    Attributes
+    ----------
+    people : as --json prints them. columns, rows, left : of the table, see `ui.print_table`.
+    lines : that are printed below it.
+    """
+
+    people: list[dict[str, Any]]
+    columns: list[str]
+    rows: list[list[Any]]
+    left: int
+    lines: list[str] = field(default_factory=list)
+
+
 def _people(study: Study) -> PeopleTable:
+    from fdvv_people.study.admin.operator_view import operator_view
+
     people = operator_view(study, time.time()).people
     rows = [
         [one.person, one.language, one.state, f"{one.answered} of {one.trials}", one.resumptions]

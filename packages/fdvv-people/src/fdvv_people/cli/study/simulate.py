@@ -6,20 +6,20 @@ import math
 import re
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import kept_on_interrupt
 from fdvv.errors import ModelError
-from fdvv_people.cli.study.kinds import refuse_timing
-from fdvv_people.cli.study.timing import timing_simulate
-from fdvv_people.study.admin.study import Study
-from fdvv_people.study.simulation.people import ProxySettings
-from fdvv_people.study.simulation.sessions import SimulatedStudy, simulate_study
-from fdvv_people.study.simulation.study_power import StudyPower, study_power
-from fdvv_people.timing.plan.plan_file import is_timing
+from fdvv_people.cli.study.declare import refuse_timing
+
+if TYPE_CHECKING:
+    from fdvv_people.study.admin.study import Study
+    from fdvv_people.study.simulation.people import ProxySettings
+    from fdvv_people.study.simulation.sessions import SimulatedStudy
+    from fdvv_people.study.simulation.study_power import StudyPower
 
 MOST_PEOPLE = 500
 
@@ -73,6 +73,8 @@ def power(
     FILE is a study's file, or its folder. The whole study is simulated many times, and the claim is tested in
     each as it will be in the real one. Proxies plan a study; what they say is never evidence.
     """
+    from fdvv_people.study.simulation.study_power import study_power
+
     refuse_timing(file, "power", "simulate it, and read its intervals: fdvv study simulate")
     settings = proxy_settings(changes)
     with ui.stages() as tell:
@@ -85,6 +87,8 @@ def power(
 
 def proxy_settings(changes: tuple[str, ...]) -> ProxySettings:
     """Return the proxies with their changes. Raises BadParameter on one that cannot be."""
+    from fdvv_people.study.simulation.people import ProxySettings
+
     settings = ProxySettings()
     for text in changes:
         name, _, value = text.partition("=")
@@ -175,6 +179,11 @@ def simulate(
     simulated wherever it is kept or shown, and is never evidence. Of a timing study they train, come back
     after the gap and press every button on the twin; --fast and --set are for the other kinds.
     """
+    from fdvv_people.cli.study.timing import timing_simulate
+    from fdvv_people.study.admin.study import Study
+    from fdvv_people.study.simulation.sessions import simulate_study
+    from fdvv_people.timing.plan.plan_file import is_timing
+
     settings = proxy_settings(changes)
     if is_timing(folder):
         timing_simulate(folder, people, seed, as_json)

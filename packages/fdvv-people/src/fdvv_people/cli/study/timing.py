@@ -14,7 +14,7 @@ from fdvv.cli.options import kept_on_interrupt
 from fdvv.errors import InputError
 from fdvv.io.files import read_limited, write_atomic
 from fdvv.report.report import write_report
-from fdvv_people.cli.study.people_table import PeopleTable
+from fdvv_people.cli.study.keep import PeopleTable
 from fdvv_people.report.prose import interval_text
 from fdvv_people.study.files.layout import UNSEALED
 from fdvv_people.study.plan.plan_file import STUDY_FILE

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from contextlib import closing
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from fdvv.bench.capture import CaptureGuide, CaptureResult, capture_session
-from fdvv.bench.model import process_recording
 from fdvv.bench.settings import CaptureSettings
 from fdvv.cli import ui
 from fdvv.cli.bench.capture_view import COLUMNS, capture_view, cells, progress_row
 from fdvv.cli.settings import settings_options
-from fdvv.device.bench import open_bench
-from fdvv.model.file import MODEL_SUFFIX, save_model
-from fdvv.recording.file import RECORDING_SUFFIX
+
+if TYPE_CHECKING:
+    from fdvv.bench.capture import CaptureResult
 
 TWIN_BUTTON = "mx-clear"
 
@@ -56,6 +55,12 @@ def capture(
     Every press is on the disk before the next is asked for. Ctrl-C stops; the same command goes on where it
     stopped, also after a crash. With --output the recording is processed as fdvv process does.
     """
+    from fdvv.bench.capture import CaptureGuide, capture_session
+    from fdvv.bench.model import process_recording
+    from fdvv.device.bench import open_bench
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+    from fdvv.recording.file import RECORDING_SUFFIX
+
     ui.check_output(recording, RECORDING_SUFFIX)
     ui.check_output(output, MODEL_SUFFIX)
     twin = spec == "twin"

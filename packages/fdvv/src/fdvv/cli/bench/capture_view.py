@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.bench.capture import TakeDone, TakeRequest, VelocityProgress
 from fdvv.cli import ui
 from fdvv.cli.cue import BEATS, BEAT_s, FRAME_s, TONES_Hz, bar, beeper, depth_at
 
 if TYPE_CHECKING:
     from rich.live import Live
 
+    from fdvv.bench.capture import TakeDone, TakeRequest, VelocityProgress
 
 Beep = Callable[[str], None]
 Show = Callable[[float], None]

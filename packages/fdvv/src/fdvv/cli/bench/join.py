@@ -7,11 +7,7 @@ from typing import Any
 
 import click
 
-from fdvv.bench.join_logs import join_logs
 from fdvv.cli import ui
-from fdvv.recording.check import facts_of
-from fdvv.recording.file import RECORDING_SUFFIX, save_recording
-from fdvv.recording.types import Bench
 
 FACTS = {
     "force_filter_ms": "Time constant of the force sensor's RC filter, undone.",
@@ -40,6 +36,11 @@ def join(logs: tuple[Path, ...], output: Path, as_json: bool, **options: Any) ->
     LOGS are files of instruments that ran at once, as an export of Motive and the text of a board
     (docs/reference/log-files.md); each keeps its own clock, and process joins them by the light.
     """
+    from fdvv.bench.join_logs import join_logs
+    from fdvv.recording.check import facts_of
+    from fdvv.recording.file import RECORDING_SUFFIX, save_recording
+    from fdvv.recording.types import Bench
+
     ui.check_output(output, RECORDING_SUFFIX)
     bench = Bench(**{name: options.pop(name) for name in FACTS})
     recording = join_logs(logs, bench=bench, **options)

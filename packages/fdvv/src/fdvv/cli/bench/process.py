@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import functools
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.bench.html import capture_html
-from fdvv.bench.model import RecordedModel, capture_report, process_recording
 from fdvv.bench.settings import CaptureSettings
-from fdvv.bench.vibration import recorded_vibrations
 from fdvv.cli import ui
 from fdvv.cli.settings import setting_type
 from fdvv.force_text import ForceTitle
-from fdvv.model.file import MODEL_SUFFIX, save_model
-from fdvv.preprocess.process import Settings
-from fdvv.report.report import write_report
+
+if TYPE_CHECKING:
+    from fdvv.bench.model import RecordedModel
 
 
 @click.command()
@@ -58,6 +55,13 @@ def process(
     was one. Clocks are joined, filters undone, presses judged, and all that may be used are averaged for
     each stroke and pace. What was left out is listed with its reason.
     """
+    from fdvv.bench.html import capture_html
+    from fdvv.bench.model import capture_report, process_recording
+    from fdvv.bench.vibration import recorded_vibrations
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+    from fdvv.preprocess.process import Settings
+    from fdvv.report.report import write_report
+
     ui.check_output(output, MODEL_SUFFIX)
     ui.check_output(report, ".html")
     found = process_recording(

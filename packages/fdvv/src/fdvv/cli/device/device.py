@@ -14,12 +14,7 @@ import click
 from fdvv import extras
 from fdvv.cli import ui
 from fdvv.cli.options import device_option, opened, remote
-from fdvv.device.client import Client
-from fdvv.device.lacking import lacking
-from fdvv.device.open import KINDS
-from fdvv.device.remote import Remote, watch
 from fdvv.device.serial import serial_ports
-from fdvv.device.telemetry import TickColumns
 from fdvv.errors import BuildError
 from fdvv.force_text import ForceTitle, force_name, force_number, force_text
 from fdvv.protocol.tables import Fault, Mode, Part, SelfTestResult
@@ -27,9 +22,15 @@ from fdvv.protocol.tables import Fault, Mode, Part, SelfTestResult
 if TYPE_CHECKING:
     from rich.text import Text
 
+    from fdvv.device.client import Client
+    from fdvv.device.remote import Remote
+    from fdvv.device.telemetry import TickColumns
+
 
 def follow(device: Remote, duration_s: float, every: int, output: Path | None) -> dict[str, Any]:
     """Watch a device, show and write what it tells; give the counts. DeviceError if it goes away."""
+    from fdvv.device.remote import watch
+
     records = 0
     telemetry, info = device.client.telemetry, device.info()
     target = output.open("w", encoding="ascii") if output else nullcontext()
@@ -63,6 +64,8 @@ def line_of(columns: TickColumns, missing: int) -> Text:
 
 def writer(stream: IO[str], output: Path) -> Callable[[TickColumns], None]:
     """Return a function that writes ticks to an open file, as CSV or as a JSON document per line."""
+    from fdvv.device.telemetry import TickColumns
+
     names = [field.name for field in fields(TickColumns)]
     as_json = output.suffix.lower() == ".jsonl"
     if not as_json:
@@ -98,6 +101,8 @@ def device() -> None:
 @ui.json_option
 def list_(as_json: bool) -> None:
     """List what --device may be, serial ports among it."""
+    from fdvv.device.open import KINDS
+
     rows = [{"device": name, "about": about} for name, about in KINDS.items()]
     rows += [{"device": name, "about": "a rig of your own, simulated"} for name in extras.names("rigs")]
     note = []
@@ -117,6 +122,9 @@ def list_(as_json: bool) -> None:
 @ui.json_option
 def info(spec: str, as_json: bool) -> None:
     """Show what a device is: limits, firmware, mode, latched fault, counters."""
+    from fdvv.device.lacking import lacking
+    from fdvv.device.remote import Remote
+
     with opened(spec) as found:
         document: dict[str, Any] = asdict(found.info())
         if isinstance(found, Remote):

@@ -19,13 +19,9 @@ from fdvv.cli.options import (
     record_option,
     velocity_option,
 )
-from fdvv.compensation.identification.rig_file import load_rig
 from fdvv.errors import InputError
 from fdvv.force_text import ForceTitle
 from fdvv.protocol.messages import head_of, travel_mm_of
-from fdvv.rendering.exciter import identify_exciter, prepare_exciter
-from fdvv.rendering.tuning import program_image
-from fdvv.vibration.exciter import EXCITER_SUFFIX, save_exciter
 
 
 @click.command()
@@ -42,6 +38,10 @@ def exciter(rig_known: Path | None, tone_s: float, output: Path | None, as_json:
     The motor holds the cap in the middle while tones of 260 to 860 Hz sound. Gain, resonance and quality are
     printed with their standard errors; --exciter of other commands plays vibrations through the inverse.
     """  # fmt: skip
+    from fdvv.compensation.identification.rig_file import load_rig
+    from fdvv.rendering.exciter import identify_exciter
+    from fdvv.vibration.exciter import EXCITER_SUFFIX, save_exciter
+
     ui.check_output(output, EXCITER_SUFFIX)
     known = load_rig(rig_known) if rig_known else None
     with opened(**device) as found, ui.progress("tones", 14) as advance:
@@ -67,6 +67,9 @@ def _uploaded(
     button: str, spec: str, velocities_mm_s: tuple[float, ...], exciter: Path | None, recording: Path | None
 ) -> Iterator[tuple[Any, bytes]]:
     """Open a device with a button as its program; give it and the image. InputError if it runs none."""
+    from fdvv.rendering.exciter import prepare_exciter
+    from fdvv.rendering.tuning import program_image
+
     known = opened_exciter(exciter)
     image = program_image(button, velocities_mm_s, known)
     with opened(spec, recording) as found:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.options import (
     exciter_option,
@@ -21,18 +20,11 @@ from fdvv.cli.options import (
 )
 from fdvv.cli.rendering.session import Pressing, beside, session_options
 from fdvv.cli.settings import settings_options
-from fdvv.compensation.identification.prior_file import check_range
-from fdvv.compensation.identification.rig_file import save_rig as keep
-from fdvv.compensation.method import Tuning
 from fdvv.force_text import ForceTitle, force_text
-from fdvv.rendering.actuation_file import load_actuation, save_actuation
-from fdvv.rendering.compensate import compensate as learn
-from fdvv.rendering.compensate import fit_cell, uncompensated
-from fdvv.rendering.evaluation.verdict import headline
-from fdvv.rendering.evaluation.vibration_presses import Playback
-from fdvv.rendering.probe import ProbeResult
-from fdvv.rendering.probe import probe as judge
 from fdvv.rendering.settings import CompensateSettings, ProbeSettings
+
+if TYPE_CHECKING:
+    from fdvv.rendering.probe import ProbeResult
 
 
 @click.command()
@@ -64,6 +56,12 @@ def compensate(
     Ctrl-C stops the device; the same command goes on with a session where it stopped. A press that cannot
     be used, because it stopped short, paused or missed its speed, is reported with the reason and made again.
     """
+    from fdvv.button.open import open_button
+    from fdvv.compensation.identification.prior_file import check_range
+    from fdvv.compensation.identification.rig_file import save_rig as keep
+    from fdvv.rendering.actuation_file import save_actuation
+    from fdvv.rendering.compensate import compensate as learn
+
     ui.check_output(output, ".actuation.json")
     ui.check_output(save_rig, ".rig.json")
     law, speeds = law_of(settings, save_rig=save_rig, **files), settings.velocities_mm_s
@@ -124,6 +122,15 @@ def probe(
     strength, spectrum and likeness are measured on the cap. JND is what a finger would just notice, by the
     literature or by your own people (--jnds); docs/explanation/noticeable.md.
     """
+    from fdvv.button.open import open_button
+    from fdvv.compensation.identification.prior_file import check_range
+    from fdvv.compensation.method import Tuning
+    from fdvv.rendering.actuation_file import load_actuation
+    from fdvv.rendering.compensate import fit_cell, uncompensated
+    from fdvv.rendering.evaluation.verdict import headline
+    from fdvv.rendering.evaluation.vibration_presses import Playback
+    from fdvv.rendering.probe import probe as judge
+
     ui.check_output(figure, *ui.FIGURES)
     ui.check_output(report, ".html")
     jnds = opened_jnds(jnds_from)

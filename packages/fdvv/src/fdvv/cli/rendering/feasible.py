@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.options import closing
 from fdvv.cli.rendering.session import Pressing, beside, session_options
 from fdvv.cli.settings import settings_options
-from fdvv.compensation.identification.rig_file import load_rig
 from fdvv.force_text import ForceTitle, force_text, force_unit
-from fdvv.model.model import FDVVModel
-from fdvv.rendering.actuation_file import load_actuation
-from fdvv.rendering.feasibility import feasibility, feasible_curves
-from fdvv.rendering.probe import ProbeResult, probe
-from fdvv.rendering.session import Session
 from fdvv.rendering.settings import FeasibleSettings
+
+if TYPE_CHECKING:
+    from fdvv.model.model import FDVVModel
+    from fdvv.rendering.probe import ProbeResult
+    from fdvv.rendering.session import Session
 
 NO_RIG = (
     "fdvv feasible needs --rig-known FILE.rig.json, what was learned from presses on this rig: "
@@ -52,6 +50,10 @@ def feasible(
     is intended, the one this rig can reach within its limits, its lag and its loop, and the error to expect
     after compensation, an estimate. The device is asked for its settings only, unless --actuation is named.
     """
+    from fdvv.button.open import open_button
+    from fdvv.compensation.identification.rig_file import load_rig
+    from fdvv.rendering.feasibility import feasibility, feasible_curves
+
     ui.check_output(figure, *ui.FIGURES)
     if rig_known is None:
         click.echo(NO_RIG)
@@ -82,6 +84,9 @@ def _measure(
     as_json: bool,
 ) -> ProbeResult:
     """Probe a learned table on the device."""
+    from fdvv.rendering.actuation_file import load_actuation
+    from fdvv.rendering.probe import probe
+
     learned, speeds = load_actuation(actuation), settings.velocities_mm_s
     with pressing.guided(session, as_json) as (found, view, guide):
         return probe(

@@ -16,17 +16,15 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.cue import show_cue
 from fdvv.cli.options import closing, packed
-from fdvv.compensation.presses import AcceptanceLimits
-from fdvv.device.contract import Device
-from fdvv.device.open import pressed_by_person
 from fdvv.force_text import ForceTitle, force_number, force_text, force_unit
-from fdvv.rendering.session import MANIFEST, Session, read_manifest
-from fdvv.rendering.session_run import Guide, PressDone, PressRequest, VelocityProgress
 from fdvv.rendering.settings import PressSettings
-from fdvv.twin.files import FIRST_RIG, shipped_rigs
 
 if TYPE_CHECKING:
     from rich.live import Live
+
+    from fdvv.device.contract import Device
+    from fdvv.rendering.session import Session
+    from fdvv.rendering.session_run import Guide, PressDone, PressRequest, VelocityProgress
 
 REDRAW_s = 0.1
 Cue = Callable[[float, Callable[[str], None]], None]
@@ -135,6 +133,8 @@ RECOMMENDED_ON = ("twin", "host")
 
 def recommended_for(device: str) -> Path | None:
     """Return the rig to simulate where none is named; None for a device that has its own."""
+    from fdvv.twin.files import FIRST_RIG, shipped_rigs
+
     return shipped_rigs()[FIRST_RIG] if device in RECOMMENDED_ON else None
 
 
@@ -156,12 +156,18 @@ class Pressing:
 
     def _began_without_rig(self) -> bool:
         """Whether the presses in the folder were made on the twin's own rig, as before 0.2."""
+        from fdvv.rendering.session import MANIFEST, read_manifest
+
         if not (self.folder and (self.folder / MANIFEST).is_file()):
             return False
         return "rig_toml_sha256" not in read_manifest(self.folder / MANIFEST).device
 
     def session(self, settings: PressSettings, default: Path) -> Session:
         """Choose where presses are kept; default is the folder for a person's. InputError if it cannot be."""
+        from fdvv.compensation.presses import AcceptanceLimits
+        from fdvv.device.open import pressed_by_person
+        from fdvv.rendering.session import Session
+
         folder = self.folder or (default if pressed_by_person(self.device) else None)
         if folder:
             ui.check_folder(folder)
@@ -171,6 +177,9 @@ class Pressing:
     @contextmanager
     def guided(self, session: Session, as_json: bool) -> Iterator[tuple[Device, LineView | TableView, Guide]]:
         """Open the device, show the session, and let the device go at the end, whatever happens."""
+        from fdvv.device.open import pressed_by_person
+        from fdvv.rendering.session_run import Guide
+
         with (
             closing(session.open_device(self.device)) as found,
             session_view(pressed_by_person(self.device), as_json, self.verbose) as view,

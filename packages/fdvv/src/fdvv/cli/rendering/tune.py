@@ -4,27 +4,21 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from fdvv.button.open import open_button
 from fdvv.cli import ui
 from fdvv.cli.cue import show_cue
 from fdvv.cli.options import closing, exciter_option, opened_exciter
 from fdvv.cli.rendering.session import Pressing, beside, session_options
 from fdvv.cli.settings import settings_options
-from fdvv.compensation.method import UNTUNED
-from fdvv.device.open import pressed_by_person
 from fdvv.errors import InputError
-from fdvv.model.file import MODEL_SUFFIX, save_model
-from fdvv.rendering.actuation_file import load_actuation
-from fdvv.rendering.session_run import Guide, PressRequest
 from fdvv.rendering.settings import TuneSettings
-from fdvv.rendering.tune_candidates import candidates_for, simulated_observer
-from fdvv.rendering.tune_vibration import TuneSetup
-from fdvv.rendering.tune_vibration import tune_vibration as ask
-from fdvv.vibration.tune import Preferred, Question
+
+if TYPE_CHECKING:
+    from fdvv.rendering.session_run import Guide, PressRequest
+    from fdvv.vibration.tune import Preferred, Question
 
 RATE = "how close to the real button, 1 (not at all) to 7 (the same); r presses again"
 
@@ -45,6 +39,8 @@ class TuneView:
 
     @property
     def guide(self) -> Guide:
+        from fdvv.rendering.session_run import Guide
+
         return Guide(self._ask, lambda text: ui.notice(text, self._as_json))
 
     def _ask(self, ask: PressRequest) -> None:
@@ -64,6 +60,8 @@ class TuneView:
 
     def answer(self, question: Question) -> int | Preferred | None:
         """Ask until the answer is one; None to press again."""
+        from fdvv.vibration.tune import Preferred
+
         self._press = 0
         if len(question.templates) == 1:
             answer = _prompt(RATE, [*map(str, range(1, 8)), "r"])
@@ -115,6 +113,14 @@ def tune(
 
     Every answer is on file before the next question; the same command goes on where a session stopped.
     """
+    from fdvv.button.open import open_button
+    from fdvv.compensation.method import UNTUNED
+    from fdvv.model.file import MODEL_SUFFIX, save_model
+    from fdvv.rendering.actuation_file import load_actuation
+    from fdvv.rendering.tune_candidates import candidates_for, simulated_observer
+    from fdvv.rendering.tune_vibration import TuneSetup
+    from fdvv.rendering.tune_vibration import tune_vibration as ask
+
     ui.check_output(output, MODEL_SUFFIX)
     _check_observer(pressing.device, simulated)
     model, known = open_button(button), opened_exciter(exciter)
@@ -147,6 +153,8 @@ def tune(
 
 
 def _check_observer(device: str, simulated: bool) -> None:
+    from fdvv.device.open import pressed_by_person
+
     if simulated and pressed_by_person(device):
         reason = "a person presses it, and nobody's answers would be kept"
         raise InputError("--simulated-observer", device, reason, "leave the option out")
