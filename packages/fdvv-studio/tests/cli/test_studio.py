@@ -30,7 +30,7 @@ def test_the_browser_is_opened_on_a_file_and_its_arguments_hold_no_token(
         assert came.wait(10)
 
     monkeypatch.setattr("fdvv_studio.cli.studio.webbrowser.open", browser)
-    monkeypatch.setattr("fdvv_studio.cli.studio.serve", serve)
+    monkeypatch.setattr("fdvv_studio.studio.server.serve", serve)
     if there:
         (tmp_path / "work").mkdir()
     ran = fdvv("studio", "--project", "work")

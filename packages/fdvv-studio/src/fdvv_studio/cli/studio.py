@@ -13,9 +13,6 @@ import click
 from fdvv.cli import ui
 from fdvv.errors import InputError
 from fdvv.force_text import shown_in
-from fdvv_studio.studio.auth import opening_file
-from fdvv_studio.studio.server import serve
-from fdvv_studio.studio.studio import Studio
 
 
 @click.command()
@@ -54,6 +51,9 @@ def studio(
     everything is kept.
     """
     from fdvv_studio.library.library import Library
+    from fdvv_studio.studio.auth import opening_file
+    from fdvv_studio.studio.server import serve
+    from fdvv_studio.studio.studio import Studio
 
     _check_host(host, share)
     # refuse at once what the background could not read

@@ -138,14 +138,16 @@ def law_of(
     sensor: Path | None,
 ) -> PaperLaw | Method[Any]:
     """Return the method with what files say of the rig and of its force sensor. SettingError, InputError."""
-    from fdvv.compensation.identification.prior_file import load_prior, load_sensor
-    from fdvv.compensation.identification.rig_file import load_learned_rig
-
     settings.check_known(rig_known=rig_known, save_rig=save_rig, prior=prior, sensor=sensor)
     if prior and rig_known:
         raise InputError(
             "--prior", "option", "says what --rig-known FILE holds already", "leave one of them out"
         )
+    if settings.method == "paper":
+        return settings.law()
+    from fdvv.compensation.identification.prior_file import load_prior, load_sensor
+    from fdvv.compensation.identification.rig_file import load_learned_rig
+
     law: Any = settings.law(load_learned_rig(rig_known) if rig_known else None)
     if prior:
         law = replace(law, prior=load_prior(prior))

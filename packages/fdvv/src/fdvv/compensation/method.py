@@ -14,6 +14,9 @@ from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import ForceLoopGains
 from fdvv.units import FloatArray
 
+if TYPE_CHECKING:
+    from fdvv.compensation.identification.rig_file import LearnedRig
+
 
 @dataclass(frozen=True)
 class Tuning:
@@ -205,10 +208,14 @@ class Method(TrialSource[S], Protocol[S]):
     ----------
     name : with its additions, for records.
     bin_mm : step of the tables it learns.
+    learned_rig : from an earlier job, which is then not identified; None for methods that learn tables only.
     """
 
     @property
     def name(self) -> str: ...
+
+    @property
+    def learned_rig(self) -> LearnedRig | None: ...
 
     @property
     def bin_mm(self) -> float: ...
@@ -217,6 +224,10 @@ class Method(TrialSource[S], Protocol[S]):
 
     def done(self, state: S) -> Outcome:
         """Return what has been learned so far; valid at any time."""
+        ...
+
+    def learned(self, state: S) -> LearnedRig | None:
+        """Return the rig, for other buttons; None for methods that learn tables only."""
         ...
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -45,6 +46,7 @@ class PerCurve:
 
     law: PaperLaw = field(default_factory=PaperLaw)
     whole_surface: bool = True
+    learned_rig: ClassVar[None] = None
 
     @property
     def name(self) -> str:
@@ -107,6 +109,9 @@ class PerCurve:
         complete = self._at(state) is None
         sentence = f"{state.presses} presses" if complete else f"stopped after {state.presses} presses"
         return Outcome(surface, curves, state.presses, complete, sentence)
+
+    def learned(self, state: JobState) -> None:
+        """Nothing is learned of the rig."""
 
     def _at(self, state: JobState) -> int | None:
         """Return the row to press next: the first unfinished one, or the one with the fewest presses."""

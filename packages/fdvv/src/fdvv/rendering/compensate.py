@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 from fdvv.compensation.feasibility.limits import full_duty_cN
-from fdvv.compensation.force_loop.method import ForceLoop
-from fdvv.compensation.identification.rig_file import LearnedRig
-from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.compensation.method import CompensationJob, CurveOutcome, Method, Outcome, PressCount
 from fdvv.compensation.paper import PaperLaw
 from fdvv.compensation.per_curve import PerCurve
 from fdvv.compensation.presses import judge_press
-from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.contract import Device, ForceLoopDevice
 from fdvv.device.lacking import lacking
 from fdvv.device.remote import Remote
@@ -23,20 +19,19 @@ from fdvv.io.documents import finite, to_plain
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import CellSpec, ForceLoopGains
-from fdvv.rendering.known_rig import with_rig_check
 from fdvv.rendering.part_watch import watch_of
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
 from fdvv.rendering.session import Session
 from fdvv.rendering.session_log import PressLog
 from fdvv.rendering.session_run import Guide, Progress, SessionPlan, VelocityProgress, run
 
+if TYPE_CHECKING:
+    from fdvv.compensation.identification.rig_file import LearnedRig
+    from fdvv.compensation.identification.rig_model import RigModel
+    from fdvv.compensation.rig_aware import RigAware
+
 SLOWEST_LOOP_s = ForceLoopGains.REALS["tick_s"][1]
 """A slower loop renders by tables: the cap would move on between two readings of the cell."""
-
-
-def _known_rig(method: Method[Any]) -> LearnedRig | None:
-    """Return the rig that a method was given instead of identifying it."""
-    return method.learned_rig if isinstance(method, RigAware | ForceLoop) else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,15 +103,15 @@ def compensate(
     Raises DeviceError if the device fails or too many presses in a row cannot be used, InputError on speeds
     that cannot be used and on a folder that is no session of this job, KeyboardInterrupt on Ctrl-C.
     """
-    if isinstance(law, RigAware):
+    if is_rig_aware(law):
         fit_cell(device, law.cell)
     method, session = _method(law, device), session or Session()
     job = _job(device, model, velocities_mm_s, method)
-    start, known = method.init(job), _known_rig(method)
+    start, known = method.init(job), method.learned_rig
     if method.trial(start) is not None:
         check_force_sensor(device)
     guide = guide or Guide()
-    for line in (*lacking(device, vibrating=False), _too_slow(device) if isinstance(law, RigAware) else ""):
+    for line in (*lacking(device, vibrating=False), _too_slow(device) if is_rig_aware(law) else ""):
         if line:
             guide.notice(line)
     speeds = job.target.velocity_mm_s.tolist()
@@ -134,6 +129,9 @@ def compensate(
             parts=watch_of(device, job.travel_mm, session.checked_in),
         )
         if known and not log.used:  # a resumed session has been checked already
+            from fdvv.compensation.force_loop.method import ForceLoop
+            from fdvv.rendering.known_rig import with_rig_check
+
             about = known.rig, job.travel_mm, isinstance(method, ForceLoop)
             plan = replace(plan, progress=with_rig_check(plan.progress, plan.guide.notice, *about))
         state = run(device, plan, start, log)
@@ -144,10 +142,17 @@ def compensate(
         skipped = tuple(str(entry) for entry in log.entries if not entry.used)
     info = device.info()
     names = method.name, model.name, info.name, model.travel_mm
-    # other methods learn tables only
-    learned = method.learned(state) if isinstance(method, RigAware | ForceLoop) else None
     taken = known.rig if known else None
-    return CompensationResult(*names, outcome, skipped, info.simulated, receipt, learned, taken)
+    return CompensationResult(*names, outcome, skipped, info.simulated, receipt, method.learned(state), taken)
+
+
+def is_rig_aware(law: PaperLaw | Method[Any] | None) -> TypeGuard[RigAware]:
+    """Return whether a law identifies the rig; the paper's does not, and leaves that code unread."""
+    if law is None or isinstance(law, PaperLaw | PerCurve):
+        return False
+    from fdvv.compensation.rig_aware import RigAware
+
+    return isinstance(law, RigAware)
 
 
 def velocity_progress(
@@ -177,7 +182,9 @@ def uncompensated(
 
 
 def _method(law: PaperLaw | Method[Any] | None, device: Device) -> Method[Any]:
-    if isinstance(law, RigAware) and (cell := loop_cell(law, device)):
+    if is_rig_aware(law) and (cell := loop_cell(law, device)):
+        from fdvv.compensation.force_loop.method import ForceLoop
+
         return ForceLoop(cell, device.info().tick_s, law.rounds, law.learned_rig, prior=law.prior)
     return PerCurve(law or PaperLaw()) if law is None or isinstance(law, PaperLaw) else law
 

@@ -11,7 +11,6 @@ from fdvv.device.contract import Device
 from fdvv.device.remote import Remote
 from fdvv.eventlog import read_bodies
 from fdvv.force_text import force_text
-from fdvv.rendering.part_check import CHECK_cN, check_parts, confirmed
 from fdvv.rendering.session import now
 from fdvv.rendering.session_log import PRESSES, PRESSES_KIND, CheckRecord, PressLog
 from fdvv.rendering.session_run import Guide, PressRequest
@@ -26,6 +25,8 @@ class PartWatch:
 
     def check(self, device: Device, guide: Guide, log: PressLog) -> None:
         """Check the parts, unless the log has a check of today. Raises PartFaultError, DeviceError."""
+        from fdvv.rendering.part_check import CHECK_cN, check_parts
+
         assert isinstance(device, Remote)
         checks = (log.checked, *map(_last_check, self.checked_in))
         if any(check and _is_today(check.made) for check in checks):
@@ -41,6 +42,8 @@ class PartWatch:
 
     def confirmed(self, device: Device, found: Found) -> Found:
         """Return what was found, after a look at the rig at rest where a press cannot tell parts apart."""
+        from fdvv.rendering.part_check import confirmed
+
         assert isinstance(device, Remote)
         return replace(found, fault=confirmed(device, found.fault))
 

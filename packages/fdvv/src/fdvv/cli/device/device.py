@@ -17,7 +17,6 @@ from fdvv.cli.options import device_option, opened, remote
 from fdvv.device.serial import serial_ports
 from fdvv.errors import BuildError
 from fdvv.force_text import ForceTitle, force_name, force_number, force_text
-from fdvv.protocol.tables import Fault, Mode, Part, SelfTestResult
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -148,6 +147,8 @@ def _fact(name: str, value: Any) -> list[object]:
 
 
 def _firmware(found: Remote) -> dict[str, Any]:
+    from fdvv.protocol.tables import Mode
+
     hello, client = found.client.hello, found.client
     version = ".".join(str(hello.firmware >> shift & 255) for shift in (16, 8, 0))
     return {
@@ -176,6 +177,8 @@ def selftest(spec: str, as_json: bool) -> None:
     """Have a device test its parts; exit status 1 if one fails."""
     import struct
 
+    from fdvv.protocol.tables import Part, SelfTestResult
+
     with remote(spec) as found:
         reply = found.client.selftest()
         simulated = found.info().simulated
@@ -201,6 +204,8 @@ def selftest(spec: str, as_json: bool) -> None:
 @device_option
 def clear(spec: str) -> None:
     """Clear the latched fault of a device, once its cause is gone; say what it was."""
+    from fdvv.protocol.tables import Fault
+
     with remote(spec) as found:
         report = found.fault()
         if report.fault is not Fault.NONE:

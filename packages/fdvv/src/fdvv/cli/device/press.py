@@ -21,7 +21,6 @@ from fdvv.cli.options import (
 )
 from fdvv.errors import InputError
 from fdvv.force_text import ForceTitle
-from fdvv.protocol.messages import head_of, travel_mm_of
 
 
 @click.command()
@@ -93,6 +92,8 @@ def upload(as_json: bool, **options: Any) -> None:
 
     A model is rendered by its own force, not compensated for the rig.
     """
+    from fdvv.protocol.messages import head_of, travel_mm_of
+
     with _uploaded(**options) as (found, image):
         name = found.info().name
     travel_mm = travel_mm_of(image)

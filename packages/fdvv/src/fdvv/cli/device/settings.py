@@ -13,9 +13,6 @@ from fdvv.cli.options import device_option, remote
 from fdvv.errors import DeviceError, InputError, did_you_mean
 from fdvv.io.documents import read_toml
 from fdvv.io.files import write_atomic
-from fdvv.protocol.tables import Fault, Settings
-
-FIELDS = tuple(Settings.LIMITS)
 
 
 @click.group()
@@ -52,6 +49,8 @@ def set_(values: tuple[str, ...], spec: str) -> None:
     The board refuses what is out of range, and what is looser than it was built for. It forgets its program,
     and a fault whose cause the settings were is cleared, such as a supply that they did not expect.
     """
+    from fdvv.protocol.tables import Fault
+
     asked: dict[str, int] = {}
     for value in values:
         asked |= _of_words(value) if "=" in value else _of_file(Path(value))
@@ -86,10 +85,12 @@ def _of_file(path: Path) -> dict[str, int]:
 
 
 def _checked(values: dict[str, object], source: str) -> dict[str, int]:
+    from fdvv.protocol.tables import Settings
+
     found = {}
     for name, value in values.items():
-        if name not in FIELDS:
-            remedy = did_you_mean(name, FIELDS, "fdvv device settings get shows them all")
+        if name not in Settings.LIMITS:
+            remedy = did_you_mean(name, Settings.LIMITS, "fdvv device settings get shows them all")
             raise InputError(source, name, "is no setting", remedy)
         low, high = Settings.LIMITS[name]
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:

@@ -57,9 +57,6 @@ def compensate(
     be used, because it stopped short, paused or missed its speed, is reported with the reason and made again.
     """
     from fdvv.button.open import open_button
-    from fdvv.compensation.identification.prior_file import check_range
-    from fdvv.compensation.identification.rig_file import save_rig as keep
-    from fdvv.rendering.actuation_file import save_actuation
     from fdvv.rendering.compensate import compensate as learn
 
     ui.check_output(output, ".actuation.json")
@@ -67,13 +64,19 @@ def compensate(
     law, speeds = law_of(settings, save_rig=save_rig, **files), settings.velocities_mm_s
     model, pressing = open_button(button), pressing.on_recommended_rig()
     if files["sensor"]:
+        from fdvv.compensation.identification.prior_file import check_range
+
         check_range(files["sensor"], model, speeds)
     session = pressing.session(settings, beside(output, button, "session"))
     with pressing.guided(session, as_json) as (found, view, guide):
         result = learn(found, model, speeds, law, view.done, session, guide)
     if output:
+        from fdvv.rendering.actuation_file import save_actuation
+
         save_actuation(result, output)
     if save_rig and result.learned_rig:
+        from fdvv.compensation.identification.rig_file import save_rig as keep
+
         keep(result.learned_rig, save_rig)
     _print({**result.to_dict(), **_receipt(result)}, as_json)
     if not as_json:
