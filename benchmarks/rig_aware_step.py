@@ -47,7 +47,7 @@ def learned(device: Device) -> tuple[list[float], RigState]:
 def tables_ms(state: RigState) -> float:
     """Return the time that tables of another button take, from what the rig has taught."""
     target = ForceSurface.of_model(OTHER, SPEEDS_mm_s, METHOD.bin_mm)
-    job, method = CompensationJob(target, OTHER.travel_mm, 440.0), RigAware(0, METHOD.learned(state))
+    job, method = CompensationJob(target, OTHER.travel_mm, 440.0), RigAware(0, METHOD.rig_after(state))
     begun = time.perf_counter()
     method.done(method.init(job))
     return 1000 * (time.perf_counter() - begun)

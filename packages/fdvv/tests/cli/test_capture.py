@@ -352,7 +352,7 @@ AT_BENCH = ("capture", FILE, "--device", "serial:/dev/bench", "--button", "door 
 
 
 def at(board: PressedBoard, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fdvv.cli.bench.capture.open_bench", lambda *_: SerialBench(board))
+    monkeypatch.setattr("fdvv.device.bench.open_bench", lambda *_: SerialBench(board))
 
 
 def test_a_person_at_a_bench_is_prompted_informed_and_prompted_again(

@@ -166,14 +166,14 @@ def test_in_a_slow_stroke_the_table_takes_off_the_friction_that_the_controller_d
 
 
 def test_what_was_taught_begins_the_next_job(states: list[RigState]) -> None:
-    memory = METHOD.learned(states[-1])
+    memory = METHOD.rig_after(states[-1])
     end = METHOD.done(states[-1])
     again = RigAware(rounds=0, learned_rig=memory)
     np.testing.assert_allclose(again.done(again.init(JOB)).surface.press_cN, end.surface.press_cN)
     expected = [c.mean_error_cN for c in again.done(again.init(JOB)).curves]
     assert expected == pytest.approx([c.mean_error_cN for c in end.curves])
     with pytest.raises(ModelError, match="not identified yet"):
-        METHOD.learned(states[2])
+        METHOD.rig_after(states[2])
 
 
 def test_after_a_press_that_went_astray_the_best_row_is_given_and_remembered() -> None:
@@ -190,7 +190,7 @@ def test_after_a_press_that_went_astray_the_best_row_is_given_and_remembered() -
     np.testing.assert_allclose((kept.press_cN - plain.press_cN)[0, beyond], 7.0)
     np.testing.assert_array_equal(kept.press_cN[1:], plain.press_cN[1:])
     np.testing.assert_array_equal(kept.release_cN, plain.release_cN)
-    np.testing.assert_array_equal(method.learned(state).residual.press_cN[0], 7.0)
+    np.testing.assert_array_equal(method.rig_after(state).residual.press_cN[0], 7.0)
     assert method.done(state).curves[0].mean_error_cN == 1.0
 
 

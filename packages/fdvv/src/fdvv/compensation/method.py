@@ -226,7 +226,7 @@ class Method(TrialSource[S], Protocol[S]):
         """Return what has been learned so far; valid at any time."""
         ...
 
-    def learned(self, state: S) -> LearnedRig | None:
+    def rig_after(self, state: S) -> LearnedRig | None:
         """Return the rig, for other buttons; None for methods that learn tables only."""
         ...
 

@@ -110,7 +110,7 @@ class PerCurve:
         sentence = f"{state.presses} presses" if complete else f"stopped after {state.presses} presses"
         return Outcome(surface, curves, state.presses, complete, sentence)
 
-    def learned(self, state: JobState) -> None:
+    def rig_after(self, state: JobState) -> None:
         """Nothing is learned of the rig."""
 
     def _at(self, state: JobState) -> int | None:

@@ -287,7 +287,7 @@ class RigAware:
         curves = curves_of(state.job, state.errors, self.learned_rig)
         return Outcome(surface, curves, made, complete, sentence, self._tuning(state))
 
-    def learned(self, state: RigState) -> LearnedRig:
+    def rig_after(self, state: RigState) -> LearnedRig:
         """Return the rig with its learned residual, for other buttons. ModelError before identification."""
         rig, tables = state.identified
         press, release = (table.rows_cN for table in best_rows(tables, state.errors))

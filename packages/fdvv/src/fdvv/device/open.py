@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from fdvv import extras
+from fdvv.device.boards import HostBoard, LibraryBoard
 from fdvv.device.contract import Device
+from fdvv.device.linked import Board, LinkedDevice
+from fdvv.device.own_rig import OwnRigPerson, find_rig
+from fdvv.device.plant import Person
 from fdvv.device.recording import ReplayDevice
 from fdvv.device.remote import PressedDevice
 from fdvv.device.serial import SerialPort
+from fdvv.device.twin import SimulatedPerson, TwinDevice
 from fdvv.errors import InputError
-
-if TYPE_CHECKING:
-    from fdvv.device.linked import Board, LinkedDevice
-    from fdvv.device.plant import Person
-    from fdvv.twin.finger import Finger
-    from fdvv.twin.rig import Rig
+from fdvv.twin.finger import Finger
+from fdvv.twin.rig import Rig
 
 BUILT_ELF = Path("build") / "firmware" / "itsybitsy_m0.elf"
 """Where `make firmware` leaves the controller's program, from the folder of the repository."""
@@ -58,39 +58,22 @@ def open_device(spec: str, rig: Rig | None = None, finger: Finger | None = None,
     if kind == "serial" and where:
         return PressedDevice(SerialPort(where))
     if spec == "host":
-        from fdvv.device.boards import HostBoard, LibraryBoard
-
         # where a program can have no pseudo-terminal, the same firmware runs in this process
         board = LibraryBoard() if sys.platform == "win32" else HostBoard()
-        return _linked(board, rig, finger, seed)
+        return LinkedDevice(board, SimulatedPerson(rig, finger, seed))
     if spec == "twin":
-        from fdvv.device.twin import TwinDevice
-
         return TwinDevice(rig, finger, seed)
     if kind == "rig" and where:
         return _own_rig(where, seed)
     if kind in extras.names("rigs"):
         return _own_rig(kind, seed)
     if kind in extras.names("devices"):
-        from fdvv.device.linked import Board
-
         made = _of_extra(spec)
-        return _linked(made, rig, finger, seed) if isinstance(made, Board) else made
+        return LinkedDevice(made, SimulatedPerson(rig, finger, seed)) if isinstance(made, Board) else made
     raise InputError("--device", spec, "names no device", f"use one of {', '.join(KINDS)}")
 
 
-def _linked(board: Board, rig: Rig | None, finger: Finger | None, seed: int) -> LinkedDevice:
-    from fdvv.device.linked import LinkedDevice
-    from fdvv.device.twin import SimulatedPerson
-
-    return LinkedDevice(board, SimulatedPerson(rig, finger, seed))
-
-
 def _own_rig(name: str, seed: int) -> LinkedDevice:
-    from fdvv.device.boards import LibraryBoard
-    from fdvv.device.linked import LinkedDevice
-    from fdvv.device.own_rig import OwnRigPerson, find_rig
-
     person, board = OwnRigPerson(find_rig(name), seed), LibraryBoard()
     board.name = person.rig.numbers.name
     return LinkedDevice(board, person)
@@ -101,18 +84,12 @@ def person_of(spec: str, seed: int = 0) -> Person:
     that a package registers. Raises InputError on another one.
     """
     if spec == "twin":
-        from fdvv.device.twin import SimulatedPerson
-
         return SimulatedPerson(seed=seed)
-    from fdvv.device.own_rig import OwnRigPerson, find_rig
-
     return OwnRigPerson(find_rig(spec.removeprefix("rig:")), seed)
 
 
 def open_board(spec: str) -> Board:
     """Open a board of an extra as ``kind:where``. Raises BuildError if the extra is not installed."""
-    from fdvv.device.linked import Board
-
     made = _of_extra(spec)
     if not isinstance(made, Board):
         raise InputError(

@@ -129,10 +129,10 @@ def compensate(
             parts=watch_of(device, job.travel_mm, session.checked_in),
         )
         if known and not log.used:  # a resumed session has been checked already
-            from fdvv.compensation.force_loop.method import ForceLoop
             from fdvv.rendering.known_rig import with_rig_check
 
-            about = known.rig, job.travel_mm, isinstance(method, ForceLoop)
+            loop_closed = not is_rig_aware(method)  # which learns tables
+            about = known.rig, job.travel_mm, loop_closed
             plan = replace(plan, progress=with_rig_check(plan.progress, plan.guide.notice, *about))
         state = run(device, plan, start, log)
         outcome = method.done(state)
@@ -143,7 +143,9 @@ def compensate(
     info = device.info()
     names = method.name, model.name, info.name, model.travel_mm
     taken = known.rig if known else None
-    return CompensationResult(*names, outcome, skipped, info.simulated, receipt, method.learned(state), taken)
+    return CompensationResult(
+        *names, outcome, skipped, info.simulated, receipt, method.rig_after(state), taken
+    )
 
 
 def is_rig_aware(law: PaperLaw | Method[Any] | None) -> TypeGuard[RigAware]:

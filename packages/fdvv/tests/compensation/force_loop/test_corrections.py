@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.compensation.force_loop.corrections import StrokeCorrection
-from fdvv.compensation.force_loop.design import design_controller
-from fdvv.compensation.force_loop.response import LoopResponse
+from fdvv.compensation.force_loop.gains import design_controller
+from fdvv.compensation.force_loop.response import LoopResponse, StrokeCorrection
 from fdvv.compensation.force_loop.stability import LoopPlant
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray

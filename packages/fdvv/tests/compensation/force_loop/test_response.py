@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from fdvv.compensation.force_loop.design import design_controller
-from fdvv.compensation.force_loop.fingers import HeldFinger
+from fdvv.compensation.force_loop.gains import design_controller
 from fdvv.compensation.force_loop.response import LoopResponse, SLOPE_N_m
-from fdvv.compensation.force_loop.stability import LoopController, LoopPlant
+from fdvv.compensation.force_loop.stability import HeldFinger, LoopController, LoopPlant
 
 PLANT = LoopPlant(0.012, 4e-4, 0.5, 5e5, 20.0, 5e-5, 4e-5, 8e-5)
 TICK_s = 1e-4

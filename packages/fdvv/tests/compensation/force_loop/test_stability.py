@@ -8,15 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.compensation.force_loop.design import design_controller
-from fdvv.compensation.force_loop.fingers import HeldFinger, finger_bank
+from fdvv.compensation.force_loop.gains import design_controller
 from fdvv.compensation.force_loop.stability import (
     LARGEST_PEAK,
     COUNTED_quantile,
     FingerBank,
+    HeldFinger,
     LOOP_Hz,
     LoopController,
     LoopPlant,
+    finger_bank,
 )
 from fdvv.errors import ModelError
 

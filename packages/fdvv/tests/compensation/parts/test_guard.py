@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from fdvv.compensation.parts.balance import PressBalance
-from fdvv.compensation.parts.guard import Found, PartGuard, weak_coil
+from fdvv.compensation.parts.guard import Found, PartGuard, PressBalance, weak_coil
 from tests.compensation.parts.scripted_press import Scripted, TRAVEL_mm, WEIGHT_cN
 
 

@@ -12,10 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fdvv.compensation.force_loop.corrections import StrokeCorrection
-from fdvv.compensation.force_loop.design import design_controller
-from fdvv.compensation.force_loop.gains import force_loop_gains, plant_of_rig
-from fdvv.compensation.force_loop.response import LoopResponse
+from fdvv.compensation.force_loop.gains import design_controller, force_loop_gains, plant_of_rig
+from fdvv.compensation.force_loop.response import LoopResponse, StrokeCorrection
 from fdvv.compensation.identification.balance import Sensor
 from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.identification.rig_model import Prior, RigModel
@@ -178,10 +176,10 @@ class ForceLoop:
         curves = curves_of(state.job, state.pressed, self.learned_rig)
         return Outcome(surface, curves, made, complete, sentence, self._tuning(state))
 
-    def learned(self, state: LoopState) -> LearnedRig:
+    def rig_after(self, state: LoopState) -> LearnedRig:
         """Return the rig and what the loop alone leaves. ModelError before identification."""
         if state.tables is not None:
-            return self._by_tables.learned(state.tables)
+            return self._by_tables.rig_after(state.tables)
         if state.rig is None:
             raise ModelError("the rig is not identified yet")
         target, zero = state.job.target, np.zeros_like(state.job.target.press_cN)
