@@ -24,7 +24,7 @@ from fdvv.bench.capture import TakeDone, TakeRequest, VelocityProgress
 from fdvv.bench.plan import COUNT_IN_s, Step
 from fdvv.bench.plan import DWELL_s as TOLD_DWELL_s
 from fdvv.bench.take_check import TakeCheck
-from fdvv.cli.bench.capture_view import CaptureLines, CaptureTable, beeps, frame, request_line
+from fdvv.cli.bench.capture import CaptureLines, CaptureTable, beeps, frame, request_line
 from fdvv.cli.cue import BEATS, BEAT_s, DWELL_s, TONES_Hz, beeper, tone
 from fdvv.device.bench import SerialBench
 from fdvv.errors import InputError

@@ -33,14 +33,14 @@ COMMANDS = {
         "fdvv.cli.device.device",
         "Work with a device: look at it, press it, set it, check it, or make one of your own.",
     ),
-    "export": ("fdvv.cli.exchange", "Write a button, its vibration or a recording for another program."),
+    "export": ("fdvv.cli.models", "Write a button, its vibration or a recording for another program."),
     "feasible": (
         "fdvv.cli.rendering.feasible",
         "Check whether a rig can render a button, and why not, before any upload.",
     ),
     "fit": ("fdvv.cli.fit", "Fit measured force curves: one file, or every file of a folder."),
-    "import": ("fdvv.cli.exchange", "Read a file of another program into a model."),
-    "join": ("fdvv.cli.bench.join", "Join logs of instruments that ran at once into a recording."),
+    "import": ("fdvv.cli.models", "Read a file of another program into a model."),
+    "join": ("fdvv.cli.bench.process", "Join logs of instruments that ran at once into a recording."),
     "merge": ("fdvv.cli.models", "Merge force curves at several velocities into one FDVV model."),
     "probe": ("fdvv.cli.rendering.compensate", "Measure on fresh presses how well a rig renders a model."),
     "process": (

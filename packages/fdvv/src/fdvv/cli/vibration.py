@@ -1,4 +1,4 @@
-"""fdvv vibration: a button's vibrations, as they are meant and as a rig plays them."""
+"""fdvv vibration: a button's vibrations as they are meant and as a rig plays them, and those of a sound."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ import click
 
 from fdvv.cli import ui
 from fdvv.cli.options import exciter_option, opened_exciter
-from fdvv.errors import InputError
+from fdvv.errors import FitError, InputError
 
 if TYPE_CHECKING:
     from fdvv.model.vibration import Vibration
     from fdvv.vibration.exciter import KnownExciter
+    from fdvv.vibration.sound import SoundRing
 
 
 @click.command()
@@ -48,7 +49,6 @@ def vibration(
     """  # fmt: skip
     from fdvv.button.export_file import vibration_of
     from fdvv.button.open import open_button
-    from fdvv.cli.vibration_sound import is_sound, show_sound
     from fdvv.program.render_vibration import vibration_wav
 
     if is_sound(button):
@@ -115,3 +115,77 @@ def _print(document: dict[str, Any]) -> None:
     if document["wav"]:
         scale = f"full scale is {document['wav']['full_scale']:.4g} {document['wav']['unit']}"
         click.echo(f"written to {document['wav']['path']}; {scale}")
+
+
+LONGEST_s = 5.0
+
+
+def is_sound(spec: str) -> bool:
+    """Return whether a file's first bytes are those of a sound."""
+    from fdvv.recording.sound import sound_kind
+
+    path = Path(spec)
+    if not path.is_file():
+        return False
+    with path.open("rb") as stream:
+        return sound_kind(stream.read(64)) is not None
+
+
+def show_sound(spec: str, least_carried: float, as_json: bool) -> None:
+    """Print the modes of a key press in a sound. InputError where they carry less than that of its energy."""
+    import numpy as np
+
+    from fdvv.recording.read import read_log
+    from fdvv.vibration.sound import sound_ring
+
+    stream = read_log(Path(spec)).takes[0].streams[0]
+    seconds = stream.t_s.size / stream.rate_Hz
+    if seconds > LONGEST_s:
+        reason = f"it lasts {seconds:.1f} s, and one key press at most {LONGEST_s:g}"
+        raise InputError(spec, "samples", reason, "cut one press out of it")
+    values = np.asarray(stream.values, dtype=np.float64)
+    try:
+        found = sound_ring(values / np.abs(values).max() if np.any(values) else values, stream.rate_Hz)
+    except FitError as error:
+        raise InputError(spec, "samples", str(error), "give the sound of one key press") from error
+    about = _about_sound(found)
+    if found.carried_ratio < least_carried:
+        place = f"ring from {1e3 * found.onset_s:.1f} to {1e3 * found.end_s:.1f} ms"
+        part = f"{_percent(found.carried_ratio)} of its energy is in damped modes"
+        reason = f"{part}, at least {_percent(least_carried)} is needed: it is no ring of a few modes"
+        remedy = "give a cleaner sound of one press, or lower --least-carried and doubt the modes"
+        raise InputError(spec, place, reason, remedy, about)
+    if as_json:
+        ui.print_json({"sound": spec, "rate_Hz": stream.rate_Hz, "duration_s": seconds, **about})
+    else:
+        _print_sound(spec, found)
+
+
+def _about_sound(found: SoundRing) -> dict[str, Any]:
+    names = ("frequency_Hz", "decay_1_s", "amplitude", "duration_s", "frequency_sd_Hz", "decay_sd_1_s")
+    return {
+        "onset_s": found.onset_s,
+        "end_s": found.end_s,
+        "cut": found.cut,
+        "carried_ratio": found.carried_ratio,
+        "felt_ratio": found.felt_ratio,
+        "modes": [{name: getattr(mode, name) for name in names} for mode in found.modes],
+    }
+
+
+def _percent(ratio: float) -> str:
+    return f"{100 * ratio:.0f} %"
+
+
+def _print_sound(spec: str, found: SoundRing) -> None:
+    onset = "the file begins inside the sound" if found.cut else f"onset at {1e3 * found.onset_s:.2f} ms"
+    length = f"ring of {1e3 * (found.end_s - found.onset_s):.1f} ms"
+    click.echo(f"{ui.one_line(Path(spec).name)}: {onset}, {length}")
+    rows = [
+        [m.frequency_Hz, m.frequency_sd_Hz, m.decay_1_s, 1e3 * m.duration_s, m.amplitude] for m in found.modes
+    ]
+    digits = {"Hz": 1, "sd": 1, "decay 1/s": 0, "ms to a tenth": 2, "of the peak": 3}
+    ui.print_table(list(digits), rows, left=0, digits=digits)
+    carried = f"the modes carry {_percent(found.carried_ratio)} of the ring's energy"
+    felt = f"{_percent(found.felt_ratio)} of it lies below 1 kHz, where fingers feel"
+    click.echo(f"{carried}; {felt}")
