@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import click
 
@@ -125,11 +125,9 @@ def like(
     BUTTON is a built-in, a *.fdvv.json file, a measured file, or the id of one of the library. Distances are
     in just noticeable differences (docs/explanation/library.md); they are an estimate, not tried on people.
     """
-    from fdvv_studio.library.library import By as LikeBy
     from fdvv_studio.library.library import Library
 
     ui.check_output(output, ".csv")
-    assert by in get_args(LikeBy)
     opened, jnds = Library(folder), opened_jnds(jnds_from)
     hits = opened.like(button, by, len(opened.rows), jnds)  # type: ignore[arg-type]
     document = {"library": str(folder), "like": button, "by": by, "found": len(hits)}
