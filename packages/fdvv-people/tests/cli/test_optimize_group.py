@@ -41,7 +41,7 @@ def test_wrong_runs_are_refused_in_one_line_and_nothing_is_written(fdvv: Run, tm
 
 
 def test_words_and_numbers_of_options_are_those_of_what_they_set() -> None:
-    options = {option.name: option for option in (*run.params, *group.params)}
-    assert tuple(options["also"].type.choices) == WISHES
-    assert set(options["group"].type.choices) == set(GROUPS)
-    assert options["blocks"].default == BLOCKS
+    options = {option.name: option.to_info_dict() for option in (*run.params, *group.params)}
+    assert tuple(options["also"]["type"]["choices"]) == WISHES
+    assert set(options["group"]["type"]["choices"]) == set(GROUPS)
+    assert options["blocks"]["default"] == BLOCKS
