@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import typing
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
+from fdvv.compensation.identification import rig_file
 from fdvv.compensation.identification.rig_model import RigModel
+from fdvv.model import file as model_file
 from fdvv.model.jnd_file import JndRecord, MeasuredJnd
 from fdvv.model.model import FDVVModel
+from fdvv.program import file as program_file
 from fdvv.program.program import Program
-from fdvv.recording.file import Correction
+from fdvv.recording import file as recording_file
 from fdvv.recording.types import Recording, Take
 from fdvv.rendering.actuation_file import ActuationRecord
 from fdvv.rendering.run_summary import RunSummary
@@ -53,12 +57,14 @@ class FileKind:
     names : names of such files, in Markdown.
     purpose : what it is for, in Markdown.
     records : the records in it, by the place where they are: a file, or the key of a line.
+    needed : fields that must be there, although their record has a default.
     """
 
     title: str
     names: str
     purpose: str
     records: dict[str, Any]
+    needed: Collection[str] = ()
 
     @property
     def classes(self) -> tuple[type[Any], ...]:
@@ -72,30 +78,40 @@ def members(record: Any) -> tuple[type[Any], ...]:
 
 
 FILES = (
-    FileKind("Model", "`*.fdvv.json`", "A button. [More](model-file.md).", {"file": FDVVModel}),
+    FileKind(
+        "Model",
+        "`*.fdvv.json`",
+        "A button. [More](model-file.md).",
+        {"file": FDVVModel},
+        model_file.LAYOUT.needed,
+    ),
     FileKind(
         "Program",
         "`*.fdvv-program.json`",
         "A button of several states. [More](program-file.md).",
         {"file": Program},
+        program_file.LAYOUT.needed,
     ),
     FileKind(
         "Recording",
         "`*.recording.jsonl`",
-        "An [event log](#journals). [More](recording-file.md).",
-        {"head": Recording, "take": Take, "mend": Correction},
+        "An [event log](#journals). A `head` has no `takes`: each is a line. [More](recording-file.md).",
+        {"head": Recording, "take": Take, "mend": recording_file.Correction},
+        recording_file.LAYOUT.needed,
     ),
     FileKind(
         "Actuation",
         "`*.actuation.json`",
         "The command table that makes a rig feel like a button, as `fdvv compensate` learned it.",
         {"file": ActuationRecord},
+        rig_file.LAYOUT.needed,
     ),
     FileKind(
         "Known rig",
         "`*.rig.json`",
         "The identified rig ([how](../explanation/identification.md)) and what was learned on it.",
-        {"file": RigModel},
+        {"file": RigModel, "learned": rig_file.LearnedRecord},
+        rig_file.LAYOUT.needed,
     ),
     FileKind(
         "Known exciter",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Collection
 from functools import cache
 from inspect import isclass
 from typing import Any
@@ -34,7 +35,7 @@ def _kind(kind: FileKind) -> str:
     if len(kind.records) > 1:
         rows = [(f"`{where}`", _linked(*members(record))) for where, record in kind.records.items()]
         parts.append(table(("file or line", "record"), rows))
-    return "\n".join([*parts, *(_record(record) for record in reached(kind.classes))])
+    return "\n".join([*parts, *(_record(record, kind.needed) for record in reached(kind.classes))])
 
 
 def message_tables() -> str:
@@ -85,10 +86,10 @@ def messages() -> list[type[Any]]:
     return sorted(reached(tuple(roots)), key=lambda cls: (cls.__name__.lower(), cls.__name__))
 
 
-def _record(record: type[Any]) -> str:
+def _record(record: type[Any], needed: Collection[str] = ()) -> str:
     doc = describe(record)
     texts = [doc.text.summary, *doc.text.paragraphs] if doc.text else []
-    rows = [_row(field, doc.fields[field.name]) for field in fields(record)]
+    rows = [_row(field, doc.fields[field.name], needed) for field in fields(record)]
     info = inspect.type_info(record)
     if isinstance(info, inspect.StructType) and info.tag_field:
         rows.insert(0, (f"`{info.tag_field}`", f'`"{info.tag}"`', "", "", "names the record"))
@@ -96,8 +97,8 @@ def _record(record: type[Any]) -> str:
     return "\n".join([*parts, table(("field", "type", "default", "unit", "meaning"), rows) if rows else ""])
 
 
-def _row(field: inspect.Field, doc: FieldDoc) -> tuple[str, str, str, str, str]:
-    default = f"`{_default(field)}`" if not field.required else ""
+def _row(field: inspect.Field, doc: FieldDoc, needed: Collection[str]) -> tuple[str, str, str, str, str]:
+    default = "" if field.required or field.name in needed else f"`{_default(field)}`"
     return f"`{field.encode_name}`", in_words(field.type), default, doc.unit, escaped(doc.meaning)
 
 

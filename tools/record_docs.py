@@ -110,16 +110,14 @@ def unit_of(name: str) -> str:
 
 
 def describe(record: type[Any]) -> RecordDoc:
-    """Describe a record."""
     text, meanings, doc = _own(record)
-    found = {}
+    described = {}
     for field in fields(record):
         own_type = _has_own_type(field.type)
         meaning = meanings.get(field.name) or _word(record, field.name, own_type)
-        found[field.name] = FieldDoc(
-            field.name, meaning, bool(meaning) or own_type or mentions(doc, field.name)
-        )
-    return RecordDoc(text, found)
+        explained = bool(meaning) or own_type or mentions(doc, field.name)
+        described[field.name] = FieldDoc(field.name, meaning, explained)
+    return RecordDoc(text, described)
 
 
 def _has_own_type(kind: msgspec.inspect.Type) -> bool:

@@ -20,8 +20,9 @@ KINDS = ("?", "|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<i8", "<u8", "<f4", "<f
 """Kinds of number that an array may hold, as NumPy writes them."""
 if TYPE_CHECKING:
     Packed = npt.NDArray[Any]
+    PackedFloats = npt.NDArray[np.float64]
 else:  # as a file holds such a field; its record makes an array of it
-    Packed = Annotated[
+    Packed = PackedFloats = Annotated[
         str,
         Meta(
             pattern=r"^(\?|\|[iu]1|<[iu][248]|<f[48])(\[\d+(,\d+)+\])?:",

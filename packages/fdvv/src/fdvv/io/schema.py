@@ -14,17 +14,6 @@ from fdvv.io.documents import PLAIN, Kind, Layout
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
-def tidy_schema(value: Any) -> Any:
-    """Strip the indentation that Python before 3.13 leaves in docstrings, and so in descriptions."""
-    if isinstance(value, dict):
-        # a property may itself be called "description"; then it is an object
-        return {
-            k: inspect.cleandoc(v) if k == "description" and isinstance(v, str) else tidy_schema(v)
-            for k, v in value.items()
-        }
-    return [tidy_schema(v) for v in value] if isinstance(value, list) else value
-
-
 def schema_of(record: type, kind: Kind, layout: Layout = PLAIN) -> dict[str, Any]:
     """Return the JSON schema of a file of one record."""
     (ref,), parts = components([record], layout)
@@ -36,9 +25,11 @@ def components(records: Sequence[type], layout: Layout = PLAIN) -> tuple[list[An
     """Return a reference to each record, and the schemas of all of them and of their parts by name."""
     refs, parts = msgspec.json.schema_components(records, ref_template="#/$defs/{name}")
     for part in parts.values():
+        if "description" in part:  # before Python 3.13 a docstring keeps its indentation
+            part["description"] = inspect.cleandoc(part["description"])
         if "properties" in part:
             describe(part, layout)
-    return list(refs), tidy_schema(parts)
+    return list(refs), parts
 
 
 def add_head(schema: dict[str, Any], kind: Kind) -> None:
@@ -56,13 +47,12 @@ ENTRY = re.compile(r"^(\w+(?:, \w+)*) : (.*(?:\n .*)*)", re.MULTILINE)
 
 def describe(schema: dict[str, Any], layout: Layout) -> None:
     """Complete a dataclass's schema: what its docstring says, the order of fields, and which are needed."""
-    text = inspect.cleandoc(schema["description"])
-    schema["description"] = " ".join(text.partition("\n\n")[0].split())
     meanings = {
         name: " ".join(meaning.split()).rstrip(".").replace("None", "null")
-        for names, meaning in ENTRY.findall(text)
+        for names, meaning in ENTRY.findall(schema["description"])
         for name in names.split(", ")
     }
+    schema["description"] = " ".join(schema["description"].partition("\n\n")[0].split())
     properties = schema["properties"]
     schema["properties"] = {
         name: {"description": meanings[name], **properties[name]} for name in layout.sort(properties)

@@ -40,7 +40,7 @@ _KIND = Kind(FORMAT, VERSION, "an FDVV model", _REMEDY, oldest=1)
 _SPREADS = ("travel_spread", "actuation_spread", "reset_spread")
 _ACHIEVED = ("achieved_mm_s", "achieved_spread_mm_s")
 
-_LAYOUT = Layout(
+LAYOUT = Layout(
     # a line of numbers is easier to read after their count
     last=("curves", "vibrations", "provenance", *_SPREADS, "displacement_mm", "spread_cN", *_ACHIEVED),
     needed=("actuation_mm", "reset_mm", "interpolation"),
@@ -53,13 +53,13 @@ def schema() -> dict[str, Any]:
     """Return the JSON schema of the file format, as published in docs/reference/fdvv.schema.json."""
     from fdvv.io.schema import schema_of
 
-    return schema_of(FDVVModel, _KIND, _LAYOUT)
+    return schema_of(FDVVModel, _KIND, LAYOUT)
 
 
 def model_to_json(model: FDVVModel) -> str:
     """Write a model as the text of a ``*.fdvv.json`` file, of version 1 unless it holds spreads."""
     version = VERSION if _has_spreads(model) else 1
-    return pretty(document(model, _KIND, version, layout=_LAYOUT, keep=_is_written)) + "\n"
+    return pretty(document(model, _KIND, version, layout=LAYOUT, keep=_is_written)) + "\n"
 
 
 def _is_written(field: Field[Any], value: object) -> bool:
@@ -88,7 +88,7 @@ def model_from_json(text: str | bytes, source: object = "model") -> FDVVModel:
 
 
 def _model(data: bytes, source: object) -> FDVVModel:
-    model = decode(data, FDVVModel, _LAYOUT)
+    model = decode(data, FDVVModel, LAYOUT)
     if _has_spreads(model) and msgspec.json.decode(data, type=Head).version == 1:
         reason, remedy = "a file of version 1 has no spreads", "write 2, or take them out"
         raise InputError(source, "$.version", reason, remedy)

@@ -24,7 +24,7 @@ LIMIT_bytes = 16_000_000
 """Far above any program (an image holds 7 kB), far below what would fill a machine's memory."""
 _REMEDY = "compare with docs/reference/program-file.md"
 _KIND = Kind(FORMAT, VERSION, "a program", _REMEDY)
-_LAYOUT = Layout(last=("transitions", "force_cN"), needed=("velocity_mm_s",))
+LAYOUT = Layout(last=("transitions", "force_cN"), needed=("velocity_mm_s",))
 _CHOICES = {"stroke": During, "velocity": Velocity}
 
 
@@ -32,18 +32,18 @@ def schema() -> dict[str, Any]:
     """Return the JSON schema of the file, as published in docs/reference/fdvv-program.schema.json."""
     from fdvv.io.schema import schema_of
 
-    schema = schema_of(Program, _KIND, _LAYOUT)
+    schema = schema_of(Program, _KIND, LAYOUT)
     del schema["$defs"]["When"]  # nothing refers to it: each condition lists its names
     return schema
 
 
 def program_to_json(program: Program) -> str:
-    plain = document(program, _KIND, layout=_LAYOUT, keep=_is_written, special=_state_condition)
+    plain = document(program, _KIND, layout=LAYOUT, keep=_is_written, special=_state_condition)
     return pretty(plain, one_line=list(When)) + "\n"
 
 
 def _is_written(field: Field[Any], value: object) -> bool:
-    return value != field.default or field.name in _LAYOUT.needed
+    return value != field.default or field.name in LAYOUT.needed
 
 
 def _state_condition(value: Any) -> Any:
@@ -59,7 +59,7 @@ def program_from_json(text: str | bytes, source: object = "program") -> Program:
         text,
         source,
         _KIND,
-        lambda data: decode(data, Program, _LAYOUT),
+        lambda data: decode(data, Program, LAYOUT),
         lambda place: _CHOICES.get(place.rpartition(".")[2], When if "key" in place else None),
     )
 

@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from fdvv.errors import ModelError
-from fdvv.io.columns import Packed, unpack_fields
+from fdvv.io.columns import Packed, PackedFloats, unpack_fields
 from fdvv.units import FloatArray
 
 
@@ -61,7 +61,7 @@ class Stream:
     name: str
     quantity: Quantity
     clock: str
-    t_s: Packed
+    t_s: PackedFloats
     raw: Packed
     scale: float = 1.0
     zero: float = 0.0

@@ -97,7 +97,7 @@ LATER = ("stick_cN", "side_ratio", "own_cN", "own_step_mm", "at_bound", "misfit"
 """Fields that the first files lack."""
 RIG_FIELDS = frozenset(f.name for f in fields(RigModel) if f.name not in LATER)
 """Fields that every file states."""
-_LAYOUT = Layout(needed=RIG_FIELDS, beside=("$.format", "$.version", "$.learned"))
+LAYOUT = Layout(needed=RIG_FIELDS, beside=("$.format", "$.version", "$.learned"))
 
 
 def save_rig(rig: RigModel | LearnedRig, path: Path | str) -> None:
@@ -133,7 +133,7 @@ def _read(path: Path | str) -> tuple[RigModel, LearnedRig | None]:
 
 
 def _decode(data: bytes) -> tuple[RigModel, LearnedRecord | None]:
-    return decode(data, RigModel, _LAYOUT), msgspec.json.decode(data, type=_Learned).learned
+    return decode(data, RigModel, LAYOUT), msgspec.json.decode(data, type=_Learned).learned
 
 
 def _learned_rig(rig: RigModel, learned: LearnedRecord) -> LearnedRig:
