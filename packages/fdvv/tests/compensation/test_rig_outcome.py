@@ -43,7 +43,7 @@ def test_the_row_of_the_best_press_is_kept_where_the_last_got_much_worse() -> No
     curves = curves_of(JOB, history, None)
     assert [c.mean_error_cN for c in curves] == [1.0, 1.55, 1.0, 1.0]
     assert [c.max_error_cN for c in curves] == pytest.approx([6.0, 9.3, 6.0, 6.0])
-    assert ["the best table is kept" in c.sentence for c in curves] == [True, False, False, False]
+    assert ["the best table is kept" in c.explanation for c in curves] == [True, False, False, False]
 
 
 def test_what_was_learned_since_the_last_press_is_kept_if_that_was_no_worse_than_chance() -> None:
@@ -62,7 +62,7 @@ def test_curves_come_press_first_with_the_error_of_every_press() -> None:
         ("release", 100.0),
     ]
     assert [c.error_cN for c in curves] == [(6.0, 2.0), (5.0, 3.0, 1.0), (2.0, 2.0), (2.0, 2.0, 2.0)]
-    assert curves[1].sentence == "error_k 5.0 cN at press 1, 1.0 at press 3"
+    assert curves[1].explanation == "error_k 5.0 cN at press 1, 1.0 at press 3"
 
 
 def test_what_was_not_pressed_is_expected_from_a_memory_or_unknown() -> None:
@@ -70,10 +70,10 @@ def test_what_was_not_pressed_is_expected_from_a_memory_or_unknown() -> None:
     memory = LearnedRig(RigModel(), residual, 4.0, np.array([[1.0, 2.0], [3.0, 4.0]]))
     expected = curves_of(JOB, ((), presses([6.0])), memory)
     assert [c.mean_error_cN for c in expected] == [1.0, 3.0, 3.0, 1.0]
-    assert "1.0 cN expected" in expected[0].sentence
+    assert "1.0 cN expected" in expected[0].explanation
     assert np.isnan(expected[0].max_error_cN)
     unknown = curves_of(JOB, ((), ()), None)
-    assert {c.sentence for c in unknown} == {"not pressed"}
+    assert {c.explanation for c in unknown} == {"not pressed"}
     assert all(np.isnan(c.mean_error_cN) for c in unknown)
 
 

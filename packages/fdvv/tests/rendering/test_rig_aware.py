@@ -94,7 +94,7 @@ def test_an_edited_button_is_rendered_from_the_memory_without_a_press(learned: L
     )
     result = compensate(device, edited, SPEEDS, method)
     assert (result.presses, len(result.outcome.curves)) == (0, 8)
-    assert all("expected" in c.sentence for c in result.outcome.curves)
+    assert all("expected" in c.explanation for c in result.outcome.curves)
     assert learned.left_cN(edited, result) < 0.5 * learned.before_cN(edited)
 
 
