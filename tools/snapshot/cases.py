@@ -62,7 +62,7 @@ def read_cases() -> list[Case]:
 
 def make_case(table: dict[str, Any], each: str) -> Case:
     """Make the case of a table, with a name in place of EACH."""
-    fields = {
+    fields: dict[str, Any] = {
         key: tuple(text.replace("EACH", each) for text in value) if isinstance(value, list) else value
         for key, value in table.items()
     }

@@ -32,7 +32,7 @@ def test_every_version_gives_the_same_places(
     frame = np.arange(40)
     np.testing.assert_allclose((right.values - left.values)[frame != 3], 100)
     np.testing.assert_allclose(np.diff(left.values[4:, 1]), 0.5)
-    assert np.isnan(left.raw).all(axis=1).nonzero()[0].tolist() == [3]
+    assert np.flatnonzero(np.isnan(left.raw).all(axis=1)).tolist() == [3]
     np.testing.assert_array_equal(left.t_s, frame / 256)
 
 
