@@ -11,7 +11,6 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.options import kept_on_interrupt
 from fdvv.errors import DeviceError
-from fdvv.parallel.open import open_executor
 from fdvv_people.cli.optimize.options import engine_option, rig_option
 
 if TYPE_CHECKING:
@@ -58,6 +57,7 @@ def experiment(
     in counter-balanced order. The folder then holds every trial, report.html, result.json and, with --winner,
     winner.fdvv.json. Ctrl-C or a kill loses no finished trial; the same command goes on.
     """
+    from fdvv.parallel.open import open_executor
     from fdvv_people.optimize.experiment.experiment import judge_experiment, run_experiment
     from fdvv_people.optimize.experiment.html import write_experiment
     from fdvv_people.optimize.experiment.setup import ExperimentSetup

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fdvv.cli import ui
-from fdvv.io.documents import pretty
-from fdvv.io.files import require_new_folder, write_atomic
 
 if TYPE_CHECKING:
     from fdvv_people.optimize.group.group import Group
@@ -35,6 +33,8 @@ def group(runs: tuple[Path, ...], folder: Path, blocks: int, as_json: bool) -> N
     both buttons again. Of real people the gain is what their scores let expect. FOLDER holds the group's
     button, group.json and report.html.
     """
+    from fdvv.io.documents import pretty
+    from fdvv.io.files import require_new_folder, write_atomic
     from fdvv.model.file import MODEL_SUFFIX, save_model
     from fdvv.report.report import write_report
     from fdvv_people.optimize.group.group import GROUP, group_of, read_personal_runs
