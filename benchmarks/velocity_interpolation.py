@@ -2,9 +2,8 @@
 
 Leave one speed out, on the ten published curves: each is predicted from the four others of its stroke and
 compared from 0.25 mm to 4 mm. ``python -m benchmarks.velocity_interpolation --all`` prints every rule. The
-speeds inside (50, 100, 150 mm/s) test interpolation, the ends (0.5, 200 mm/s) extrapolation.
-
-Six curves judge 42 rules. The nested choice, in which the judged curve has no say, tells how that flatters.
+speeds inside (50, 100, 150 mm/s) test interpolation, the ends (0.5, 200 mm/s) extrapolation. Six curves judge
+42 rules. The nested choice, in which the judged curve has no say, tells how that flatters.
 """
 
 from __future__ import annotations
