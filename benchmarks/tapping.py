@@ -28,8 +28,8 @@ from fdvv_people.optimize.people.groups import TAPPERS
 from fdvv_people.optimize.people.press_simulator import PressSimulator
 from fdvv_people.optimize.people.simulate import simulate_task
 from fdvv_people.optimize.people.user import SimulatedUser, draw_users
+from fdvv_people.study.timing.people import MOST_STROKES
 from fdvv_people.task.tapping import RapidTapping, strokes_Hz
-from fdvv_people.timing.simulation.people import MOST_STROKES
 from fdvv_studio.live.binary_finger import BinaryFinger
 from fdvv_studio.live.press import LiveEventKind, LivePress
 from fdvv_studio.live.press_subject import PressSubject, model_subject, program_subject

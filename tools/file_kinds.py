@@ -37,9 +37,9 @@ from fdvv_people.study.files.people import LockedSchedule, Schedule, SealedTrial
 from fdvv_people.study.files.seal import KeyHolderFile
 from fdvv_people.study.plan.plan import StudyPlan
 from fdvv_people.study.plan.session import SessionState
+from fdvv_people.study.timing.plan import TimingPlan
+from fdvv_people.study.timing.state import TimingState
 from fdvv_people.task.rounds import TaskRound, TrialRated
-from fdvv_people.timing.plan.plan import TimingPlan
-from fdvv_people.timing.plan.session import TimingState
 from fdvv_rig.selftest.receipt import SelftestReceipt
 from fdvv_studio.library.build import LibraryManifest
 from fdvv_studio.project.history import DocumentBase, HistoryChange

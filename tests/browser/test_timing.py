@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 from playwright.sync_api import expect
 
-from fdvv_people.timing.files.study import TimingStudy
+from fdvv_people.study.admin.study import Study
 from tests.browser.study_screens import NAME, PASSPHRASE, open_sessions, wait_for_part
 from tests.browser.timing_screens import STEP, Timer, frozen_timing, recorded, timing_text
 from tests.studio.running import RunningStudio
@@ -29,13 +29,13 @@ def studio(tmp_path: Path, start_studio: Callable[..., RunningStudio]) -> Runnin
 
 
 @pytest.fixture
-def study(request: pytest.FixtureRequest, tmp_path: Path) -> TimingStudy:
+def study(request: pytest.FixtureRequest, tmp_path: Path) -> Study:
     """A frozen study; its plan's options are the test's parameter."""
     return frozen_timing(tmp_path / "project", timing_text(**getattr(request, "param", {})))
 
 
 @pytest.fixture
-def timer(study: TimingStudy, page: Page, context: BrowserContext) -> Timer:
+def timer(study: Study, page: Page, context: BrowserContext) -> Timer:
     """Somebody who sat down and agreed."""
     found = Timer(context.new_page())
     found.sit(page)
@@ -43,9 +43,7 @@ def timer(study: TimingStudy, page: Page, context: BrowserContext) -> Timer:
     return found
 
 
-def test_a_whole_experiment_is_done_by_keyboard_and_every_press_is_kept(
-    study: TimingStudy, timer: Timer
-) -> None:
+def test_a_whole_experiment_is_done_by_keyboard_and_every_press_is_kept(study: Study, timer: Timer) -> None:
     for number in range(1, TRIALS + 1):
         timer.trial(f"Training {number}", TRIALS)
     for number in range(1, CONDITIONS + 1):
@@ -83,7 +81,7 @@ def wait_for_round(timer: Timer, number: int) -> None:
 
 
 def test_a_studio_killed_in_training_and_in_validation_costs_no_round_that_was_kept(
-    study: TimingStudy, page: Page, timer: Timer, studio: RunningStudio, context: BrowserContext
+    study: Study, page: Page, timer: Timer, studio: RunningStudio, context: BrowserContext
 ) -> None:
     page.close()
     timer.wait_for(f"Training 1 of {TRIALS}")
@@ -114,7 +112,7 @@ def test_a_studio_killed_in_training_and_in_validation_costs_no_round_that_was_k
 
 @pytest.mark.parametrize("study", [{"trials": 1, "presses": 2, "gap_days": 7.0}], indirect=True)
 def test_after_training_the_screen_says_when_to_come_back_and_so_does_the_card(
-    study: TimingStudy, page: Page, timer: Timer, studio: RunningStudio, browser: Browser
+    study: Study, page: Page, timer: Timer, studio: RunningStudio, browser: Browser
 ) -> None:
     timer.trial("Training 1", 1)
     timer.page.wait_for_selector("h1:has-text('The first part is done')")
@@ -144,7 +142,7 @@ def test_after_training_the_screen_says_when_to_come_back_and_so_does_the_card(
 
 
 @pytest.mark.parametrize("study", [{"trials": 1, "presses": 2}], indirect=True)
-def test_a_round_in_which_the_page_was_not_looked_at_is_flown_again(study: TimingStudy, timer: Timer) -> None:
+def test_a_round_in_which_the_page_was_not_looked_at_is_flown_again(study: Study, timer: Timer) -> None:
     timer.wait_for("Training 1 of 1")
     timer.begin()
     timer.page.evaluate("dispatchEvent(new Event('blur'))")
@@ -157,9 +155,7 @@ def test_a_round_in_which_the_page_was_not_looked_at_is_flown_again(study: Timin
 
 
 @pytest.mark.parametrize("study", [{"trials": 1, "presses": 2}], indirect=True)
-def test_another_key_counts_for_nothing_and_the_one_that_does_is_named(
-    study: TimingStudy, timer: Timer
-) -> None:
+def test_another_key_counts_for_nothing_and_the_one_that_does_is_named(study: Study, timer: Timer) -> None:
     timer.trial("Training 1", 1)
     for number in range(1, CONDITIONS + 1):
         timer.wait_for(f"Trial {number} of {CONDITIONS}")
@@ -183,7 +179,7 @@ def test_another_key_counts_for_nothing_and_the_one_that_does_is_named(
 
 
 @pytest.mark.parametrize("study", [{"tapping": True}], indirect=True)
-def test_taps_are_kept_second_by_second(study: TimingStudy, timer: Timer) -> None:
+def test_taps_are_kept_second_by_second(study: Study, timer: Timer) -> None:
     for number in range(1, CONDITIONS + 1):
         timer.wait_for(f"Trial {number} of {CONDITIONS}")
         timer.prepare()
@@ -203,7 +199,7 @@ def test_taps_are_kept_second_by_second(study: TimingStudy, timer: Timer) -> Non
         assert taps - 1 <= keys <= taps
 
 
-def test_no_message_names_what_a_code_hides(study: TimingStudy, timer: Timer) -> None:
+def test_no_message_names_what_a_code_hides(study: Study, timer: Timer) -> None:
     for number in range(1, TRIALS + 1):
         timer.trial(f"Training {number}", TRIALS)
     for number in range(1, CONDITIONS + 1):

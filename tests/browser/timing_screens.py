@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fdvv_people.study.admin.study import Study
 from fdvv_people.study.files.chained_log import read_chained
-from fdvv_people.timing.files.study import TimingStudy
 from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE, Sitter
 
 if TYPE_CHECKING:
@@ -105,14 +105,14 @@ def timing_text(
     return head + plain + training + CONDITIONS + (PAGES if pages else "")
 
 
-def frozen_timing(project: Path, text: str) -> TimingStudy:
+def frozen_timing(project: Path, text: str) -> Study:
     """Declare and freeze a timing study in a project."""
-    study = TimingStudy.declare_text(project / "studies" / NAME, text, project)
+    study = Study.declare_text(project / "studies" / NAME, text, project)
     study.freeze(PASSPHRASE, CHEAP)
     return study
 
 
-def recorded(study: TimingStudy, kind: str, person: str = "P01") -> list[dict[str, Any]]:
+def recorded(study: Study, kind: str, person: str = "P01") -> list[dict[str, Any]]:
     """Return the bodies of the records of a kind in a person's session, in order."""
     records = read_chained(study.person_folder(person) / "session.jsonl").records
     return [record[kind] for record in records if kind in record]

@@ -13,7 +13,6 @@ from fdvv_people.study.admin.study import Study
 from fdvv_people.study.files.people import SealedTrial
 from fdvv_people.study.files.seal import Cost
 from fdvv_people.study.plan.events import PageAnswered, TrialAnswered, TrialShown
-from fdvv_people.study.plan.session import SessionState
 from fdvv_people.study.plan.trial import Rendered, StudyTrial, TrialAnswer
 from fdvv_people.study.session.log import OpenedSession
 
@@ -128,7 +127,7 @@ def answered(
     age: float = 33.0,
 ) -> None:
     """Answer pages and so many trials, practice included, and close."""
-    opened = OpenedSession(study, person, code, 0.0, SessionState)
+    opened = OpenedSession(study, person, code, 0.0)
     opened.add(PageAnswered(1.0, "consent"))
     opened.add(PageAnswered(2.0, "about", {"age": age}))
     for trial in opened.schedule.trials[:trials]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from fdvv_people.study.admin.study import Study
 from fdvv_people.study.plan.sitting import ENDS, Step
+from fdvv_people.study.timing.participant import TimingParticipant
+from fdvv_people.study.timing.plan import DAY_s
+from fdvv_people.study.timing.schedule import TimingFace
 from fdvv_people.task.rounds import ClockSource, RoundTiming
-from fdvv_people.timing.files.study import TimingStudy
-from fdvv_people.timing.plan.plan import DAY_s
-from fdvv_people.timing.plan.schedule import TimingFace
-from fdvv_people.timing.session.participant import TimingParticipant
 from tests.support.studies import CHEAP, PASSPHRASE
 
 SMALL = """
@@ -64,19 +64,19 @@ class Clock:
         return self.now_s
 
 
-def declared(folder: Path, text: str = SMALL) -> TimingStudy:
-    return TimingStudy.declare_text(folder, text, folder.parent)
+def declared(folder: Path, text: str = SMALL) -> Study:
+    return Study.declare_text(folder, text, folder.parent)
 
 
-def frozen(folder: Path, text: str = SMALL) -> TimingStudy:
+def frozen(folder: Path, text: str = SMALL) -> Study:
     study = declared(folder, text)
     study.freeze(PASSPHRASE, CHEAP)
     return study
 
 
-def attended(folder: Path) -> TimingStudy:
+def attended(folder: Path) -> Study:
     """Open a study with its sessions open."""
-    study = TimingStudy.open(folder)
+    study = Study.open(folder)
     study.open_sessions(PASSPHRASE)
     return study
 

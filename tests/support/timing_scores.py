@@ -7,8 +7,8 @@ from itertools import product
 
 import numpy as np
 
-from fdvv_people.timing.analysis.scores import ScoreRow, TimingScores
-from fdvv_people.timing.plan.plan import TimingPlan
+from fdvv_people.study.timing.plan import TimingPlan
+from fdvv_people.study.timing.scores import ScoreRow, TimingScores
 
 
 def made_scores(

@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 from fdvv.cli.main import cli
 from fdvv_people.cli.study.declare import KINDS
 from fdvv_people.study.plan.plan_file import template_names
-from fdvv_people.timing.plan.plan_file import TEMPLATE_NAMES
+from fdvv_people.study.timing.kind import KIND
 
 
 @pytest.fixture(autouse=True)
@@ -30,7 +30,7 @@ def change(before: str, after: str) -> None:
 
 
 def test_every_kind_can_be_begun_checked_and_previewed() -> None:
-    assert set(KINDS) == {*template_names(), *TEMPLATE_NAMES}
+    assert set(KINDS) == {*template_names(), *KIND.templates}
     for kind in KINDS:
         assert invoke("new", kind, "--kind", kind).exit_code == 0
         checked = invoke("check", kind)

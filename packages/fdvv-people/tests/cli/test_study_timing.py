@@ -12,9 +12,9 @@ from click.testing import CliRunner, Result
 
 from fdvv.cli.main import cli
 from fdvv.errors import InputError
-from fdvv_people.timing.files.study import TimingStudy
-from fdvv_people.timing.plan.plan import DAY_s
-from fdvv_people.timing.session.participant import TimingParticipant
+from fdvv_people.study.admin.study import Study
+from fdvv_people.study.timing.participant import TimingParticipant
+from fdvv_people.study.timing.plan import DAY_s
 from tests.support.timing import SMALL, Clock, attended, do_all
 
 
@@ -105,4 +105,4 @@ def test_a_person_can_be_withdrawn() -> None:
     one, _ = TimingParticipant.enrol(attended(Path("small")))
     one.close()
     assert invoke("withdraw", "small", "P01", "--yes").exit_code == 0
-    assert TimingStudy.open(Path("small")).person("P01").state == "deleted"
+    assert Study.open(Path("small")).person("P01").state == "deleted"

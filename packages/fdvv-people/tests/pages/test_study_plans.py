@@ -44,7 +44,7 @@ def test_a_study_of_a_chosen_button_is_declared_and_ready(client: TestClient) ->
     assert made.json() == {"study": NAME}
     plan = asked(client, "plan")
     assert plan["problems"] == []
-    assert OWN in plan["text"]
+    assert all(part in plan["text"] for part in (OWN, f'\nname = "{NAME}"'))
     assert asked(client, "standing")["sentence"].startswith("Ready to freeze: ")
 
 

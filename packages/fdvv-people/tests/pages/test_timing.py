@@ -13,7 +13,7 @@ import pytest
 from starlette.testclient import TestClient, WebSocketTestSession
 
 from fdvv_people.pages.studies import Studies
-from fdvv_people.timing.files.study import TimingStudy
+from fdvv_people.study.admin.study import Study
 from fdvv_studio.studio.studio import Studio
 from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE
 from tests.browser.timing_screens import frozen_timing, recorded, timing_text
@@ -100,11 +100,11 @@ class Screen:
 def _in_haste(monkeypatch: pytest.MonkeyPatch) -> None:
     """Codes of these tests need not be slow to guess, nor their rounds outlive a power cut."""
     monkeypatch.setattr("os.fsync", lambda _file: None)
-    monkeypatch.setattr(TimingStudy, "enrol", partialmethod(TimingStudy.enrol, cost=CHEAP))
+    monkeypatch.setattr(Study, "enrol", partialmethod(Study.enrol, cost=CHEAP))
 
 
 @pytest.fixture
-def study(own_studio: Studio) -> TimingStudy:
+def study(own_studio: Studio) -> Study:
     """A frozen study of one trial of training and three of validation; its sessions are open."""
     study = frozen_timing(own_studio.project, timing_text(1, PRESSES, pages=False))
     own_studio.part(Studies).open_sessions(NAME, PASSPHRASE, None)
@@ -124,7 +124,7 @@ def ask(client: TestClient) -> Callable[..., Any]:
 
 
 @pytest.fixture
-def screen(study: TimingStudy, ask: Callable[..., Any], client: TestClient) -> Iterator[Screen]:
+def screen(study: Study, ask: Callable[..., Any], client: TestClient) -> Iterator[Screen]:
     """The screen of somebody who sat down."""
     with client.websocket_connect(LIVE) as socket:
         found = Screen(socket)
@@ -133,7 +133,7 @@ def screen(study: TimingStudy, ask: Callable[..., Any], client: TestClient) -> I
 
 
 def test_a_page_learns_on_the_channel_of_every_study_which_screens_it_needs(
-    study: TimingStudy, client: TestClient
+    study: Study, client: TestClient
 ) -> None:
     with client.websocket_connect(LIVE) as socket:
         page = Screen(socket)
@@ -143,7 +143,7 @@ def test_a_page_learns_on_the_channel_of_every_study_which_screens_it_needs(
         assert "seat" in page.hear("card")["error"]
 
 
-def test_a_round_is_on_the_disk_when_it_is_said_to_be_kept(study: TimingStudy, screen: Screen) -> None:
+def test_a_round_is_on_the_disk_when_it_is_said_to_be_kept(study: Study, screen: Screen) -> None:
     ready = screen.begin()
     assert (ready["kept"], ready["rounds"], ready["on"]) == (0, PRESSES, "page")
     for number in range(1, PRESSES + 1):
@@ -156,9 +156,7 @@ def test_a_round_is_on_the_disk_when_it_is_said_to_be_kept(study: TimingStudy, s
     assert len(recorded(study, "scored")) == 1
 
 
-def test_a_press_of_a_simulated_button_counts_without_the_way_to_it(
-    study: TimingStudy, screen: Screen
-) -> None:
+def test_a_press_of_a_simulated_button_counts_without_the_way_to_it(study: Study, screen: Screen) -> None:
     screen.begin()
     found = screen.round(1)
     (kept,) = recorded(study, "round")
@@ -169,7 +167,7 @@ def test_a_press_of_a_simulated_button_counts_without_the_way_to_it(
     assert kept["timing"]["hand"] == "key"
 
 
-def test_a_round_that_is_not_the_next_one_is_not_kept(study: TimingStudy, screen: Screen) -> None:
+def test_a_round_that_is_not_the_next_one_is_not_kept(study: Study, screen: Screen) -> None:
     screen.begin()
     screen.round(1)
     screen.say("round", **screen_round(1))
@@ -187,7 +185,7 @@ def screen_round(number: int) -> dict[str, Any]:
 
 
 def test_a_trial_that_was_broken_off_goes_on_for_who_has_the_card(
-    study: TimingStudy, screen: Screen, client: TestClient
+    study: Study, screen: Screen, client: TestClient
 ) -> None:
     screen.begin()
     screen.round(1)
@@ -203,7 +201,7 @@ def test_a_trial_that_was_broken_off_goes_on_for_who_has_the_card(
 
 
 def test_of_a_switch_the_latency_counts_that_the_plan_states_and_of_a_key_that_of_the_page(
-    study: TimingStudy, screen: Screen
+    study: Study, screen: Screen
 ) -> None:
     screen.trial()
     for _ in range(3):
@@ -225,7 +223,7 @@ def test_of_a_switch_the_latency_counts_that_the_plan_states_and_of_a_key_that_o
 
 
 @pytest.fixture
-def tapping(own_studio: Studio) -> TimingStudy:
+def tapping(own_studio: Studio) -> Study:
     """A frozen study of tapping on two programs; its sessions are open."""
     plan = timing_text(tapping=True, pages=False).partition("[[conditions]]")[0]
     for name in ("fast-tapping", "rapid-trigger"):
@@ -237,7 +235,7 @@ def tapping(own_studio: Studio) -> TimingStudy:
 
 @pytest.mark.clock
 def test_taps_on_the_twin_keep_the_hand_s_times_even_where_they_come_all_at_once(
-    tapping: TimingStudy, client: TestClient, ask: Callable[..., Any]
+    tapping: Study, client: TestClient, ask: Callable[..., Any]
 ) -> None:
     with client.websocket_connect(LIVE) as socket:
         screen = Screen(socket)
@@ -263,7 +261,7 @@ def test_taps_on_the_twin_keep_the_hand_s_times_even_where_they_come_all_at_once
     assert np.ptp(delays_s[1:]) < 0.004
 
 
-def test_a_round_without_a_press_is_a_miss_and_is_kept(study: TimingStudy, screen: Screen) -> None:
+def test_a_round_without_a_press_is_a_miss_and_is_kept(study: Study, screen: Screen) -> None:
     screen.begin()
     screen.round(1, press=False)
     assert [one["activations_s"] for one in recorded(study, "round")] == [[]]
@@ -271,7 +269,7 @@ def test_a_round_without_a_press_is_a_miss_and_is_kept(study: TimingStudy, scree
 
 @pytest.mark.clock
 def test_a_device_on_the_table_tells_the_presses_itself(
-    study: TimingStudy, screen: Screen, ask: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+    study: Study, screen: Screen, ask: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rig = KeyedRig(presses=50)
     rig.start()
@@ -295,7 +293,7 @@ def test_a_device_on_the_table_tells_the_presses_itself(
 
 
 def test_a_device_that_is_not_there_is_said_in_one_line_and_nothing_is_begun(
-    study: TimingStudy, screen: Screen, own_studio: Studio
+    study: Study, screen: Screen, own_studio: Studio
 ) -> None:
     own_studio.part(Studies).use_device(NAME, "serial:/dev/none", ("serial:/dev/none",))
     screen.say("begin", number=0)
@@ -304,7 +302,7 @@ def test_a_device_that_is_not_there_is_said_in_one_line_and_nothing_is_begun(
 
 
 def test_the_operator_sees_how_far_and_when_but_no_condition(
-    study: TimingStudy, screen: Screen, ask: Callable[..., Any]
+    study: Study, screen: Screen, ask: Callable[..., Any]
 ) -> None:
     assert ask("studies.detail")["row"]["kind"] == "timing"
     screen.trial()
@@ -317,7 +315,7 @@ def test_the_operator_sees_how_far_and_when_but_no_condition(
 
 
 def test_what_the_codes_hid_is_opened_for_the_key_holder_and_reported(
-    study: TimingStudy, screen: Screen, ask: Callable[..., Any]
+    study: Study, screen: Screen, ask: Callable[..., Any]
 ) -> None:
     for _ in range(4):
         screen.trial()
@@ -331,7 +329,7 @@ def test_what_the_codes_hid_is_opened_for_the_key_holder_and_reported(
 
 
 def test_a_pause_of_the_operator_begins_no_trial_and_loses_no_round(
-    study: TimingStudy, screen: Screen, ask: Callable[..., Any]
+    study: Study, screen: Screen, ask: Callable[..., Any]
 ) -> None:
     screen.begin()
     ask("studies.pause", person=None, on=True)
@@ -341,7 +339,7 @@ def test_a_pause_of_the_operator_begins_no_trial_and_loses_no_round(
     assert "pauses" in screen.hear("ready")["error"]
 
 
-def test_who_leaves_takes_their_presses_along(study: TimingStudy, screen: Screen) -> None:
+def test_who_leaves_takes_their_presses_along(study: Study, screen: Screen) -> None:
     screen.begin()
     screen.round(1)
     screen.say("withdraw")

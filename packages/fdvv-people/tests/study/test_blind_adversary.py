@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv_people.study.admin.operator_view import operator_view
+from fdvv_people.study.admin.progress import study_progress
 from fdvv_people.study.admin.study import Study
 from fdvv_people.study.files.chained_log import read_chained
 from fdvv_people.study.files.people import open_schedule
@@ -57,8 +57,8 @@ class Adversary:
 
     def __init__(self, finished: Finished, run_key: RunKey | None = None) -> None:
         self.folder, self.codes, self.run_key = finished.study.folder, finished.codes, run_key
-        view = operator_view(Study.open(self.folder), 9000.0)
-        self.views = {one.person: one for one in view.people}
+        people = study_progress(Study.open(self.folder), 9000.0)
+        self.views = {one.person: one for one in people}
         shown = list(self.codes)[:SEEN]
         seen = np.vstack([self.plain(person) for person in shown])
         truth = [hides(trial) for person in shown for trial in finished.truth[person]]

@@ -23,7 +23,7 @@ from fdvv_people.study.analysis.jnds import standard_sizes
 from fdvv_people.study.analysis.read_answers import UNSEALED, read_answers
 from fdvv_people.study.plan.plan_file import template_text
 from fdvv_people.study.simulation.perception import haptic_features, perceived_difference
-from fdvv_people.study.simulation.sessions import simulate_study
+from fdvv_people.study.simulation.sessions import Simulation, simulate_study
 from tests.support.jnds import measured, record_of
 from tests.support.study_people import CHEAP, PASSPHRASE
 
@@ -37,7 +37,7 @@ def played(folder: Path, kind: str, **changes: str) -> Study:
         text = text.replace(f"{old} = ", f"{old} = {new} # ")
     study = Study.declare_text(folder / "study", text, folder)
     study.freeze(PASSPHRASE, CHEAP)
-    simulate_study(study, pressed=False)
+    simulate_study(study, simulation=Simulation(pressed=False))
     study.unseal(PASSPHRASE, who="me", why="a test")
     return study
 

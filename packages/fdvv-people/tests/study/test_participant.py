@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fdvv.errors import DeviceError, InputError, ModelError
-from fdvv_people.study.admin.operator_view import operator_view
+from fdvv_people.study.admin.progress import study_progress
 from fdvv_people.study.admin.study import Study
 from fdvv_people.study.plan.plan import Stimulus, Thresholds
 from fdvv_people.study.plan.threshold_trials import practice_change, trial_change
@@ -164,7 +164,7 @@ def test_who_withdraws_is_gone_and_their_data_too_if_they_wish(tmp_path: Path, d
     assert study.person("P01").state == ("deleted" if delete else "withdrawn")
     assert (study.folder / "people/P01/session.jsonl").exists() != delete
     assert study.verify() == ()
-    assert [view.state for view in operator_view(study, 0.0).people] == [study.person("P01").state]
+    assert [view.state for view in study_progress(study, 0.0)] == [study.person("P01").state]
 
 
 def test_somebody_is_enrolled_in_their_language_and_simulated_people_are_marked(tmp_path: Path) -> None:
@@ -287,8 +287,8 @@ def test_the_operators_view_tells_where_everybody_is(tmp_path: Path) -> None:
     one, _ = enrolled(study, StillStage())
     two, _ = enrolled(study, StillStage())
     do_all(one, 2)
-    first, second = operator_view(study, 0.0).people
-    assert (first.kind, first.answered, first.trials) == ("trial", 1, 4)
+    first, second = study_progress(study, 0.0)
+    assert (first.kind, first.done, first.trials) == ("trial", 1, 4)
     assert (second.kind, second.page) == ("page", "consent")
     one.close()
     two.close()

@@ -13,7 +13,7 @@ import msgspec
 import pytest
 
 from fdvv.errors import DeviceError, InputError
-from fdvv_people.study.admin.operator_view import operator_view
+from fdvv_people.study.admin.progress import study_progress
 from fdvv_people.study.admin.study import Study
 from fdvv_people.study.files.people import Schedule, open_schedule
 from fdvv_people.study.files.run_key import RunKey
@@ -185,10 +185,10 @@ def test_all_that_is_plain_is_the_same_whatever_is_assigned(running: Running) ->
 
 
 def test_the_operators_view_is_the_same_whatever_is_assigned(running: Running) -> None:
-    people = operator_view(running.study, 6000.0).people
+    people = study_progress(running.study, 6000.0)
     same = {msgspec.json.encode(msgspec.structs.replace(view, person="P")) for view in people}
     assert len(same) == 1
-    assert people[0].answered == 3  # and one of practice
+    assert people[0].done == 3  # and one of practice
     assert people[0].interruptions == 1
 
 

@@ -81,7 +81,7 @@ def test_a_hundred_of_a_hundred_rollbacks_by_1_to_20_lines_to_earlier_files_are_
     own, draw, write = study.folder / "people" / "P03", random.Random(1), OpenedSession._write
     once: list[dict[Path, bytes]] = []
 
-    def note(opened: OpenedSession[Any], *event: Any) -> None:
+    def note(opened: OpenedSession, *event: Any) -> None:
         write(opened, *event)
         once.append({path: path.read_bytes() for path in own.iterdir()})
 

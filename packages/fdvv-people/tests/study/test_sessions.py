@@ -19,9 +19,10 @@ from fdvv_people.study.files.seal import lock_with_code
 from fdvv_people.study.plan.claim import claim_p, claim_scores
 from fdvv_people.study.plan.plan import Claim
 from fdvv_people.study.simulation.people import ProxySettings
-from fdvv_people.study.simulation.sessions import simulate_study
+from fdvv_people.study.simulation.sessions import Simulation, simulate_study
 from tests.support.study_people import CHEAP, CONSENT, PASSPHRASE, frozen_study
 
+FAST = Simulation(pressed=False)
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 
 
@@ -37,7 +38,7 @@ def cheap_codes(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def simulated(folder: Path, people: int = 2, **about: object) -> Study:
     study = frozen_study(folder, tables=CONSENT)
-    simulate_study(study, people, pressed=False, **about)  # type: ignore[arg-type]
+    simulate_study(study, people, Simulation(pressed=False, **about))  # type: ignore[arg-type]
     return study
 
 
@@ -62,8 +63,7 @@ def test_a_whole_study_is_answered_and_marked_in_every_file(tmp_path: Path) -> N
 
 def test_the_finger_really_presses_what_is_rendered(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "s", rounds=1, practice=0)
-    found = simulate_study(study, 1)
-    assert found.pressed
+    simulate_study(study, 1)
     study.unseal(PASSPHRASE, "a test", "to test")
     rows = (study.folder / "unsealed" / "rendered.csv").read_text().splitlines()
     heads = rows[0].split(",")
@@ -76,16 +76,16 @@ def test_the_finger_really_presses_what_is_rendered(tmp_path: Path) -> None:
 
 def test_those_who_are_done_count_and_the_same_command_adds_the_rest(tmp_path: Path) -> None:
     study = simulated(tmp_path / "s", people=1)
-    assert len(simulate_study(study, 3, pressed=False).sessions) == 2
-    assert simulate_study(study, 3, pressed=False).sessions == ()
-    assert simulate_study(study, pressed=False).finished == ("P01", "P02", "P03", "P04")  # as planned
+    assert len(simulate_study(study, 3, FAST).sessions) == 2
+    assert simulate_study(study, 3, FAST).sessions == ()
+    assert simulate_study(study, simulation=FAST).finished == ("P01", "P02", "P03", "P04")  # as planned
 
 
 def test_breaks_take_no_real_time(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "s", break_every_min=2, break_min=30)
-    (session,) = simulate_study(study, 1, pressed=False).sessions
+    (session,) = simulate_study(study, 1, FAST).sessions
     assert session.breaks >= 1
-    assert session.minutes > 30 * session.breaks
+    assert session.time_s > 30 * 60 * session.breaks
 
 
 @pytest.mark.slow
@@ -126,10 +126,10 @@ def test_a_study_that_is_not_frozen_is_refused(tmp_path: Path) -> None:
 def test_ctrl_c_leaves_whole_people_only_and_the_same_command_goes_on(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "s")
     with pytest.raises(KeyboardInterrupt):
-        simulate_study(study, 2, pressed=False, progress=stopping(at=150))
+        simulate_study(study, 2, FAST, progress=stopping(at=150))
     assert [one.state for one in study.people()] == ["finished", "deleted"]
     assert study.verify() == ()
-    assert simulate_study(study, 2, pressed=False).finished == ("P01", "P03")
+    assert simulate_study(study, 2, FAST).finished == ("P01", "P03")
 
 
 def stopping(at: int) -> Callable[[int, int], None]:
@@ -145,7 +145,8 @@ def stopping(at: int) -> Callable[[int, int], None]:
 @pytest.mark.slow
 def test_the_claim_is_analysed_by_the_very_test_that_planned_it(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "s", rounds=1, practice=0)
-    simulate_study(study, 6, pressed=False, settings=ProxySettings().changed("weber_ratio", 0.02))
+    sharp = ProxySettings().changed("weber_ratio", 0.02)
+    simulate_study(study, 6, Simulation(pressed=False, settings=sharp))
     answers = study.unseal(PASSPHRASE, "a test", "to test")
     claim = Claim(more="FDVV", less="FD")
     found = analyse(answers, structs.replace(study.plan, claim=claim))

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from fdvv_people.stats.share import binomial_p
-from fdvv_people.study.admin.standing import ALIKE, SHARE, draft_sentence, planned_power, standing
+from fdvv_people.study.admin.preview import ALIKE, SHARE, planned_power
+from fdvv_people.study.admin.progress import draft_sentence, standing
+from fdvv_people.study.labels import KIND
 from fdvv_people.study.plan.plan_file import read_plan_text, template_text
 from tests.browser.study_screens import frozen_study, plan_text
 
@@ -32,7 +34,7 @@ def test_more_people_have_more_power_and_what_claims_no_choice_has_none() -> Non
 
 
 def test_a_draft_says_what_it_comes_to_or_what_is_missing() -> None:
-    sentence, kind = draft_sentence(PLAN, ())
+    sentence, kind = draft_sentence(PLAN, (), KIND.promise(PLAN))
     assert sentence.startswith("Ready to freeze: 12 participants × 36 trials, power 0.")
     assert kind == "good"
     missing = draft_sentence(PLAN, ("rounds: too few", "people: none"))

@@ -26,7 +26,7 @@ from fdvv_people.study.plan.plan_check import plan_problems
 from fdvv_people.study.plan.plan_file import read_plan_text, template_text
 from fdvv_people.study.plan.schedule import draw_schedule
 from fdvv_people.study.plan.threshold_trials import largest_change, practice_change
-from fdvv_people.study.simulation.sessions import simulate_study
+from fdvv_people.study.simulation.sessions import Simulation, simulate_study
 from tests.support.study_people import CHEAP, PASSPHRASE
 
 PLAN = read_plan_text(template_text("thresholds"), "thresholds")
@@ -156,7 +156,7 @@ def test_simulated_participants_play_it_to_a_report_that_says_so(tmp_path: Path)
     text = text.replace("same_choice = 0.9", "same_choice = 1.0")
     study = Study.declare_text(tmp_path / "study", text, tmp_path)
     study.freeze(PASSPHRASE, CHEAP)
-    simulate_study(study, pressed=False)
+    simulate_study(study, simulation=Simulation(pressed=False))
     answers = study.unseal(PASSPHRASE, who="me", why="a test")
     found = analyse(answers, study.plan, standards=standards_of(study.plan, study.folder))
     assert [one.trials for one in found.jnds] == [8, 8]

@@ -185,7 +185,7 @@ def test_abx_answers_are_right_or_wrong(tmp_path: Path) -> None:
         }
         assert correct == float(hidden["A"] == hidden["X"])
     # who gives one label always is out by rule
-    assert set(answers.excluded.tolist()) == {"the person gave one label in 100 % of the trials"}  # type: ignore[union-attr]
+    assert set(answers.excluded.tolist()) == {"the person gave one label in 100 % of the trials"}
 
 
 SOUND = Rendered("A", "FD", 2, (3.0, 4.0), (100.0, None), 2)

@@ -8,22 +8,20 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import RLock
-from typing import Literal
+from typing import Any, Literal
 
 from msgspec import Struct
 
-from fdvv.device.open import pressed_by_person
 from fdvv.errors import InputError
 from fdvv.io.files import write_atomic
 from fdvv.io.memory import hide_memory
 from fdvv_people.pages.screens import Screens
-from fdvv_people.study.admin.review import device_problems
 from fdvv_people.study.admin.study import Study
 from fdvv_people.study.files.people import EVERYBODY
 from fdvv_people.study.files.run_key import CLOSED, OPEN_FIRST, RunKey
 from fdvv_people.study.files.seal import Cost
+from fdvv_people.study.kind import StudyKind
 from fdvv_people.study.plan.plan_file import STUDY_FILE
-from fdvv_people.timing.files.study import AnyStudy, TimingStudy, open_study
 from fdvv_studio.studio.contract import Message, Watchers
 from fdvv_studio.studio.devices import require_listed
 from fdvv_studio.studio.seats import FOLDER, Seats
@@ -86,7 +84,7 @@ class Studies:
         text = (study.folder / STUDY_FILE).read_text(encoding="utf-8")
         folder = TemporaryDirectory(prefix="fdvv-try-")
         try:
-            copy = type(study).declare_text(Path(folder.name) / tried, text, study.folder)
+            copy = Study.declare_text(Path(folder.name) / tried, text, study.folder)
             copy.freeze(secrets.token_urlsafe(), QUICK)
         except BaseException:
             folder.cleanup()
@@ -103,24 +101,12 @@ class Studies:
         self._keep_key(tried, copy)
         return self.seats.make(tried)
 
-    def study(self, name: str) -> AnyStudy:
-        """Open a study, with its run key while its sessions are open. InputError."""
-        study = open_study(self.path(name))
+    def study(self, name: str, kind: StudyKind[Any] | None = None) -> Study:
+        """Open a study, with its run key while its sessions are open. InputError, also on another kind."""
+        study = Study.open(self.path(name))
+        if kind and study.kind is not kind:
+            raise InputError("study", name, f"is {study.kind.described}", "open its own screens")
         study.run_key = self._run_keys.get(name)
-        return study
-
-    def labelled(self, name: str) -> Study:
-        """Open a study in which labels are felt. InputError on another kind."""
-        study = self.study(name)
-        if not isinstance(study, Study):
-            raise InputError("study", name, "is a timing study", "open its own screens")
-        return study
-
-    def timing(self, name: str) -> TimingStudy:
-        """Open a timing study. InputError on another kind."""
-        study = self.study(name)
-        if not isinstance(study, TimingStudy):
-            raise InputError("study", name, "is no timing study", "open its own screens")
         return study
 
     def freeze(self, name: str, passphrase: str) -> None:
@@ -138,7 +124,7 @@ class Studies:
         study.open_sessions(passphrase, keeper)
         self._keep_key(name, study)
 
-    def _keep_key(self, name: str, study: AnyStudy) -> None:
+    def _keep_key(self, name: str, study: Study) -> None:
         assert study.run_key is not None
         hide_memory()
         with self._lock:
@@ -172,7 +158,8 @@ class Studies:
         """
         study = self.study(name)
         require_listed("device", device, (TWIN, *known), "choose one of the list")
-        for problem in _device_problems(study, device) if device != TWIN else ():
+        problems = study.kind.device_problems(study.plan, study.folder, device) if device != TWIN else ()
+        for problem in problems:
             raise InputError("device", device, problem, "use the twin, or change the plan")
         write_atomic(self.path(name).with_suffix(DEVICE_SUFFIX), f"{device}\n")
         self.announce(name)
@@ -221,14 +208,7 @@ class Studies:
             folder.cleanup()
 
 
-def _device_problems(study: AnyStudy, device: str) -> tuple[str, ...]:
-    """List why a device cannot render a study."""
-    if isinstance(study, Study):
-        return tuple(device_problems(study.plan, study.folder))
-    return () if pressed_by_person(device) else ("is pressed by no person",)
-
-
-def state_of(study: AnyStudy) -> StudyState:
+def state_of(study: Study) -> StudyState:
     if study.frozen is None:
         return "draft"
     return "unsealed" if any("unsealed" in record for record in study.history()) else "frozen"

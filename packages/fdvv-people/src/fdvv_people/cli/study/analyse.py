@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
     from fdvv_people.study.analysis.records import StudyAnalysis
     from fdvv_people.study.plan.answers import Answers
     from fdvv_people.study.plan.plan import StudyPlan
+
+DOORS = {"fdvv-timing": "fdvv_people.cli.study.timing"}
+"""Modules with `analyse` and `export`, by the format of plans whose studies have no table of answers."""
 
 table_options = ui.options(
     click.option(
@@ -62,14 +66,12 @@ def analyse(source: Path, plan: Path | None, report: Path | None, as_json: bool,
     thresholds, and the test of the main claim; with --report as a page with figures. Of a timing study: the
     paper's analysis of variance and pairs, a mixed model with intervals, and the claim.
     """
-    from fdvv_people.cli.study.timing import timing_analyse
     from fdvv_people.study.analysis.export import analysis_dict
     from fdvv_people.study.analysis.report import write_study_report
-    from fdvv_people.timing.plan.plan_file import is_timing
 
     ui.check_output(report, ".html")
-    if source.is_dir() and is_timing(source):
-        timing_analyse(source, report, as_json)
+    if door := other_door(source):
+        door.analyse(source, report, as_json)
         return
     read, declared, origin = _opened(source, plan, table)
     found = _analysed(read.answers, declared, source)
@@ -97,26 +99,25 @@ def export(source: Path, plan: Path | None, folder: Path, as_json: bool, **table
     answers.csv has a row a trial, people.csv a row a person, codebook.json tells what the columns mean,
     analysis.json holds every figure.
     """
-    from fdvv_people.cli.study.timing import timing_export
     from fdvv_people.study.analysis.code_book import write_answers
     from fdvv_people.study.analysis.export import write_analysis
-    from fdvv_people.timing.plan.plan_file import is_timing
 
     ui.check_folder(folder)
-    if source.is_dir() and is_timing(source):
-        timing_export(source, folder, as_json)
-        return
-    read, declared, _ = _opened(source, plan, table)
-    answers = read.answers
-    found = _analysed(answers, declared, source)
-    files = [*write_answers(folder, found.screening.answers, declared), *write_analysis(folder, found)]
+    read = None
+    if door := other_door(source):
+        rows, simulated, files = door.export(source, folder)
+    else:
+        read, declared, _ = _opened(source, plan, table)
+        found = _analysed(read.answers, declared, source)
+        rows, simulated = len(read.answers.person), read.answers.simulated
+        files = [*write_answers(folder, found.screening.answers, declared), *write_analysis(folder, found)]
     if as_json:
-        files_json = [str(path) for path in files]
-        ui.print_json({"rows": len(answers.person), "files": files_json, **_columns(read)})
+        columns = _columns(read) if read else {}
+        ui.print_json({"rows": rows, "files": [str(path) for path in files], **columns})
         return
-    _print_columns(read)
-    simulated = " of simulated participants: a proxy, no evidence" if answers.simulated else ""
-    click.echo(f"{ui.counted(len(answers.person), 'trial')}{simulated}")
+    if read:
+        _print_columns(read)
+    click.echo(f"{ui.counted(rows, 'trial')}{' of simulated participants: a proxy, no evidence' * simulated}")
     for path in files:
         click.echo(str(path))
 
@@ -139,11 +140,10 @@ def jnds(folder: Path, project: Path | None, output: Path | None, as_json: bool)
     from fdvv.model.noticeable import LITERATURE
     from fdvv_people.study.admin.study import Study
     from fdvv_people.study.analysis.jnd_record import jnd_record
-    from fdvv_people.timing.plan.plan_file import is_timing
+    from fdvv_people.study.kind import kind_of
 
     ui.check_output(output, ".json")
-    if is_timing(folder):
-        raise InputError(folder, "study", "a timing study measures no JND", "name one of kind thresholds")
+    kind_of(folder).require("jnds", folder)
     record = jnd_record(Study.open(folder))
     paths = [path for path in (output, project and project / FILE_NAME) if path]
     for path in paths:
@@ -158,6 +158,14 @@ def jnds(folder: Path, project: Path | None, output: Path | None, as_json: bool)
             ui.print_wrapped(f"{source.of}: {source.value}; {source.source}")
     ui.print_written(*paths)
     ui.print_warnings(record.doubts())
+
+
+def other_door(source: Path) -> Any:
+    """Return what analyses the study in a folder otherwise than as a table of answers; None: nothing does."""
+    from fdvv_people.study.kind import kind_of
+
+    module = DOORS.get(kind_of(source).format) if source.is_dir() else None
+    return module and importlib.import_module(module)
 
 
 def _analysed(answers: Answers, declared: StudyPlan | None, source: Path) -> StudyAnalysis:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from fdvv.cli import ui
-from fdvv.errors import InputError
 
 if TYPE_CHECKING:
     from fdvv.report.report import Section
-    from fdvv_people.study.admin.review import StudyReview
 
-TIMING = ("timing", "tapping")
-KINDS = ("realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase", "thresholds", *TIMING)
+KINDS = (
+    *("realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase", "thresholds"),
+    *("timing", "tapping"),
+)
 DEFAULT = "realism"
 
 study_argument = click.argument("study", type=ui.PATH)
@@ -35,9 +36,11 @@ def new(folder: Path, kind: str | None) -> None:
     The study is called as the folder. It holds the paper's design, or a usual one of its kind; what every
     field means is in docs/reference/study-file.md. Nothing counts before fdvv study freeze.
     """
+    from fdvv_people.study.plan.plan_file import write_template
+
     ui.check_folder(folder)
     chosen = kind_named(folder, kind)
-    path = write_kind(chosen, folder)
+    path = write_template(chosen, folder, folder.absolute().name)
     click.echo(f"written to {path}")
     click.echo(f"its kind is {chosen}; edit it, then: fdvv study check {folder}")
 
@@ -48,23 +51,6 @@ def kind_named(folder: Path, kind: str | None) -> str:
     return kind or (name if name in KINDS else DEFAULT)
 
 
-def write_kind(kind: str, folder: Path) -> Path:
-    """Write a shipped study of a kind, called as its folder; return its file. InputError, OSError."""
-    from fdvv_people.study.plan.plan_file import write_template
-    from fdvv_people.timing.plan.plan_file import timing_template
-
-    write = timing_template if kind in TIMING else write_template
-    return write(kind, folder, folder.absolute().name)
-
-
-def refuse_timing(study: Path, command: str, instead: str) -> None:
-    """Refuse a command that timing studies have no use for. InputError."""
-    from fdvv_people.timing.plan.plan_file import is_timing
-
-    if is_timing(study):
-        raise InputError(study, command, "is for studies that ask about what is rendered", instead)
-
-
 @click.command()
 @study_argument
 @ui.json_option
@@ -73,45 +59,30 @@ def check(study: Path, as_json: bool) -> None:
 
     STUDY is a study.toml, or the folder of one. All that is wrong is listed at once.
     """
-    from fdvv_people.cli.study.timing import check_timing
-    from fdvv_people.study.admin.preview import summarise_plan
-    from fdvv_people.study.admin.review import review_study
-    from fdvv_people.timing.plan.plan_file import is_timing
+    from fdvv_people.study.kind import kind_of
+    from fdvv_people.study.plan.plan_file import read_plan_file
 
-    if is_timing(study):
-        check_timing(study, as_json)
-        return
-    look = review_study(study)
+    text, path = read_plan_file(study)
+    kind = kind_of(path)
+    plan = kind.read_plan(text, path)
+    account = kind.account(plan, path.parent)
     if as_json:
-        notes = {"notes": [*look.notes, *(() if look.problems else summarise_plan(look.plan).notes)]}
-        ui.print_json({"name": look.plan.name, "ok": not look.problems, "problems": look.problems, **notes})
+        found = {"problems": account.problems, "notes": list(account.notes)}
+        ui.print_json({"name": plan.name, "ok": not account.problems, **found})
+    elif account.problems:
+        _print_problems(plan.name, account.problems)
     else:
-        _print_check(look)
-    if look.problems:
+        for note in account.notes:
+            ui.print_wrapped(f"note: {note}")
+        ui.print_wrapped(f"{plan.name}: can be run; {account.text}")
+    if account.problems:
         raise click.exceptions.Exit(1)
 
 
-def _print_check(look: StudyReview) -> None:
-    from fdvv_people.study.admin.preview import summarise_plan
-
-    _print_problems(look)
-    if look.problems:
-        return
-    account = summarise_plan(look.plan)
-    for note in (*look.notes, *account.notes):
-        ui.print_wrapped(f"note: {note}")
-    trials = ui.counted(account.trials, "trial")
-    click.echo(
-        f"{look.plan.name}: can be run; {trials} a person, about {account.minutes:.0f} minutes (assumed), "
-        f"{look.plan.people} people"
-    )
-
-
-def _print_problems(look: StudyReview) -> None:
-    for problem in look.problems:
+def _print_problems(name: str, problems: Sequence[str]) -> None:
+    for problem in problems:
         ui.print_wrapped(f"problem: {problem}")
-    if look.problems:
-        click.echo(f"{look.plan.name}: cannot be run, {ui.counted(len(look.problems), 'problem')}")
+    click.echo(f"{name}: cannot be run, {ui.counted(len(problems), 'problem')}")
 
 
 @click.command()
@@ -133,12 +104,13 @@ def preview(study: Path, html: Path | None, as_json: bool) -> None:
         preview_title,
     )
     from fdvv_people.study.admin.review import review_study
+    from fdvv_people.study.kind import kind_of
 
     ui.check_output(html, ".html")
-    refuse_timing(study, "preview", "see what it comes to: fdvv study check")
+    kind_of(study).require("preview", study)
     look = review_study(study)
     if look.problems:
-        _print_problems(look)
+        _print_problems(look.plan.name, look.problems)
         raise click.exceptions.Exit(1)
     if html:
         write_report(html, preview_html(look))

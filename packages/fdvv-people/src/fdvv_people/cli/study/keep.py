@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,9 +13,7 @@ from fdvv.cli import ui
 from fdvv.io.files import read_limited
 
 if TYPE_CHECKING:
-    from fdvv_people.study.admin.kept import KeptStudy
     from fdvv_people.study.admin.study import Study
-    from fdvv_people.timing.files.study import AnyStudy
 
 folder_argument = click.argument("folder", type=ui.FOLDER)
 passphrase_option = ui.option(
@@ -40,9 +37,9 @@ def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
     hide, and who opens the sessions whenever fdvv studio was started; nobody can restore it. The fingerprint
     goes into the preregistration.
     """
-    from fdvv_people.timing.files.study import open_study
+    from fdvv_people.study.admin.study import Study
 
-    study = open_study(folder)
+    study = Study.open(folder)
     fingerprint = study.freeze(_passphrase(passphrase_file, new=True))
     if as_json:
         ui.print_json({"folder": str(folder), "name": study.plan.name, "fingerprint": fingerprint})
@@ -66,9 +63,9 @@ def freeze(folder: Path, passphrase_file: Path | None, as_json: bool) -> None:
 @ui.json_option
 def verify(folder: Path, marks: bool, passphrase_file: Path | None, as_json: bool, **held: Any) -> None:
     """Verify that the study in FOLDER is as it was frozen and its logs as written; status 1 if not."""
-    from fdvv_people.timing.files.study import open_study
+    from fdvv_people.study.admin.study import Study
 
-    study = open_study(folder)
+    study = Study.open(folder)
     passphrase = _passphrase(passphrase_file) if marks or passphrase_file else ""
     problems = study.verify(passphrase=passphrase, **held)
     if as_json:
@@ -94,12 +91,12 @@ def verify(folder: Path, marks: bool, passphrase_file: Path | None, as_json: boo
 @ui.json_option
 def status(folder: Path, as_json: bool) -> None:
     """Show how far the study in FOLDER is and what was done with it, but not what labels hide."""
-    from fdvv_people.cli.study.timing import timed_people
-    from fdvv_people.timing.files.study import TimingStudy, open_study
+    from fdvv_people.study.admin.progress import study_progress
+    from fdvv_people.study.admin.study import Study
 
-    study = open_study(folder)
-    table = timed_people(study) if isinstance(study, TimingStudy) else _people(study)
-    document = _status(study, table.people)
+    study = Study.open(folder)
+    people = study_progress(study, time.time())
+    document = _status(study, [one.document() for one in people])
     if as_json:
         ui.print_json(document)
         return
@@ -109,15 +106,16 @@ def status(folder: Path, as_json: bool) -> None:
         click.echo(f"the record ends in: {document['record']}")
     for act in document["unsealed"]:
         click.echo(f"unsealed {act['when']} by {act['who']}: {act['why']}")
-    if table.rows:
-        ui.print_table(table.columns, table.rows, left=table.left)
-    for line in table.lines:
+    rows = [one.cells() for one in people]
+    if rows:
+        ui.print_table(list(rows[0]), [list(row.values()) for row in rows], left=people[0].left)
+    for line in filter(None, (one.call for one in people)):
         ui.print_wrapped(line)
     if document["paused"]:
         click.echo(f"paused: {', '.join(document['paused'])}")
-    count = f"{len(table.rows)} of {document['planned']} planned"
+    count = f"{len(people)} of {document['planned']} planned"
     click.echo(f"people: {count}{_simulated(document['simulated'])}")
-    ui.print_warnings([p["problem"] for p in table.people if p["problem"]])
+    ui.print_warnings([one.problem for one in people if one.problem])
 
 
 @click.command()
@@ -138,26 +136,19 @@ def unseal(
     were frozen with the study say in answers.csv what does not count, and why. Of a timing study it writes
     scores.csv, rounds.csv, training.csv and pages.csv.
     """
+    from fdvv_people.study.admin.study import Study
     from fdvv_people.study.files.layout import UNSEALED
-    from fdvv_people.timing.analysis.unseal import unseal_timing
-    from fdvv_people.timing.files.study import TimingStudy, open_study
 
-    study, passphrase = open_study(folder), _passphrase(passphrase_file)
-    if isinstance(study, TimingStudy):
-        scores = unseal_timing(study, passphrase, who, why, keeper, despite)
-        phase, simulated = " of validation", scores.simulated
-        reasons = [row.excluded for row in scores.rows]
-    else:
-        answers = study.unseal(passphrase, who, why, keeper, despite)
-        assert answers.excluded is not None
-        phase, simulated, reasons = "", answers.simulated, answers.excluded.tolist()
+    study, passphrase = Study.open(folder), _passphrase(passphrase_file)
+    found = study.unseal(passphrase, who, why, keeper, despite)
+    simulated, reasons = found.simulated, found.reasons
     excluded, counted = Counter(filter(None, reasons)), reasons.count("")
     if as_json:
         kept = {"simulated": simulated, "unsealed": str(folder / UNSEALED)}
         ui.print_json({"rows": len(reasons), "counted": counted, "excluded": dict(excluded), **kept})
         return
     trials = ui.counted(len(reasons), "trial")
-    click.echo(f"{trials}{phase}{ui.simulated(simulated)}, {counted} count")
+    click.echo(f"{trials}{study.kind.unsealed}{ui.simulated(simulated)}, {counted} count")
     for reason, rows in excluded.items():
         click.echo(f"  {rows} left out: {reason}")
     ui.print_written(folder / UNSEALED)
@@ -175,9 +166,9 @@ def withdraw(folder: Path, person: str, keep: bool, yes: bool, as_json: bool) ->
     FOLDER is the study's, PERSON what fdvv study status calls them.
     What was unsealed of the study is deleted too, for it holds their answers: unseal it again.
     """
-    from fdvv_people.timing.files.study import open_study
+    from fdvv_people.study.admin.study import Study
 
-    study = open_study(folder)
+    study = Study.open(folder)
     person = study.person(person).name
     if not (yes or as_json):
         question = f"End {person}'s part?" if keep else f"Delete all that is kept of {person}, for good?"
@@ -197,7 +188,7 @@ def _passphrase(file: Path | None, new: bool = False) -> str:
     return answer
 
 
-def _scheme(study: KeptStudy[Any]) -> str:
+def _scheme(study: Study) -> str:
     alone = ", ".join(study.code_alone)
     if alone:
         return f"the code alone of {alone} opens it, for an earlier fdvv enrolled them; keep their cards away"
@@ -208,7 +199,7 @@ def _simulated(simulated: bool) -> str:
     return ", all simulated: a proxy, no evidence" if simulated else ""
 
 
-def _status(study: AnyStudy, people: list[dict[str, Any]]) -> dict[str, Any]:
+def _status(study: Study, people: list[dict[str, Any]]) -> dict[str, Any]:
     acts = [record["unsealed"] for record in study.history() if "unsealed" in record]
     state = "unsealed" if acts else "frozen" if study.frozen else "not frozen"
     return {
@@ -216,39 +207,3 @@ def _status(study: AnyStudy, people: list[dict[str, Any]]) -> dict[str, Any]:
         "record": study.record_end, "planned": study.plan.people, "simulated": study.simulated,
         "paused": sorted(one or "everybody" for one in study.paused), "unsealed": acts, "people": people,
     }  # fmt: skip
-
-
-@dataclass(frozen=True)
-class PeopleTable:
-    """The people of a study.
-
-    Attributes
-    ----------
-    people : as --json prints them. columns, rows, left : of the table, see `ui.print_table`.
-    lines : that are printed below it.
-    """
-
-    people: list[dict[str, Any]]
-    columns: list[str]
-    rows: list[list[Any]]
-    left: int
-    lines: list[str] = field(default_factory=list)
-
-
-def _people(study: Study) -> PeopleTable:
-    from fdvv_people.study.admin.operator_view import operator_view
-
-    people = operator_view(study, time.time()).people
-    rows = [
-        [one.person, one.language, one.state, f"{one.answered} of {one.trials}", one.resumptions]
-        for one in people
-    ]
-    documents = [
-        {
-            "person": one.person, "language": one.language, "state": one.state, "simulated": one.simulated,
-            "answered": one.answered, "trials": one.trials, "resumed": one.resumptions,
-            "interrupted": one.interruptions, "problem": one.problem,
-        }
-        for one in people
-    ]  # fmt: skip
-    return PeopleTable(documents, ["person", "language", "state", "answered", "resumed"], rows, 3)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import asdict
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,15 +13,14 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.options import kept_on_interrupt
 from fdvv.errors import ModelError
-from fdvv_people.cli.study.declare import refuse_timing
 
 if TYPE_CHECKING:
-    from fdvv_people.study.admin.study import Study
     from fdvv_people.study.simulation.people import ProxySettings
-    from fdvv_people.study.simulation.sessions import SimulatedStudy
     from fdvv_people.study.simulation.study_power import StudyPower
 
 MOST_PEOPLE = 500
+FORMATS = {"minutes": ".0f", "days": ".1f"}
+"""Of the columns of what simulated participants did."""
 
 
 class PeopleRange(click.ParamType[tuple[int, ...]]):
@@ -73,9 +72,10 @@ def power(
     FILE is a study's file, or its folder. The whole study is simulated many times, and the claim is tested in
     each as it will be in the real one. Proxies plan a study; what they say is never evidence.
     """
+    from fdvv_people.study.kind import kind_of
     from fdvv_people.study.simulation.study_power import study_power
 
-    refuse_timing(file, "power", "simulate it, and read its intervals: fdvv study simulate")
+    kind_of(file).require("power", file)
     settings = proxy_settings(changes)
     with ui.stages() as tell:
         found = study_power(file, **options, settings=settings, given_JND=difference, progress=tell)
@@ -179,34 +179,34 @@ def simulate(
     simulated wherever it is kept or shown, and is never evidence. Of a timing study they train, come back
     after the gap and press every button on the twin; --fast and --set are for the other kinds.
     """
-    from fdvv_people.cli.study.timing import timing_simulate
     from fdvv_people.study.admin.study import Study
-    from fdvv_people.study.simulation.sessions import simulate_study
-    from fdvv_people.timing.plan.plan_file import is_timing
+    from fdvv_people.study.simulation.sessions import Simulation, simulate_study
 
-    settings = proxy_settings(changes)
-    if is_timing(folder):
-        timing_simulate(folder, people, seed, as_json)
-        return
+    simulation = Simulation(seed, proxy_settings(changes), not fast)
     study = Study.open(folder)
     kept = f"interrupted; who was done is kept in {folder}, the same command goes on"
     with kept_on_interrupt(kept), ui.progress("simulated people", 1) as tell:
-        found = simulate_study(study, people, seed, not fast, settings, tell)
+        found = simulate_study(study, people, simulation, tell)
+    rows = [study.kind.session_row(session) for session in found.sessions]
     if as_json:
-        ui.print_json({**asdict(found), "study": study.plan.name, "fingerprint": study.fingerprint})
+        pressed = {"pressed": not fast} if study.kind.feels else {}
+        about = {**pressed, "simulated": True, "study": study.plan.name, "fingerprint": study.fingerprint}
+        ui.print_json({"sessions": rows, "finished": found.finished, **about})
         return
-    _show(found, study)
-
-
-def _show(found: SimulatedStudy, study: Study) -> None:
     click.echo(
         f"simulated: {study.plan.name}, {ui.counted(len(found.finished), 'simulated participant')} done"
     )
-    if found.sessions:
-        click.echo("")
-        rows = [[one.person, one.trials, one.breaks, f"{one.minutes:.0f}"] for one in found.sessions]
-        ui.print_table(["simulated", "trials", "breaks", "minutes"], rows)
-        click.echo("")
-    if not found.pressed:
+    _show_sessions(rows)
+    if fast and study.kind.feels:
         ui.print_wrapped("Nothing was pressed: no force is known of any trial.")
-    ui.print_wrapped(f"Unseal the answers of the proxies with: fdvv study unseal {study.folder}")
+    ui.print_wrapped(f"Unseal the {study.kind.proxy_data} with: fdvv study unseal {study.folder}")
+
+
+def _show_sessions(rows: Sequence[Mapping[str, object]]) -> None:
+    if rows:
+        columns = ["simulated", *list(rows[0])[1:]]
+        click.echo("")
+        ui.print_table(
+            columns, [[format(cell, FORMATS.get(name, "")) for name, cell in row.items()] for row in rows]
+        )
+        click.echo("")

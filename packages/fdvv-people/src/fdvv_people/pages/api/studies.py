@@ -11,15 +11,11 @@ from msgspec import Meta, field
 from fdvv.errors import FdvvError
 from fdvv_people.pages.api.study_steps import text_in
 from fdvv_people.pages.studies import Studies, StudiesChanged, StudyState, state_of
-from fdvv_people.pages.timing_admin import people_of, standing_text, timing_sentence
-from fdvv_people.study.admin.operator_view import PersonView, operator_view
-from fdvv_people.study.admin.review import review_study
-from fdvv_people.study.admin.standing import Kind, draft_sentence, standing
+from fdvv_people.study.admin.progress import Kind, PersonProgress, standing, study_progress
+from fdvv_people.study.admin.study import Study
 from fdvv_people.study.files.counts import COUNTED
 from fdvv_people.study.files.people import EVERYBODY
-from fdvv_people.timing.files.progress import PersonProgress
-from fdvv_people.timing.files.study import AnyStudy, TimingStudy
-from fdvv_studio.studio.contract import Empty, Message, call, error_line, message_of, watch_channel
+from fdvv_studio.studio.contract import Empty, Message, call, error_line, watch_channel
 
 Name = Annotated[str, Meta(max_length=60)]
 
@@ -92,7 +88,7 @@ class StudiesStanding(Message):
 SIMULATED = "simulated"
 
 
-def study_row(name: str, study: AnyStudy) -> StudiesRow:
+def study_row(name: str, study: Study) -> StudiesRow:
     plan = study.plan
     title = text_in(plan.title, plan.languages[0])
     return StudiesRow(name, title, plan.kind, state_of(study), len(study.people()), plan.people, "")
@@ -121,19 +117,11 @@ def study_detail(studies: Studies, name: str) -> StudiesDetail:
     )
 
 
-def _people(studies: Studies, name: str, study: AnyStudy) -> list[StudiesPerson]:
+def _people(studies: Studies, name: str, study: Study) -> list[StudiesPerson]:
     paused = study.paused
     here = {one.name for one in study.people() if studies.screens.find(name, one.name)}
-    if isinstance(study, TimingStudy):
-        return [_timed_person(one, one.person in here, one.person in paused) for one in people_of(study)]
-    people = operator_view(study, time.time()).people
+    people = study_progress(study, time.time())
     return [_person(one, one.person in here, one.person in paused) for one in people]
-
-
-def _timed_person(one: PersonProgress, here: bool, paused: bool) -> StudiesPerson:
-    note = SIMULATED if one.simulated else ""
-    where = standing_text(one)
-    return StudiesPerson(one.person, one.language, where, one.done, one.trials, here, paused, note)
 
 
 def history_line(record: Mapping[str, Any]) -> str:
@@ -149,17 +137,9 @@ def when(stamp: str) -> str:
     return f"{stamp[:16].replace('T', ' ')} UTC" if stamp else ""
 
 
-def _person(one: PersonView, here: bool, paused: bool) -> StudiesPerson:
+def _person(one: PersonProgress, here: bool, paused: bool) -> StudiesPerson:
     note = SIMULATED if one.simulated else ""
-    return message_of(StudiesPerson, one, state=place_of(one), here=here, paused=paused, note=note)
-
-
-def place_of(one: PersonView) -> str:
-    if one.problem:
-        return "not to be read"
-    if one.state in ("withdrawn", "deleted"):
-        return one.state
-    return f"page {one.page}" if one.kind == "page" else (one.kind or one.state)
+    return StudiesPerson(one.person, one.language, one.place, one.done, one.trials, here, paused, note)
 
 
 @call("studies.list")
@@ -176,12 +156,7 @@ def _row(studies: Studies, name: str) -> StudiesRow:
 
 @call("studies.standing")
 def study_standing(studies: Studies, ask: StudiesAsk) -> StudiesStanding:
-    study = studies.study(ask.study)
-    if isinstance(study, TimingStudy):
-        return StudiesStanding(*timing_sentence(study))
-    if study.frozen is None:
-        return StudiesStanding(*draft_sentence(study.plan, review_study(study.folder).problems))
-    return StudiesStanding(*standing(study))
+    return StudiesStanding(*standing(studies.study(ask.study)))
 
 
 CHANNEL = watch_channel("studies", Studies, StudiesChanged)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
@@ -16,6 +16,9 @@ from fdvv_people.pages.api.study_steps import (
 )
 from fdvv_people.pages.participant.messages import SEATED, SEATING, Short
 from fdvv_people.pages.participant.seated import SeatedScreen
+from fdvv_people.study.admin.study import Study
+from fdvv_people.study.kind import StudyKind
+from fdvv_people.study.labels import KIND
 from fdvv_people.study.plan.events import TrialFace
 from fdvv_people.study.plan.sitting import Step
 from fdvv_people.study.plan.trial import TrialAnswer
@@ -80,10 +83,12 @@ class StudyScreen(SeatedScreen[Participant]):
     seat : the word of the seat that the page is confined to; empty: to none.
     """
 
+    sitting = Participant
+    kind: ClassVar[StudyKind[Any]] = KIND
+
     def __init__(self, studio: Studio, tell: Tell, seat: str = "") -> None:
         super().__init__(studio, tell, seat)
         self._stages = StudyStages(studio, tell)
-        self._stage: ScreenRenderer | None = None
 
     def receive(self, ask: Message) -> None:
         """Do what the page asks; without a participant most asks have come too late and do nothing."""
@@ -92,21 +97,12 @@ class StudyScreen(SeatedScreen[Participant]):
         else:
             super().receive(ask)
 
-    def enrolled(self, name: str, language: str) -> tuple[Participant, str]:
-        """Enrol a new person in a study; return their code too. InputError, OSError."""
-        study = self._studies.labelled(name)
-        stage = self._stages.first(study)
-        participant, code = Participant.enrol(study, language, stage)
-        self._stage = stage
-        return participant, code
+    @property
+    def _stage(self) -> ScreenRenderer | None:
+        return next(iter(self._staged), None)
 
-    def resumed(self, name: str, person: str, code: str) -> Participant:
-        """Resume the session of a person. InputError, OSError."""
-        study = self._studies.labelled(name)
-        stage = self._stages.first(study)
-        participant = Participant.resume(study, person, code, stage)
-        self._stage = stage
-        return participant
+    def prepare(self, study: Study) -> tuple[Any, ...]:
+        return (self._stages.first(study),)
 
     def message(self, participant: Participant, step: Step[TrialFace]) -> StudyStep:
         """Return a step as the page gets it."""
@@ -114,7 +110,7 @@ class StudyScreen(SeatedScreen[Participant]):
 
     def put_away(self) -> None:
         """Let go of the stage; the participant closes it."""
-        self._stage = None
+        self._staged = ()
 
     def lift(self) -> None:
         """Have the finger leave the button."""
@@ -137,8 +133,8 @@ class StudyScreen(SeatedScreen[Participant]):
                 participant.go_to(ask.label)
                 self._tell(StudyFelt(ask.label))
             case StudyAgain():
-                self._stage = self._stages.open(participant.study)
-                participant.reconnect(self._stage)
+                self._staged = (self._stages.open(participant.study),)
+                participant.reconnect(*self._staged)
                 self.tell_step()
             case StudyAnswered():
                 self.require_running(participant)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 import tempfile
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -17,20 +16,14 @@ from fdvv.model.file import model_to_json
 from fdvv.report.report import Section
 from fdvv_people.pages.api.studies import Name, StudiesAsk
 from fdvv_people.pages.studies import Studies
-from fdvv_people.pages.timing_admin import study_problems, text_problems, timing_sections
-from fdvv_people.study.admin.preview import preview_sections
-from fdvv_people.study.admin.review import review_study
 from fdvv_people.study.admin.study import Study
-from fdvv_people.study.plan.plan_check import plan_problems
+from fdvv_people.study.kind import Account, all_kinds, kind_of_text
 from fdvv_people.study.plan.plan_file import (
     STUDY_FILE,
-    read_plan_text,
-    template_names,
+    called,
     template_text,
     write_template,
 )
-from fdvv_people.timing.files.study import AnyStudy, TimingStudy
-from fdvv_people.timing.plan.plan_file import TEMPLATE_NAMES, timing_template
 from fdvv_studio.studio.api.documents import ButtonId
 from fdvv_studio.studio.contract import Empty, Message, Offer, call, error_line
 from fdvv_studio.studio.studio import Studio
@@ -109,24 +102,18 @@ def preview_section(one: Section) -> StudiesSection:
 
 @call("studies.offers")
 def offers(_studio: Studio, _ask: Empty) -> StudiesOffers:
-    names = (*template_names(), *TEMPLATE_NAMES)
+    names = [name for kind in all_kinds() for name in kind.templates]
     return StudiesOffers([Offer(name, TEMPLATE_DESCRIPTIONS.get(name, "")) for name in names])
 
 
 @call("studies.create")
 def create(studio: Studio, ask: StudiesCreate) -> StudiesAsk:
     studies = studio.part(Studies)
-    if ask.template in TEMPLATE_NAMES:
-        with tempfile.TemporaryDirectory() as building:
-            path = timing_template(ask.template, Path(building), ask.name)
-            TimingStudy.declare(studies.path(ask.name), path)
-        studies.announce(ask.name)
-        return StudiesAsk(ask.name)
-    text = template_text(ask.template)  # a wrong name leaves no folder
+    text = called(template_text(ask.template), ask.name)  # a wrong name leaves no folder
     if ask.button is not None:
         text = with_button(text, studio.catalog.model(ask.button).name, OWN)
     with tempfile.TemporaryDirectory() as building:
-        path = write_template(ask.template, Path(building))
+        path = write_template(ask.template, Path(building), ask.name)
         if OWN in text and ask.button is not None:
             write_atomic(path, text)
             write_atomic(path.parent / OWN, model_to_json(studio.catalog.model(ask.button)))
@@ -141,7 +128,7 @@ ITEMS = re.compile(r"^\[\[items\]\]\n(?:(?!\[|# ).*\n|    \{.*\n)*", re.M)
 
 def with_button(text: str, name: str, file: str) -> str:
     """Put one button in the place of a template's, where each is rendered in two ways: realism and abx."""
-    plan = read_plan_text(text, STUDY_FILE)
+    plan = kind_of_text(text).read_plan(text, STUDY_FILE)
     if plan.kind not in ("realism", "abx"):
         return text
     first, quoted = plan.items[0], json.dumps(name, ensure_ascii=False)
@@ -169,29 +156,18 @@ def write(studies: Studies, ask: StudiesWrite) -> StudiesPlan:
     return _reviewed_plan(ask.study, study)
 
 
-def _problems(study: AnyStudy, text: str) -> tuple[str, ...]:
+def _problems(study: Study, text: str) -> tuple[str, ...]:
     try:
-        if isinstance(study, TimingStudy):
-            return text_problems(text)
-        return plan_problems(read_plan_text(text, STUDY_FILE))
+        return study.kind.problems(study.kind.read_plan(text, STUDY_FILE))
     except InputError as error:
         return (error_line(error),)
 
 
-def _reviewed_plan(name: str, study: AnyStudy) -> StudiesPlan:
+def _reviewed_plan(name: str, study: Study) -> StudiesPlan:
     """Return a declaration with its preview, read with all files it names."""
     text = (study.folder / STUDY_FILE).read_text(encoding="utf-8", errors="replace")
     try:
-        problems, sections = _reviewed(study)
+        account: Account = study.kind.account(study.plan, study.folder)
     except InputError as error:
         return StudiesPlan(name, text, (error_line(error),), [])
-    return StudiesPlan(name, text, problems, [preview_section(one) for one in sections])
-
-
-def _reviewed(study: AnyStudy) -> tuple[tuple[str, ...], Sequence[Section]]:
-    """Return what is wrong with a plan, and what it comes to where nothing is. InputError."""
-    if isinstance(study, TimingStudy):
-        problems = study_problems(study)
-        return problems, [] if problems else timing_sections(study.plan)
-    look = review_study(study.folder)
-    return look.problems, [] if look.problems else preview_sections(look)
+    return StudiesPlan(name, text, account.problems, [preview_section(one) for one in account.sections])

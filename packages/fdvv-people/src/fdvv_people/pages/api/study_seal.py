@@ -9,14 +9,7 @@ from msgspec import Meta
 from fdvv.errors import InputError
 from fdvv_people.pages.api.studies import StudiesAsk, StudiesDetail, study_detail
 from fdvv_people.pages.studies import Studies, state_of
-from fdvv_people.pages.timing_admin import report_html
-from fdvv_people.study.analysis.analyse import analyse
-from fdvv_people.study.analysis.jnds import standards_of
-from fdvv_people.study.analysis.read_answers import read_answers
-from fdvv_people.study.analysis.report import study_html
 from fdvv_people.study.files.layout import UNSEALED
-from fdvv_people.timing.analysis.unseal import unseal_timing
-from fdvv_people.timing.files.study import TimingStudy
 from fdvv_studio.studio.contract import Message, call
 
 Line = Annotated[str, Meta(max_length=1000)]
@@ -88,12 +81,9 @@ def verify(studies: Studies, ask: StudiesAsk) -> StudiesVerified:
 @call("studies.unseal")
 def unseal(studies: Studies, ask: StudiesUnseal) -> StudiesUnsealed:
     study, about = studies.study(ask.study), (ask.passphrase, ask.who, ask.why)
-    if isinstance(study, TimingStudy):
-        counts = [row.counts for row in unseal_timing(study, *about).rows]
-    else:
-        counts = study.unseal(*about).counts.tolist()
+    reasons = study.unseal(*about).reasons
     studies.announce(ask.study)
-    return StudiesUnsealed(len(counts), counts.count(False), UNSEALED)
+    return StudiesUnsealed(len(reasons), len(reasons) - reasons.count(""), UNSEALED)
 
 
 @call("studies.report")
@@ -101,9 +91,5 @@ def report(studies: Studies, ask: StudiesAsk) -> StudiesReport:
     study = studies.study(ask.study)
     if state_of(study) != "unsealed":
         raise InputError("study", ask.study, "is sealed", "unseal it when the last person is done")
-    if isinstance(study, TimingStudy):
-        return StudiesReport(f"{ask.study}-report.html", report_html(study, ask.study))
-    answers = read_answers(study.folder / UNSEALED)
-    found = analyse(answers, study.plan, standards=standards_of(study.plan, study.folder))
     footer = f"Study {ask.study}, frozen as {study.fingerprint}."
-    return StudiesReport(f"{ask.study}-report.html", study_html(found, study.plan, footer))
+    return StudiesReport(f"{ask.study}-report.html", study.kind.report(study, footer))

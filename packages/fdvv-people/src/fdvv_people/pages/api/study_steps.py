@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from typing import Literal
+from collections.abc import Iterable, Mapping
+from typing import Any, Literal
 
 from fdvv.errors import DeviceError, InputError
 from fdvv.program.program import Signal
@@ -27,15 +27,18 @@ PARTED = re.compile(r"\n\s*\n")
 
 
 def step_message(plan: StudyPlan, language: str, step: Step[TrialFace]) -> StudyStep:
-    form = task = None
-    if step.kind == "page":
-        (page,) = (one for one in plan.pages if one.name == step.page)
-        form = form_message(page, language)
-    elif step.kind in ("practice", "trial"):
-        task = task_message(plan, language, step)
-    left_s = step.left_s if step.kind == "break" else None
-    progress_ratio = round(step.progress, 4)
-    return message_of(StudyStep, step, progress_ratio=progress_ratio, form=form, task=task, left_s=left_s)
+    task = task_message(plan, language, step) if step.kind in ("practice", "trial") else None
+    return message_of(StudyStep, step, **step_parts(plan.pages, language, step), task=task)
+
+
+def step_parts(pages: Iterable[Page], language: str, step: Step[Any]) -> dict[str, Any]:
+    """Return what steps of every kind of study tell alike: the page, the break, how much is done."""
+    page = next((one for one in pages if step.kind == "page" and one.name == step.page), None)
+    return {
+        "form": form_message(page, language) if page else None,
+        "left_s": step.left_s if step.kind == "break" else None,
+        "progress_ratio": round(step.progress, 4),
+    }
 
 
 def form_message(page: Page, language: str) -> StudyForm:

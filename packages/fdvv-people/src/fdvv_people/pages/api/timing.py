@@ -18,8 +18,10 @@ from fdvv_people.pages.participant.steps import (
 )
 from fdvv_people.pages.play_trials import PlayClick
 from fdvv_people.pages.studies import Studies
+from fdvv_people.study.admin.progress import study_progress
 from fdvv_people.study.plan.sitting import utc_text
-from fdvv_people.timing.files.progress import PersonPhase, timing_progress
+from fdvv_people.study.timing.kind import KIND
+from fdvv_people.study.timing.progress import PersonPhase
 from fdvv_studio.studio.contract import ChannelKind, Here, Message, call, message_of
 
 
@@ -54,7 +56,7 @@ class TimingProgress(Message):
 @call("timing.progress")
 def progress(studies: Studies, ask: StudiesAsk) -> TimingProgress:
     now_s = time.time()
-    people = timing_progress(studies.timing(ask.study), now_s).people
+    people = study_progress(studies.study(ask.study, KIND), now_s)
     return TimingProgress(ask.study, utc_text(now_s), [message_of(TimingPerson, one) for one in people])
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, ClassVar
+
 from msgspec import Struct
 
 from fdvv.errors import DeviceError, InputError, ModelError
@@ -21,10 +23,12 @@ from fdvv_people.pages.participant.trial import KeyTrial, OpenTrial, TimedRounds
 from fdvv_people.pages.play_trials import CLOCK, LiveTrial, Table
 from fdvv_people.pages.played_trial import PlayDelay
 from fdvv_people.pages.studies import TWIN
+from fdvv_people.study.kind import StudyKind
 from fdvv_people.study.plan.sitting import Step
-from fdvv_people.timing.plan.events import Surface
-from fdvv_people.timing.plan.schedule import TimingFace
-from fdvv_people.timing.session.participant import BegunTrial, TimingParticipant
+from fdvv_people.study.timing.events import Surface
+from fdvv_people.study.timing.kind import KIND
+from fdvv_people.study.timing.participant import BegunTrial, TimingParticipant
+from fdvv_people.study.timing.schedule import TimingFace
 from fdvv_studio.live.device_key import DeviceKey
 from fdvv_studio.studio.api.press_frames import ShakeSignal
 from fdvv_studio.studio.contract import Message, Over, Tell, error_line
@@ -36,6 +40,9 @@ class TimingScreen(SeatedScreen[TimingParticipant]):
 
     seat : the word of the seat that the page is confined to; empty: to none.
     """
+
+    sitting = TimingParticipant
+    kind: ClassVar[StudyKind[Any]] = KIND
 
     def __init__(self, studio: Studio, tell: Tell, seat: str = "") -> None:
         super().__init__(studio, tell, seat)
@@ -59,14 +66,6 @@ class TimingScreen(SeatedScreen[TimingParticipant]):
                 pass
             case _:
                 super().receive(ask)
-
-    def enrolled(self, name: str, language: str) -> tuple[TimingParticipant, str]:
-        """Enrol a new person in a study; return their code too. InputError, OSError."""
-        return TimingParticipant.enrol(self._studies.timing(name), language)
-
-    def resumed(self, name: str, person: str, code: str) -> TimingParticipant:
-        """Resume the session of a person. InputError, OSError."""
-        return TimingParticipant.resume(self._studies.timing(name), person, code)
 
     def message(self, participant: TimingParticipant, step: Step[TimingFace]) -> TimingStepMessage:
         """Return a step as the page gets it."""

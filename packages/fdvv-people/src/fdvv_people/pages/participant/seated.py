@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from threading import RLock
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from msgspec import Struct
 
@@ -23,33 +23,15 @@ from fdvv_people.pages.participant.messages import (
     StudyWithdraw,
 )
 from fdvv_people.pages.studies import Studies
-from fdvv_people.study.plan.sitting import ENDS
+from fdvv_people.study.admin.study import Study
+from fdvv_people.study.kind import StudyKind
+from fdvv_people.study.plan.sitting import ENDS, Step
+from fdvv_people.study.session.sitting import Sitting
 from fdvv_studio.studio.contract import Message, Tell, error_line
 from fdvv_studio.studio.seats import Invitation
 from fdvv_studio.studio.studio import Studio
 
-
-class SeatedStep(Protocol):
-    """A step of a session. kind : what comes next, of ENDS at its end."""
-
-    @property
-    def kind(self) -> str: ...
-
-
-class SeatedParticipant(Protocol):
-    """A person in a study, of whatever kind."""
-
-    person: str
-    language: str
-
-    def step(self) -> Any: ...
-    def answer_page(self, name: str, values: Any, agreed: bool) -> Any: ...
-    def end_break(self) -> Any: ...
-    def withdraw(self, delete: bool = True) -> Any: ...
-    def close(self) -> None: ...
-
-
-P = TypeVar("P", bound=SeatedParticipant)
+P = TypeVar("P", bound=Sitting[Any])
 
 
 def taken_error() -> InputError:
@@ -60,24 +42,29 @@ class SeatedScreen(ABC, Generic[P]):
     """What serves one page: no one, or a participant, whom the operator may pause or withdraw.
 
     seat : the word of the seat that the page is confined to; empty: to none.
+
+    Attributes
+    ----------
+    sitting, kind : of its participants, and of their studies.
     """
+
+    sitting: type[P]
+    kind: ClassVar[StudyKind[Any]]
 
     def __init__(self, studio: Studio, tell: Tell, seat: str = "") -> None:
         self._seat, self._name = seat, ""
         self._studies, self._tell = studio.part(Studies), tell
         self._seats = self._studies.seats
         self._participant: P | None = None
+        self._staged: tuple[Any, ...] = ()
         self._invitation: Invitation | None = None
         # the operator may use it while the page's own thread does
         self._lock, self._gone = RLock(), False
 
-    @abstractmethod
-    def enrolled(self, name: str, language: str) -> tuple[P, str]:
-        """Enrol a new person in a study; return their code too. InputError, OSError."""
-
-    @abstractmethod
-    def resumed(self, name: str, person: str, code: str) -> P:
-        """Resume the session of a person. InputError, OSError."""
+    def prepare(self, study: Study) -> tuple[Any, ...]:
+        """Make ready what a session needs besides its study, or nothing. InputError, OSError."""
+        del study
+        return ()
 
     @abstractmethod
     def go_on(self, ask: Message, participant: P) -> None:
@@ -199,9 +186,11 @@ class SeatedScreen(ABC, Generic[P]):
                     raise taken_error()
                 self._resume(ask.study, invitation.person, invitation.code)
             else:
-                participant, code = self.enrolled(ask.study, ask.language)
+                study = self._studies.study(ask.study, self.kind)
+                stage = self.prepare(study)
+                participant, code = self.sitting.enrol(study, ask.language, *stage)
                 self._seats.take(invitation, participant.person, code, ask.holder)
-                self._take(ask.study, participant)
+                self._take(ask.study, participant, stage)
             self._invitation = invitation
         self._begin(invitation.code)
 
@@ -219,10 +208,12 @@ class SeatedScreen(ABC, Generic[P]):
                 # a wrong code must not take anybody's screen away
                 self._studies.study(name).schedule(person, code)
                 other.leave("this study continues at another screen")
-            self._take(name, self.resumed(name, person, code))
+            study = self._studies.study(name, self.kind)
+            stage = self.prepare(study)
+            self._take(name, self.sitting.resume(study, person, code, *stage), stage)
 
-    def _take(self, name: str, participant: P) -> None:
-        self._name, self._participant = name, participant
+    def _take(self, name: str, participant: P, stage: tuple[Any, ...]) -> None:
+        self._name, self._participant, self._staged = name, participant, stage
         self._studies.screens.attach(name, participant.person, self)
 
     def _begin(self, code: str) -> None:
@@ -242,7 +233,7 @@ class SeatedScreen(ABC, Generic[P]):
         if self._studies.paused(self._name, participant.person):
             raise InputError("study", "screen", "the study pauses", "wait a moment")
 
-    def advance(self, step: SeatedStep) -> None:
+    def advance(self, step: Step[Any]) -> None:
         """Send the next step; at the end of the session the operator is informed too."""
         self.tell_step(step)
         if self._participant and step.kind in ENDS:
@@ -250,7 +241,7 @@ class SeatedScreen(ABC, Generic[P]):
         else:
             self._studies.announce(self._name)
 
-    def tell_step(self, step: SeatedStep | None = None) -> None:
+    def tell_step(self, step: Step[Any] | None = None) -> None:
         """Send a step, the one that is due if none is named."""
         participant = self._participant
         if participant:

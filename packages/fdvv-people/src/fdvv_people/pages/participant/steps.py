@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Literal
 
-from fdvv_people.pages.api.study_steps import StudyForm, form_message
+from fdvv_people.pages.api.study_steps import StudyForm, step_parts
 from fdvv_people.pages.played_trial import Count, PlayStrip, RoundOver, Time, strip_of
 from fdvv_people.study.plan.sitting import Step
-from fdvv_people.timing.plan.events import Surface
-from fdvv_people.timing.plan.plan import TimingPlan
-from fdvv_people.timing.plan.schedule import Hand, Phase, TimingFace
+from fdvv_people.study.timing.events import Surface
+from fdvv_people.study.timing.plan import TimingPlan
+from fdvv_people.study.timing.schedule import Hand, Phase, TimingFace
 from fdvv_studio.studio.api.press_frames import ShakeSignal
 from fdvv_studio.studio.contract import Message, message_of
 
@@ -101,16 +101,8 @@ class TimingKept(Message, tag="kept"):
 
 def timing_step_message(plan: TimingPlan, language: str, step: Step[TimingFace]) -> TimingStepMessage:
     """Return a step in a person's language."""
-    form = None
-    if step.kind == "page":
-        (page,) = (one for one in plan.pages if one.name == step.page)
-        form = form_message(page, language)
     trial = _trial(plan, step) if step.kind in ("trial", "place") else None
-    left_s = step.left_s if step.kind == "break" else None
-    progress_ratio = round(step.progress, 4)
-    return message_of(
-        TimingStepMessage, step, progress_ratio=progress_ratio, form=form, trial=trial, left_s=left_s
-    )
+    return message_of(TimingStepMessage, step, **step_parts(plan.pages, language, step), trial=trial)
 
 
 def _trial(plan: TimingPlan, step: Step[TimingFace]) -> TimingTrial:

@@ -10,8 +10,8 @@ from fdvv.program.program import Program
 from fdvv_people.pages.participant.steps import TimingKept, TimingRound
 from fdvv_people.pages.play_trials import DeviceTrial, LiveTrial
 from fdvv_people.pages.played_trial import PlayDelay
+from fdvv_people.study.timing.participant import TimingParticipant
 from fdvv_people.task.rounds import ClockSource, RoundTiming
-from fdvv_people.timing.session.participant import TimingParticipant
 from fdvv_studio.live.binary_finger import BinaryFinger
 from fdvv_studio.live.device_key import DeviceKey
 from fdvv_studio.live.press_subject import PressSubject, model_subject, program_subject

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import shutil
-from abc import abstractmethod
 from collections.abc import Callable
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 from fdvv._version import __version__
 from fdvv.errors import InputError
@@ -14,21 +13,25 @@ from fdvv.io.files import read_limited, sync_folder, write_atomic
 from fdvv.rendering.session import now
 from fdvv_people.study.files import layout
 from fdvv_people.study.files.chained_log import ChainedLog
-from fdvv_people.study.files.folder import P, StudyFolder
+from fdvv_people.study.files.folder import StudyFolder
 from fdvv_people.study.files.layout import LOG_FILE, PEOPLE, Frozen, digest
 from fdvv_people.study.files.log_head import head_path
 from fdvv_people.study.files.seal import PASSPHRASE_COST, Cost, new_key_holder
-from fdvv_people.study.plan.plan_file import STUDY_FILE
+from fdvv_people.study.kind import StudyKind, kind_of_text
+from fdvv_people.study.plan.plan_file import STUDY_FILE, refuse_problems
 
 UNFIT = "change it: it could not be run as it says"
 
 
-class PlannedStudy(StudyFolder[P]):
+class PlannedStudy(StudyFolder):
     """A study up to its freezing; no file is held open between two calls."""
 
-    @abstractmethod
     def check(self) -> None:
-        """Raise InputError on a plan that could not be run or analysed as it says, buttons among it."""
+        """Raise InputError on a plan that could not be run or analysed as it says, its buttons among it."""
+        source = self.folder / STUDY_FILE
+        refuse_problems(self.kind.problems(self.plan), source)
+        for problem in self.kind.unfit(self.plan, self.folder):
+            raise InputError(source, "plan", problem, UNFIT)
 
     @classmethod
     def declare(cls, folder: Path, plan_file: Path) -> Self:
@@ -42,7 +45,7 @@ class PlannedStudy(StudyFolder[P]):
     @classmethod
     def declare_text(cls, folder: Path, text: str, beside: Path, source: object = STUDY_FILE) -> Self:
         """Declare a study from the text of its plan, whole or not at all. beside : where its files lie."""
-        make_folder(folder, lambda building: cls._put_plan(building, text, beside, source))
+        make_folder(folder, lambda building: _put_plan(building, kind_of_text(text), text, beside, source))
         return cls(folder)
 
     @classmethod
@@ -56,13 +59,7 @@ class PlannedStudy(StudyFolder[P]):
         """Replace the plan of a study that is not frozen. beside : where files lie that it names."""
         if self.frozen:
             raise InputError(self.folder, "study", "is frozen", "declare a new study in another folder")
-        self._put_plan(self.folder, text, beside or self.folder, STUDY_FILE)
-
-    @classmethod
-    def _put_plan(cls, folder: Path, text: str, beside: Path, source: object) -> None:
-        """Write a plan, behind all files that it names. InputError where one is not there, OSError."""
-        layout.copy_files(layout.named_files(cls.read_plan(text, source)), Path(beside), folder)
-        write_atomic(folder / STUDY_FILE, text)
+        _put_plan(self.folder, self.kind, text, beside or self.folder, STUDY_FILE)
 
     def freeze(self, passphrase: str, cost: Cost = PASSPHRASE_COST) -> str:
         """Freeze the study, and return its fingerprint: from now on every change is noticed.
@@ -99,6 +96,12 @@ class PlannedStudy(StudyFolder[P]):
         write_atomic(self.folder / layout.FROZEN_FILE, frozen.text)
         sync_folder(self.folder)
         return layout.fingerprint_of(sha256)
+
+
+def _put_plan(folder: Path, kind: StudyKind[Any], text: str, beside: Path, source: object) -> None:
+    """Write a plan, behind all files that it names. InputError where one is not there, OSError."""
+    layout.copy_files(layout.named_files(kind.read_plan(text, source)), Path(beside), folder)
+    write_atomic(folder / STUDY_FILE, text)
 
 
 def make_folder(folder: Path, put: Callable[[Path], None]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -9,11 +10,13 @@ from itertools import pairwise
 from typing import Any
 
 import msgspec
+import numpy as np
 
 from fdvv.force_text import force_number, force_unit
 from fdvv.report.report import Section, Table, render_html
 from fdvv_people.stats.orders import williams_orders
 from fdvv_people.study.admin.review import StudyReview
+from fdvv_people.study.kind import Account
 from fdvv_people.study.plan import plan_words
 from fdvv_people.study.plan.plan import ADAPTIVE, StudyPlan
 from fdvv_people.study.plan.schedule import item_orders
@@ -35,6 +38,11 @@ RATED_s = 30.0
 
 PAGE_s, QUESTION_s = 60.0, 10.0
 """What a page and each question on it takes (assumed)."""
+
+SHARE = 0.7
+"""Of answers for the claim, in truth: what a study is sized for."""
+ALIKE = 0.1
+"""How alike the answers of one person are (intraclass correlation, assumed)."""
 
 SHOWN = 12
 """People whose orders are listed."""
@@ -121,6 +129,34 @@ def _notes(plan: StudyPlan, places: tuple[int, int] | None) -> Iterator[str]:
         yield "switch_s = 0: how long a change of what is rendered takes may tell which it is"
     if not plan.ties and plan.kind == "realism":
         yield 'without "equal" this is a 2-AFC, not the paper\'s task'
+
+
+def planned_power(plan: StudyPlan) -> float | None:
+    """Return the power to find that SHARE of the answers are for a claim about choices; None of any other.
+
+    Exact binomial, two-sided at the claim's level, of as many independent answers as those of all people come
+    to; nobody answers "equal". `fdvv study power` simulates people instead.
+    """
+    from scipy.stats import binom
+
+    from fdvv_people.stats.share import binomial_p
+
+    if plan.claim is None or plan.claim.measure != "choice" or plan.kind in ("mushra", *ADAPTIVE):
+        return None
+    n = max(2, round(plan.people * plan.trials / (1 + (plan.trials - 1) * ALIKE)))
+    counts = np.arange(math.floor(n / 2) + 1, n + 1)
+    found = counts[binomial_p(counts, np.full_like(counts, n)) <= plan.claim.alpha]
+    return float(binom.pmf(found, n, SHARE).sum())
+
+
+def account_of(review: StudyReview) -> Account:
+    """Return what a plan comes to, or what is wrong with it."""
+    if review.problems:
+        return Account(review.problems, review.notes)
+    plan, summary = review.plan, summarise_plan(review.plan)
+    trials = f"{summary.trials} trial{'s' * (summary.trials != 1)} a person"
+    text = f"{trials}, about {summary.minutes:.0f} minutes (assumed), {plan.people} people"
+    return Account((), (*review.notes, *summary.notes), text, preview_sections(review))
 
 
 def preview_sections(review: StudyReview) -> tuple[Section, ...]:

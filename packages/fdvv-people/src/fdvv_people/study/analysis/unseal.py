@@ -1,41 +1,26 @@
-"""Unsealing: recorded first, then read; and written as plain tables."""
+"""What labels hid, joined with the answers, and written as plain tables."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
-import msgspec
 import numpy as np
 
-from fdvv.errors import InputError, ModelError
 from fdvv.force_text import force_number, force_text
-from fdvv.io.files import make_private, private_folder, write_atomic
-from fdvv.rendering.session import now
+from fdvv.io.files import private_folder, write_atomic
 from fdvv_people.study.analysis.code_book import csv_text, write_answers
-from fdvv_people.study.files.chained_log import ChainedLog, ChainRead, read_chained
-from fdvv_people.study.files.layout import (
-    COUNTS_FILE,
-    PEOPLE,
-    SCHEDULE_FILE,
-    SEALED_FILE,
-    SESSION_FILE,
-    UNSEALED,
-)
-from fdvv_people.study.files.people import Person, Schedule, SealedTrial, open_schedule, people_of
-from fdvv_people.study.files.seal import KeyHolder
+from fdvv_people.study.files.opened import CHANGED, OpenedPerson
+from fdvv_people.study.files.people import Person
 from fdvv_people.study.plan.answers import Answers, screen
-from fdvv_people.study.plan.events import PageAnswered, SessionEvent, StaircaseConverged, TrialAnswered
+from fdvv_people.study.plan.events import StaircaseConverged, TrialAnswered
 from fdvv_people.study.plan.plan import Exclusion, StudyPlan
-from fdvv_people.study.plan.session import SessionState
-from fdvv_people.study.plan.sitting import SittingState
 from fdvv_people.study.plan.trial import EQUAL, Rendered, StudyTrial, TrialAnswer
 
-RENDERED_FILE, PAGES_FILE = "rendered.csv", "pages.csv"
+RENDERED_FILE = "rendered.csv"
 RENDERED = (
     *("person", "trial", "practice", "item", "round", "label", "stimulus", "ratio", "switches", "presses"),
     *("largest_error_cN", "errors_cN", "velocities_mm_s", "vibrations", "faults", "excluded"),
@@ -110,97 +95,38 @@ class UnsealedTrial:
 
 @dataclass(frozen=True)
 class UnsealedPerson:
-    """What was unsealed of a person. pages : that were answered, by name."""
+    """What was unsealed of a person."""
 
     person: Person
     rows: tuple[UnsealedTrial, ...]
     practice: tuple[UnsealedTrial, ...] = ()
-    pages: Mapping[str, PageAnswered] = field(default_factory=dict)
 
 
-def open_person(folder: Path, person: Person, keeper: KeyHolder) -> tuple[Schedule, ChainRead] | None:
-    """Return a person's schedule and the log of their session, as far as it is whole.
-
-    None of whom nothing is kept, or whose schedule is not there to be read.
-    """
-    own = folder / PEOPLE / person.name
-    if person.state == "deleted":
-        return None
-    try:
-        schedule = open_schedule(own / SCHEDULE_FILE, keeper)
-    except InputError:
-        return None  # reported by verify, and on record
-    return schedule, read_chained(own / SESSION_FILE, bytes.fromhex(schedule.key))
-
-
-def events_of(person: Person, session: ChainRead, kind: type[SittingState[Any]]) -> list[SessionEvent]:
-    """Return the events of a person's session. InputError on a record that no fdvv of this kind wrote."""
-    try:
-        return [kind.event_of(record) for record in session.records]
-    except ModelError as error:
-        raise InputError(person.name, "session", str(error), "install the fdvv that ran the study") from error
-
-
-def pages_text(people: Iterable[tuple[Person, Mapping[str, PageAnswered]]]) -> str:
-    """Return what people answered on pages, a row for each question, as the text of pages.csv."""
-    rows = (
-        (person.name, page, question, "" if value is None else value)
-        for person, pages in people
-        for page, answered in pages.items()
-        for question, value in answered.values.items()
-    )
-    return csv_text(("person", "page", "question", "answer"), rows)
-
-
-def _person(
-    folder: Path, plan: StudyPlan, person: Person, keeper: KeyHolder, suspect: bool
-) -> UnsealedPerson | None:
-    """Join a person's schedule with the records of both logs.
-
-    None of whom nothing is kept, or whose schedule is not there to be read. suspect : something is wrong
-    with their files. Where that is so, or the logs are not as they were written, nothing of them counts.
-    InputError on a record that none of the study's programs wrote.
-    """
-    found = open_person(folder, person, keeper)
-    if found is None:
-        return None
-    schedule, session = found
-    sealed = read_chained(folder / PEOPLE / person.name / SEALED_FILE, bytes.fromhex(schedule.key))
-    damaged = suspect or bool(session.problems or sealed.problems)
-    boxes = [keeper.unlock(record["sealed"], f"{person.name}/{SEALED_FILE}") for record in sealed.records]
-    rendered = [msgspec.json.decode(box, type=SealedTrial) for box in boxes]
-    by_number = {one.number: one for one in rendered}  # of those of one number the last one counts
-    events = events_of(person, session, SessionState)
-    answers = {event.number: event.answer for event in events if isinstance(event, TrialAnswered)}
-    settled = {(event.item, event.round) for event in events if isinstance(event, StaircaseConverged)}
+def _person(plan: StudyPlan, one: OpenedPerson) -> UnsealedPerson:
+    """Join a person's schedule with the records of both logs."""
+    answers = {event.number: event.answer for event in one.events if isinstance(event, TrialAnswered)}
+    settled = {(event.item, event.round) for event in one.events if isinstance(event, StaircaseConverged)}
     rows = [
-        _row(plan, person.name, trial, answers.get(trial.number), by_number.get(trial.number), damaged)
-        for trial in schedule.trials
+        _row(plan, one, trial, answers.get(trial.number))
+        for trial in one.schedule.trials
         if trial.number in answers or (trial.item, trial.round) not in settled
     ]
     return UnsealedPerson(
-        person,
+        one.person,
         tuple(row for row in rows if not row.trial.practice),
         tuple(row for row in rows if row.trial.practice and row.answer),
-        {event.name: event for event in events if isinstance(event, PageAnswered)},
     )
 
 
-def _row(
-    plan: StudyPlan,
-    person: str,
-    trial: StudyTrial,
-    answer: TrialAnswer | None,
-    sealed: SealedTrial | None,
-    damaged: bool,
-) -> UnsealedTrial:
+def _row(plan: StudyPlan, one: OpenedPerson, trial: StudyTrial, answer: TrialAnswer | None) -> UnsealedTrial:
+    sealed = one.rendered.get(trial.number)
     ratio = (sealed.ratio if sealed else trial.ratio) if plan.kind == "staircase" else math.nan
     change = sealed.change if sealed else ()
     if answer is None:
-        return UnsealedTrial(person, trial, ratio, None)
+        return UnsealedTrial(one.person.name, trial, ratio, None)
     rendered = sealed.rendered if sealed else ()
-    reason = "the person's files were changed" if damaged else trial_reason(plan.exclusion, rendered)
-    return UnsealedTrial(person, trial, ratio, answer, rendered, reason, change)
+    reason = CHANGED if one.changed else trial_reason(plan.exclusion, rendered)
+    return UnsealedTrial(one.person.name, trial, ratio, answer, rendered, reason, change)
 
 
 def answers_of(plan: StudyPlan, people: Sequence[UnsealedPerson]) -> Answers:
@@ -252,38 +178,17 @@ def _words(words: Sequence[str]) -> np.ndarray:
     return np.array(words, np.str_)
 
 
-def unseal_folder(
-    folder: Path, plan: StudyPlan, log: ChainedLog, keeper: KeyHolder, about: Mapping[str, object]
-) -> Answers:
-    """Record that a study is unsealed, then join and write its answers. log : of the study, open.
-
-    about : who, why, and what was wrong with the study then. InputError, OSError.
-    """
-    log.write({"unsealed": {"when": now(), **about}})
-    suspects = suspects_of(about.get("problems", ()), people_of(log.records))
-    people = [
-        found
-        for person in people_of(log.records)
-        if (found := _person(folder, plan, person, keeper, person.name in suspects))
-    ]
-    answers = answers_of(plan, people)
-    private_folder(folder / UNSEALED)
-    write_answers(folder / UNSEALED, answers, plan)
+def unseal_labels(plan: StudyPlan, people: Sequence[OpenedPerson], folder: Path) -> Answers:
+    """Join the answers of people with what their labels hid, and write them; see `StudyKind.unseal`."""
+    unsealed = [_person(plan, one) for one in people]
+    answers = answers_of(plan, unsealed)
     # labels of a trial that is still to be answered stay sealed
-    trials = [row for one in people for row in (*one.practice, *one.rows) if row.answer]
+    trials = [row for one in unsealed for row in (*one.practice, *one.rows) if row.answer]
     labels = (label for row in trials for label in _labels(row))
-    write_atomic(folder / UNSEALED / RENDERED_FILE, csv_text(RENDERED, labels))
-    write_atomic(folder / UNSEALED / PAGES_FILE, pages_text((one.person, one.pages) for one in people))
-    make_private(folder / UNSEALED)
+    private_folder(folder)
+    write_answers(folder, answers, plan)
+    write_atomic(folder / RENDERED_FILE, csv_text(RENDERED, labels))
     return answers
-
-
-def suspects_of(problems: object, people: Sequence[Person]) -> set[str]:
-    """Return the people whose files something is wrong with; where the counts are wrong, everybody."""
-    lines = [str(line) for line in problems] if isinstance(problems, list | tuple) else []
-    if any(line.startswith(f"{COUNTS_FILE}:") for line in lines):
-        return {person.name for person in people}
-    return {one.name for one in people if any(line.startswith(f"{PEOPLE}/{one.name}/") for line in lines)}
 
 
 def _labels(row: UnsealedTrial) -> Iterator[Sequence[object]]:

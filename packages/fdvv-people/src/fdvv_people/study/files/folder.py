@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any
 
 from fdvv.errors import InputError
 from fdvv_people.study.files import layout
@@ -13,44 +13,39 @@ from fdvv_people.study.files.chained_log import ChainRead, read_chained
 from fdvv_people.study.files.counts import Counts, counts_problems, read_counts
 from fdvv_people.study.files.layout import FROZEN_FILE, KEEPER_FILE, LOG_FILE, PEOPLE, SCHEDULE_FILE, Frozen
 from fdvv_people.study.files.people import Person, paused_of, people_of, person_of, read_locked
-from fdvv_people.study.files.person_check import TRIALS, PersonCheck, SessionReading
+from fdvv_people.study.files.person_check import PersonCheck
 from fdvv_people.study.files.run_key import RunKey
 from fdvv_people.study.files.seal import KeyHolder, SealingKey
-from fdvv_people.study.plan.plan import DeclaredPlan
+from fdvv_people.study.kind import StudyKind, kind_of
 from fdvv_people.study.plan.plan_file import STUDY_FILE
 
-P = TypeVar("P", bound=DeclaredPlan)
 
-
-class StudyFolder(ABC, Generic[P]):
-    """A study that lies in a folder, whatever its plan declares, to be read.
+class StudyFolder:
+    """A study that lies in a folder, whatever its kind, to be read.
 
     No file is held open between two calls.
 
     Attributes
     ----------
-    folder : of the study. run_key : in memory while sessions are open, see `KeptStudy.open_sessions`; else
-        None. reading : of the logs of its sessions.
+    folder : of the study. run_key : in memory while sessions are open, see `Study.open_sessions`; else None.
     """
-
-    reading: ClassVar[SessionReading] = TRIALS
 
     def __init__(self, folder: Path) -> None:
         self.folder = Path(folder)
         self.run_key: RunKey | None = None
-        self._plan: tuple[bytes, P] | None = None
+        self._plan: tuple[bytes, Any] | None = None
 
-    @staticmethod
-    @abstractmethod
-    def read_plan(text: str | bytes, source: object) -> P:
-        """Read the text of a plan, unchecked. InputError."""
+    @cached_property
+    def kind(self) -> StudyKind[Any]:
+        """What kind of study it is."""
+        return kind_of(self.folder)
 
     @property
-    def plan(self) -> P:
-        """The plan. InputError where it cannot be read, or is not what was frozen."""
+    def plan(self) -> Any:
+        """The plan, as its kind reads it. InputError where it cannot be read, or is not what was frozen."""
         data = self.plan_text
         if self._plan is None or self._plan[0] != data:
-            self._plan = data, self.read_plan(data, self.folder / STUDY_FILE)
+            self._plan = data, self.kind.read_plan(data, self.folder / STUDY_FILE)
         return self._plan[1]
 
     @property
@@ -146,14 +141,12 @@ class StudyFolder(ABC, Generic[P]):
         the marks of people's lines are verified too. record : a `record_end` that was written down.
         """
         opened = self.key_holder(passphrase, keeper) if passphrase else None
-        return study_problems(
-            self.folder, fingerprint, opened, record=record, run_key=self.run_key, reading=self.reading
-        )
+        return study_problems(self.folder, fingerprint, opened, record=record, run_key=self.run_key)
 
     def require_whole(self, person: str = "") -> None:
         """Raise InputError if the study is not as it was frozen. person : whose files are verified too."""
         people = (person,) if person else ()
-        for problem in study_problems(self.folder, people=people, run_key=self.run_key, reading=self.reading):
+        for problem in study_problems(self.folder, people=people, run_key=self.run_key):
             raise InputError(self.folder, "study", problem, layout.REMEDY)
 
     def key_holder(self, passphrase: str, keeper: Path | bytes | None = None) -> KeyHolder:
@@ -179,12 +172,11 @@ def study_problems(
     people: Sequence[str] | None = None,
     record: str = "",
     run_key: RunKey | None = None,
-    reading: SessionReading = TRIALS,
 ) -> tuple[str, ...]:
     """Return all that is not as it was written, a line each.
 
     people : whose files are verified; None: everybody's. fingerprint, record : that were written down.
-    run_key : the marks of counts are verified with it, or with the key holder's. reading : of sessions.
+    run_key : the marks of counts are verified with it, or with the key holder's.
     """
     try:
         found = layout.read_frozen(folder)
@@ -211,7 +203,7 @@ def study_problems(
     # an enrolment that was killed was counted, and has no session
     lost = {name for name, one in (counts.people if counts else {}).items() if one.began} - names
     problems += [*wrong, *(f"{LOG_FILE}: {name} was counted, and is not in it" for name in sorted(lost))]
-    check = PersonCheck(folder, sha256, log, holder, counts, frozen.version > 1, reading)
+    check = PersonCheck(folder, sha256, log, holder, counts, frozen.version > 1, kind_of(folder).state)
     for person in enrolled:
         if people is None or person.name in people:
             problems += [f"{PEOPLE}/{person.name}{problem}" for problem in check.problems(person)]

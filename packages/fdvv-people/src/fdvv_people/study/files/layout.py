@@ -19,6 +19,7 @@ from fdvv_people.study.plan.plan import DeclaredPlan
 FROZEN_FILE, KEEPER_FILE, LOG_FILE = "frozen.json", "keeper.json", "study.jsonl"
 COUNTS_FILE = "counts.json"
 BUTTONS, PEOPLE, UNSEALED = "buttons", "people", "unsealed"
+PAGES_FILE = "pages.csv"
 SESSION_FILE, SCHEDULE_FILE, SEALED_FILE = "session.jsonl", "schedule.json", "sealed.jsonl"
 Record = TypeVar("Record")
 LARGEST_bytes = 64_000_000

@@ -2,33 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fdvv.errors import InputError, ModelError
+from fdvv.errors import InputError
 from fdvv_people.study.files import layout
 from fdvv_people.study.files.chained_log import ChainRead, read_chained
 from fdvv_people.study.files.counts import Counts
 from fdvv_people.study.files.layout import PEOPLE, SCHEDULE_FILE
 from fdvv_people.study.files.people import Person, open_schedule, read_locked
 from fdvv_people.study.files.seal import KeyHolder
-from fdvv_people.study.plan.events import SessionStarted, StaircaseConverged, TrialAnswered, TrialSkipped
-from fdvv_people.study.plan.session import SessionState
-
-Records = Sequence[dict[str, Any]]
-
-
-@dataclass(frozen=True)
-class SessionReading:
-    """How the log of a session is read, by the kind of study.
-
-    answered : counts the answers in its records. lacks : says what is missing where the person was done.
-    """
-
-    answered: Callable[[Records], int]
-    lacks: Callable[[Records], Iterator[str]]
+from fdvv_people.study.plan.sitting import SittingState
 
 
 @dataclass(frozen=True)
@@ -36,7 +22,7 @@ class PersonCheck:
     """What the files of people are held against.
 
     folder, study : of the study, and SHA-256 of frozen.json. log : of the study. holder : marks are verified
-    with their key. counts : of the study. keyed : it was frozen with a run key. reading : of sessions.
+    with their key. counts : of the study. keyed : it was frozen with a run key. state : of sessions.
     """
 
     folder: Path
@@ -45,7 +31,7 @@ class PersonCheck:
     holder: KeyHolder | None
     counts: Counts | None
     keyed: bool
-    reading: SessionReading
+    state: type[SittingState[Any]]
 
     def problems(self, person: Person) -> Iterator[str]:
         """Return all that is wrong with the files of a person, each from the place in their folder on."""
@@ -85,7 +71,7 @@ class PersonCheck:
         if counted:
             yield from self._counted(found, name, person.name)
         if person.state == "finished" and name == layout.SESSION_FILE:
-            yield from self.reading.lacks(found.records)
+            yield from self.state.lacks(found.records)
 
     def _counted(self, found: ChainRead, name: str, person: str) -> Iterator[str]:
         own = self.counts.people.get(person) if self.counts else None
@@ -94,31 +80,7 @@ class PersonCheck:
             return
         if problem := own.logs[name].problem(found):
             yield problem
-        elif name == layout.SESSION_FILE and self.reading.answered(found.records) < own.answered:
-            yield f"has {self.reading.answered(found.records)} answers, {own.answered} were counted"
+        elif name == layout.SESSION_FILE and self.state.kept_in(found.records) < own.answered:
+            yield f"has {self.state.kept_in(found.records)} answers, {own.answered} were counted"
         if not found.head_marked:
             yield "has a head that anybody can write"
-
-
-def _answered(records: Records) -> int:
-    return len({record["answered"]["number"] for record in records if "answered" in record})
-
-
-def _left(records: Records) -> Iterator[str]:
-    """Return what a session that is done lacks: trials without an answer that were not passed over."""
-    try:
-        events = [SessionState.event_of(record) for record in records]
-    except ModelError as error:
-        yield str(error)
-        return
-    trials = [trial for event in events if isinstance(event, SessionStarted) for trial in event.trials]
-    over = {event.number for event in events if isinstance(event, TrialAnswered | TrialSkipped)}
-    settled = {(event.item, event.round) for event in events if isinstance(event, StaircaseConverged)}
-    left = [one for one in trials if one.number not in over]
-    left = [one for one in left if one.practice or (one.item, one.round) not in settled]
-    if left:
-        yield f"lacks the answers of {len(left)} trials, and the person was done"
-
-
-TRIALS = SessionReading(_answered, _left)
-"""Of studies that ask about what was rendered."""

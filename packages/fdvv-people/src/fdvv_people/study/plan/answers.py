@@ -61,6 +61,11 @@ class Answers:
             raise ModelError(f"columns of answers differ in length from its {n} persons")
 
     @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why a row does not count, row by row; empty of one that does."""
+        return ("",) * len(self.person) if self.excluded is None else tuple(self.excluded.tolist())
+
+    @property
     def counts(self) -> np.ndarray:
         """Which rows count, (n,) of bool."""
         return np.ones(len(self.person), bool) if self.excluded is None else self.excluded == ""

@@ -228,6 +228,10 @@ class DeclaredPlan(Protocol):
         """How many are planned."""
 
     @property
+    def trials(self) -> int:
+        """How many one of them has, at most."""
+
+    @property
     def languages(self) -> tuple[str, ...]:
         """The first is the default."""
 

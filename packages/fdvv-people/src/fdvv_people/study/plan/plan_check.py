@@ -14,12 +14,12 @@ from fdvv_people.study.plan.schedule import LABELS
 from fdvv_people.study.plan.text_check import (
     LANGUAGE,
     Text,
-    column_problems,
     language_problems,
     name_problems,
+    names_problems,
     number_problems,
+    page_problems,
     page_texts,
-    question_problems,
     text_problems,
     twice_problems,
 )
@@ -130,9 +130,8 @@ def plan_problems(plan: StudyPlan) -> tuple[str, ...]:
         *_names(plan),
         *_languages(plan),
         *(problem for item in plan.items for problem in _item(plan, item)),
-        *_questions(plan),
+        *page_problems(plan.pages, [(f"ratings ({one.name!r})", one.name) for one in plan.ratings]),
         *_colliding_names(plan),
-        *_columns(plan),
         *_kind(plan),
         *_claim(plan),
         *_extent(plan),
@@ -147,6 +146,7 @@ def is_file(button: str) -> bool:
 def _names(plan: StudyPlan) -> Iterator[str]:
     if not plan.items:
         yield "items: there is none; write [[items]]"
+    yield from name_problems("name", plan.name)
     groups: dict[str, Iterable[str]] = {
         "items": [item.name for item in plan.items],
         "ratings": [rating.name for rating in plan.ratings],
@@ -154,11 +154,7 @@ def _names(plan: StudyPlan) -> Iterator[str]:
         "languages": plan.languages,
     }
     groups |= {f"items ({i.name!r}), stimuli": [s.name for s in i.stimuli] for i in plan.items}
-    yield from name_problems("name", plan.name)
-    for place, names in groups.items():
-        for name in names:
-            yield from name_problems(place, name)
-        yield from twice_problems(place, names)
+    yield from names_problems(groups)
 
 
 def _item(plan: StudyPlan, item: Item) -> Iterator[str]:
@@ -197,18 +193,6 @@ def _colliding_names(plan: StudyPlan) -> Iterator[str]:
     for bare in sorted(names):
         if f"buttons/{bare}" in names:
             yield f"items: {bare!r} and 'buttons/{bare}' would be kept under one name; rename one"
-
-
-def _questions(plan: StudyPlan) -> Iterator[str]:
-    for page in plan.pages:
-        for question in page.questions:
-            yield from question_problems(f"pages ({page.name!r}), questions ({question.name!r})", question)
-
-
-def _columns(plan: StudyPlan) -> Iterator[str]:
-    named = [(f"ratings ({r.name!r})", r.name) for r in plan.ratings]
-    named += [(f"pages ({p.name!r}), questions", q.name) for p in plan.pages for q in p.questions]
-    yield from column_problems(named)
 
 
 def _claim(plan: StudyPlan) -> Iterator[str]:

@@ -16,7 +16,7 @@ from fdvv.errors import InputError, did_you_mean
 from fdvv.io.documents import read_toml
 from fdvv.io.files import read_limited, write_atomic
 from fdvv_people.study.plan.plan import StudyPlan
-from fdvv_people.study.plan.plan_check import is_file, plan_problems
+from fdvv_people.study.plan.plan_check import plan_problems
 
 REMEDY = "see docs/reference/study-file.md, or begin with fdvv study new"
 LIMIT_bytes = 1_000_000
@@ -32,9 +32,14 @@ NAME_LINE = re.compile(r'^name = "[^"]*"', re.MULTILINE)
 
 def read_plan(path: Path) -> tuple[StudyPlan, Path]:
     """Read the plan of a file, or of a study's folder, unchecked; return its file too. InputError."""
-    path = path / STUDY_FILE if path.is_dir() else path
-    data = read_limited(path, LIMIT_bytes, "name the file of a study, or begin with fdvv study new")
+    data, path = read_plan_file(path)
     return read_plan_text(data, path), path
+
+
+def read_plan_file(path: Path) -> tuple[bytes, Path]:
+    """Return the text of a study's file, or of that in a folder, and where it is. InputError."""
+    path = path / STUDY_FILE if path.is_dir() else path
+    return read_limited(path, LIMIT_bytes, "name the file of a study, or begin with fdvv study new"), path
 
 
 def read_plan_text(text: str | bytes, source: object) -> StudyPlan:
@@ -131,9 +136,10 @@ def _tables(kind: type[msgspec.Struct]) -> Iterator[tuple[str, type[msgspec.Stru
                 yield from _tables(part)
 
 
-def template_names() -> tuple[str, ...]:
-    """Return the names of the shipped studies, one of each kind, sorted; the name is the kind's."""
-    return tuple(sorted(_files()))
+def template_names(format_: str = "fdvv-study") -> tuple[str, ...]:
+    """Return the names of the shipped studies of a format, sorted; each is called as its kind."""
+    head = f'format = "{format_}"'
+    return tuple(sorted(name for name, file in _files().items() if head in file.read_text(encoding="utf-8")))
 
 
 def template_text(name: str) -> str:
@@ -147,9 +153,9 @@ def template_text(name: str) -> str:
 
 def template_buttons(name: str) -> dict[str, bytes]:
     """Return the files of buttons that a shipped study names, by their place beside it."""
-    plan = read_plan_text(template_text(name), name)
-    buttons = [stimulus.button for item in plan.items for stimulus in item.rendered]
-    return {button: TEMPLATES.joinpath(button).read_bytes() for button in buttons if is_file(button)}
+    text = template_text(name)
+    places = {f"buttons/{file.name}": file for file in TEMPLATES.joinpath("buttons").iterdir()}
+    return {place: file.read_bytes() for place, file in places.items() if f'"{place}"' in text}
 
 
 def write_template(name: str, folder: Path, study_name: str | None = None) -> Path:

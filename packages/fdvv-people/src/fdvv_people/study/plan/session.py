@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from fdvv.errors import ModelError
 from fdvv_people.study.plan import events
@@ -23,11 +24,22 @@ class SessionState(SittingState[TrialFace]):
     """
 
     beginning: ClassVar[type[SessionEvent]] = SessionStarted
+    endings: ClassVar[tuple[type[SessionEvent], ...]] = (events.TrialAnswered, events.TrialSkipped)
+    product: ClassVar[str] = "answers"
 
     plan: StudyPlan
     started: SessionStarted
     answers: dict[int, events.TrialAnswered] = field(default_factory=dict)
     converged: frozenset[tuple[str, int]] = frozenset()
+
+    @classmethod
+    def kept_in(cls, records: Sequence[dict[str, Any]]) -> int:
+        return len({record["answered"]["number"] for record in records if "answered" in record})
+
+    @classmethod
+    def find_ended(cls, happened: Sequence[SessionEvent], trials: Sequence[TrialFace]) -> set[int]:
+        ended = {(one.item, one.round) for one in happened if isinstance(one, events.StaircaseConverged)}
+        return {one.number for one in trials if not one.practice and (one.item, one.round) in ended}
 
     def is_over(self, face: TrialFace) -> bool:
         """Whether a trial was answered, given up, or passed over."""

@@ -7,7 +7,7 @@ that go away and people who go and come back are the same for all.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from typing import Any, ClassVar, Generic, Literal, Protocol, Self, TypeVar
@@ -91,7 +91,8 @@ class SittingState(ABC, Generic[F]):
 
     Attributes
     ----------
-    beginning : kind of the event that a session begins with. handlers : of all others.
+    beginning : kind of the event that a session begins with. handlers : of all others. endings : of those
+        after which a trial is over. product : what a person gives in trials, in words.
     plan, started : of the session.
     pages : that were answered, by name. attempts : how often each trial was begun. open : the trial that is
         under way, or None.
@@ -103,6 +104,8 @@ class SittingState(ABC, Generic[F]):
 
     beginning: ClassVar[type[SessionEvent]]
     handlers: ClassVar[Handlers]
+    endings: ClassVar[tuple[type[SessionEvent], ...]]
+    product: ClassVar[str]
 
     plan: Any
     started: Any
@@ -149,6 +152,35 @@ class SittingState(ABC, Generic[F]):
     def read(cls, plan: Any, records: Sequence[dict[str, Any]]) -> Self | None:
         """Return the state after the records of a log; None of a session that did not start. ModelError."""
         return cls.of(plan, [cls.event_of(record) for record in records]) if records else None
+
+    @classmethod
+    @abstractmethod
+    def kept_in(cls, records: Sequence[dict[str, Any]]) -> int:
+        """Return how many answers, or rounds, the records of a log hold, whatever else they are."""
+
+    @classmethod
+    def lacks(cls, records: Sequence[dict[str, Any]]) -> Iterator[str]:
+        """Return what the log of a session that is done lacks, as a line. Of a log that may be spoilt."""
+        try:
+            happened = [cls.event_of(record) for record in records]
+        except ModelError as error:
+            yield str(error)
+            return
+        trials = [
+            trial
+            for one in happened
+            if isinstance(one, cls.beginning)
+            for trial in getattr(one, "trials", ())
+        ]
+        over = {getattr(one, "number", -1) for one in happened if isinstance(one, cls.endings)}
+        if left := [one for one in trials if one.number not in over | cls.find_ended(happened, trials)]:
+            yield f"lacks the {cls.product} of {len(left)} trials, and the person was done"
+
+    @classmethod
+    def find_ended(cls, happened: Sequence[SessionEvent], trials: Sequence[F]) -> set[int]:
+        """Return the numbers of trials that are over though nothing was given in them."""
+        del happened, trials
+        return set()
 
     def after(self, event: SessionEvent) -> Self:
         """Return the state after an event. ModelError where it cannot follow."""

@@ -38,6 +38,14 @@ def name_problems(place: str, name: str) -> Iterator[str]:
         yield f"{place}: {name!r:.70} must be printable, without spaces at its ends"
 
 
+def names_problems(groups: Mapping[str, Iterable[str]]) -> Iterator[str]:
+    """List names that may not be, or are given twice. groups : names by their place."""
+    for place, names in groups.items():
+        for name in names:
+            yield from name_problems(place, name)
+        yield from twice_problems(place, names)
+
+
 def twice_problems(place: str, names: Iterable[str]) -> Iterator[str]:
     """List names that are there twice, whatever their case."""
     seen: dict[str, str] = {}
@@ -59,6 +67,14 @@ def question_problems(place: str, question: Question) -> Iterator[str]:
         yield f"{place}: choices must be at least two, and as many in every language"
     for choices in question.choices.values():
         yield from twice_problems(f"{place}, choices", choices)
+
+
+def page_problems(pages: Iterable[Page], columns: Sequence[tuple[str, str]] = ()) -> Iterator[str]:
+    """List what is wrong with questions of pages. columns : of answers beside theirs, with their places."""
+    questions = [(f"pages ({page.name!r}), questions", one) for page in pages for one in page.questions]
+    for place, one in questions:
+        yield from question_problems(f"{place} ({one.name!r})", one)
+    yield from column_problems([*columns, *((place, one.name) for place, one in questions)])
 
 
 def page_texts(pages: Iterable[Page]) -> Iterator[Text]:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 
 from fdvv.errors import DeviceError, ModelError
 from fdvv_people.study.admin.study import Study
-from fdvv_people.study.files.seal import KeyHolder
 from fdvv_people.study.plan import events
 from fdvv_people.study.plan.events import TrialFace, check_answer
 from fdvv_people.study.plan.session import SessionState
@@ -26,15 +24,15 @@ from fdvv_people.study.session.trial import (
 from fdvv_people.study.stimulus.renderer import StimulusRenderer
 
 
-class Participant(Sitting[Study, SessionState]):
-    """Who feels labels and answers, made by `enrol` or `resume`; see `Sitting`."""
+class Participant(Sitting[SessionState]):
+    """Who feels labels and answers, made by `enrol` or `resume`, with a renderer that is closed with it."""
 
     def __init__(
         self,
         study: Study,
-        session: OpenedSession[SessionState],
-        renderer: StimulusRenderer,
+        session: OpenedSession,
         clock: Callable[[], float],
+        renderer: StimulusRenderer,
     ) -> None:
         super().__init__(study, session, clock)
         self._trials = session.schedule.trials
@@ -42,42 +40,6 @@ class Participant(Sitting[Study, SessionState]):
         self._trial: StudyTrial | None = None
         self._watch = TrialWatch(clock)
         self._advance()
-
-    @classmethod
-    def enrol(
-        cls,
-        study: Study,
-        language: str,
-        renderer: StimulusRenderer,
-        *,
-        simulated: bool = False,
-        clock: Callable[[], float] = time.time,
-    ) -> tuple[Participant, str]:
-        """Enrol a person and start the session; return the code too, for that person's eyes only.
-
-        language : "": the study's first. renderer : closed with the participant. simulated : no person sits
-        here. clock : wall time in seconds. InputError, OSError.
-        """
-        person, code = study.enrol(language, simulated=simulated)
-        return cls.resume(study, person, code, renderer, clock=clock), code
-
-    @classmethod
-    def resume(
-        cls,
-        study: Study,
-        person: str,
-        code: str | KeyHolder,
-        renderer: StimulusRenderer,
-        *,
-        clock: Callable[[], float] = time.time,
-    ) -> Participant:
-        """Resume a session where its log ends. code : the person's, or the key holder in its place.
-
-        InputError on a wrong code, on a person who withdrew, where the session runs elsewhere or where the
-        study was changed. OSError.
-        """
-        opened = OpenedSession(study, person, code, round(clock(), 1), SessionState)
-        return cls(study, opened, renderer, clock)
 
     @property
     def trial(self) -> TrialFace | None:

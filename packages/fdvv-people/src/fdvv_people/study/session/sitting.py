@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from typing import Any, Generic, Self, TypeVar
+from typing import Any, Generic, Self, TypeVar, cast
 
 from fdvv.errors import ModelError
-from fdvv_people.study.admin.kept import KeptStudy
+from fdvv_people.study.admin.study import Study
+from fdvv_people.study.files.seal import KeyHolder
 from fdvv_people.study.plan.events import (
     BreakEnded,
     PageAnswered,
@@ -21,10 +23,9 @@ from fdvv_people.study.plan.sitting import ENDS, SittingState, Step
 from fdvv_people.study.session.log import OpenedSession
 
 S = TypeVar("S", bound=SittingState[Any])
-KeptT = TypeVar("KeptT", bound=KeptStudy[Any])
 
 
-class Sitting(ABC, Generic[KeptT, S]):
+class Sitting(ABC, Generic[S]):
     """What is the same for everybody in a study, a person or a simulated one, for one process at a time.
 
     What is hidden is in memory only. A context manager; not to be used from two threads at once.
@@ -34,12 +35,46 @@ class Sitting(ABC, Generic[KeptT, S]):
     study, person, language : who takes part in what. state : of the session; nothing in it is secret.
     """
 
-    def __init__(self, study: KeptT, session: OpenedSession[S], clock: Callable[[], float]) -> None:
+    def __init__(self, study: Study, session: OpenedSession, clock: Callable[[], float], *stage: Any) -> None:
+        del stage
         self.study, self._plan, self._session, self._clock = study, study.plan, session, clock
-        self.state = session.state
+        self.state = cast(S, session.state)
         self.person: str = self.state.started.person
         self.language: str = self.state.started.language
         self._closed = False
+
+    @classmethod
+    def enrol(
+        cls,
+        study: Study,
+        language: str = "",
+        *stage: Any,
+        simulated: bool = False,
+        clock: Callable[[], float] = time.time,
+    ) -> tuple[Self, str]:
+        """Enrol a person and start the session; return the code too, for that person's eyes only.
+
+        language : "": the study's first. stage : what the kind of study needs besides. simulated : no person
+        sits here. clock : wall time in seconds. InputError, OSError.
+        """
+        person, code = study.enrol(language, simulated=simulated)
+        return cls.resume(study, person, code, *stage, clock=clock), code
+
+    @classmethod
+    def resume(
+        cls,
+        study: Study,
+        person: str,
+        code: str | KeyHolder,
+        *stage: Any,
+        clock: Callable[[], float] = time.time,
+    ) -> Self:
+        """Resume a session where its log ends. code : the person's, or the key holder in its place.
+
+        InputError on a wrong code, on a person who withdrew, where the session runs elsewhere or where the
+        study was changed. OSError.
+        """
+        return cls(study, OpenedSession(study, person, code, round(clock(), 1)), clock, *stage)
 
     def step(self, now_s: float | None = None) -> Step[Any]:
         """Return the step that is due. now_s : wall time; the session's clock if None."""
@@ -96,7 +131,7 @@ class Sitting(ABC, Generic[KeptT, S]):
         return round(self._clock(), 1)
 
     def _add(self, event: SessionEvent) -> None:
-        self.state = self._session.add(event)
+        self.state = cast(S, self._session.add(event))
 
     def _advance(self) -> Step[Any]:
         """Pass over what is done with, and log where all is done."""

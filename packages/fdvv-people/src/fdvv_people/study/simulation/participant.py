@@ -8,12 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
-from fdvv_people.study.plan.events import Value
+from fdvv_people.study.admin.study import Study
+from fdvv_people.study.plan.events import TrialFace, Value
 from fdvv_people.study.plan.plan import Item, Page, Question, Stimulus, StudyPlan
+from fdvv_people.study.plan.sitting import Step
 from fdvv_people.study.plan.trial import EQUAL, Rendered, TrialAnswer
+from fdvv_people.study.session.participant import Participant
 from fdvv_people.study.simulation.judgement import proxy_trials
 from fdvv_people.study.simulation.people import ProxySettings, draw_people
 from fdvv_people.study.simulation.perception import PerceivedDifference, Senses, perceived_difference
+from fdvv_people.study.simulation.sessions import SimulatedClock
 from fdvv_people.study.simulation.study_power import reference_of, stimulus_features
 from fdvv_people.study.stimulus.renderer import StimulusRenderer
 
@@ -149,6 +153,21 @@ class SimulatedParticipant:
                 for rating, points in zip(self._plan.ratings, trials.ratings, strict=True)
             },
         )
+
+    def sit_down(self, study: Study, person: str, code: str, clock: SimulatedClock) -> Participant:
+        """Begin, or resume, the session of a person of a study."""
+        return Participant.resume(study, person, code, self.renderer, clock=clock)
+
+    def do(self, participant: Participant, step: Step[TrialFace], clock: SimulatedClock) -> None:
+        """Feel and answer the trial of a step."""
+        participant.show_trial(step.number)
+        order = self.order(step.trial.labels)
+        piece_s = self.takes_s() / (len(order) + 1)
+        for label in order:
+            participant.go_to(label)
+            clock.skip(piece_s)
+        clock.skip(piece_s)
+        participant.answer(step.number, self.answer(step.trial.item))
 
     def fill_in(self, page: Page, language: str) -> dict[str, Value]:
         """Fill in a page: any choice, any whole number of a range, and that it is simulated."""

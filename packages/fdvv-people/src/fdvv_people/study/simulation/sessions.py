@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from datetime import datetime
+from typing import Any, Protocol
 
 from fdvv.errors import InputError, ModelError
-from fdvv_people.study.admin.kept import KeptStudy
 from fdvv_people.study.admin.study import Study
-from fdvv_people.study.plan.events import TrialFace
+from fdvv_people.study.plan.events import Value
+from fdvv_people.study.plan.plan import Page
 from fdvv_people.study.plan.sitting import ENDS, Step
-from fdvv_people.study.session.participant import Participant
-from fdvv_people.study.simulation.participant import NullRenderer, SimulatedParticipant
+from fdvv_people.study.session.sitting import Sitting
 from fdvv_people.study.simulation.people import ProxySettings
-from fdvv_people.study.stimulus.finger import SimulatedFingerRenderer
 
 Progress = Callable[[int, int], None]
-Done = TypeVar("Done")
 PAGE_s = 30.0
 """Time that a page takes."""
 
@@ -37,13 +35,50 @@ class SimulatedClock:
 
 
 @dataclass(frozen=True)
+class Simulation:
+    """How participants are simulated; each kind of study takes what concerns it.
+
+    Attributes
+    ----------
+    seed : of who they are, and of what they do. settings : of proxies who judge; None: the usual ones.
+    pressed : have a simulated finger press the twin; False: nothing is known of what was rendered then.
+    rig : what renders the buttons of a timing study.
+    """
+
+    seed: int = 0
+    settings: ProxySettings | None = None
+    pressed: bool = True
+    rig: str = "ideal"
+
+
+class SimulatedPerson(Protocol):
+    """A simulated participant of some kind of study."""
+
+    def sit_down(self, study: Study, person: str, code: str, clock: SimulatedClock) -> Sitting[Any]:
+        """Begin, or resume, the session of a person of a study."""
+
+    def fill_in(self, page: Page, language: str) -> Mapping[str, Value]:
+        """Fill in a page, in a way that anybody could."""
+
+    def do(self, participant: Any, step: Step[Any], clock: SimulatedClock) -> None:
+        """Do what a step asks for that is neither a page nor a break nor a gap."""
+
+
+@dataclass(frozen=True)
 class SimulatedSession:
-    """What one simulated participant did. person : as the study names it. minutes : of simulated time."""
+    """What one simulated participant did.
+
+    Attributes
+    ----------
+    person : as the study names them. trials : that are over. count : of answers, or rounds, that were given.
+    time_s : simulated, from the first page to the last.
+    """
 
     person: str
     trials: int
+    count: int
     breaks: int
-    minutes: float
+    time_s: float
 
 
 @dataclass(frozen=True)
@@ -53,53 +88,25 @@ class SimulatedStudy:
     Attributes
     ----------
     sessions : of the people that it added. finished : simulated people of the study that are done, by name.
-    pressed : a simulated finger pressed the twin; False: nothing was rendered.
     """
 
     sessions: tuple[SimulatedSession, ...]
     finished: tuple[str, ...]
-    pressed: bool
-    simulated: bool = True
 
 
 def simulate_study(
     study: Study,
     people: int | None = None,
-    seed: int = 0,
-    pressed: bool = True,
-    settings: ProxySettings | None = None,
+    simulation: Simulation | None = None,
     progress: Progress = lambda _done, _total: None,
 ) -> SimulatedStudy:
-    """Have simulated participants take part until so many are done.
+    """Have simulated participants take part, one after the other, until so many are done.
 
-    people : as many as are planned if None; those who are done already count. seed : of how they feel and
-    answer; schedules are drawn from what the operating system holds random, as for people. pressed : have a
-    simulated finger press the twin; False leaves that out, and nothing is known of what was rendered.
-    progress : trials done and in all.
+    people : as many as are planned if None; those who are done already count. Schedules are drawn from what
+    the operating system holds random, as for people. progress : trials done and in all.
 
     InputError on a study that is not frozen or has people in it. On Ctrl-C who has not finished is withdrawn
     and deleted. OSError.
-    """
-
-    def play(number: int, report: Callable[[float], None]) -> SimulatedSession:
-        renderer = SimulatedFingerRenderer(study.folder, seed=seed + number) if pressed else NullRenderer()
-        simulated = SimulatedParticipant(study.plan, study.folder, renderer, number, seed, settings)
-        return _session(study, simulated, report)
-
-    sessions = simulate_people(study, people, play, progress)
-    return SimulatedStudy(sessions, finished(study), pressed)
-
-
-def simulate_people(
-    study: KeptStudy[Any],
-    people: int | None,
-    play: Callable[[int, Callable[[float], None]], Done],
-    progress: Progress,
-) -> tuple[Done, ...]:
-    """Have simulated participants take part, one after the other, until so many are done.
-
-    people : as many as are planned if None. play : the whole session of one, by number; it reports the part
-    that is over. Returns what the sessions that were added came to. InputError on a study that has people.
     """
     wanted = study.plan.people if people is None else people
     if wanted < 1:
@@ -107,45 +114,54 @@ def simulate_people(
     if any(not person.simulated for person in study.people()):
         reason = "has people, and cannot have simulated ones beside them"
         raise InputError(study.folder, "study", reason, "declare another study for them")
-    sessions: list[Done] = []
-    total = wanted - len(finished(study))
+    sessions: list[SimulatedSession] = []
+    total = wanted - len(_finished(study))
     for done in range(total):
 
         def report(part: float, done: int = done) -> None:
             progress(round(100 * (done + part)), 100 * total)
 
-        sessions.append(play(len(study.people()), report))
-    return tuple(sessions)
+        person = study.kind.draw_simulated(study, len(study.people()), simulation or Simulation())
+        sessions.append(_session(study, person, report))
+    return SimulatedStudy(tuple(sessions), _finished(study))
 
 
-def finished(study: KeptStudy[Any]) -> tuple[str, ...]:
-    """Return the simulated people of a study who are done, by name."""
+def _finished(study: Study) -> tuple[str, ...]:
     return tuple(person.name for person in study.people() if person.state == "finished")
 
 
-def _session(
-    study: Study, simulated: SimulatedParticipant, report: Callable[[float], None]
-) -> SimulatedSession:
+def _session(study: Study, simulated: SimulatedPerson, report: Callable[[float], None]) -> SimulatedSession:
     clock, breaks = SimulatedClock(time.time()), 0
     start_s = clock()
-    participant, _ = Participant.enrol(
-        study, study.plan.languages[0], simulated.renderer, simulated=True, clock=clock
-    )
+    person, code = study.enrol(simulated=True)
+    participant = simulated.sit_down(study, person, code, clock)
     try:
-        with participant:
-            while (step := participant.step()).kind not in ENDS:
-                report(step.progress)
-                breaks += step.kind == "break"
+        while (step := participant.step()).kind not in ENDS:
+            report(step.progress)
+            breaks += step.kind == "break"
+            if step.kind == "wait":  # they go home, and come back with their card
+                participant.close()
+                clock.skip(until_s(step) - clock())
+                participant = simulated.sit_down(study, person, code, clock)
+            else:
                 do_step(participant, simulated, step, clock)
-            trials = len(participant.state.answers)
     except KeyboardInterrupt:
-        study.withdraw(participant.person, delete=True)
+        participant.close()
+        study.withdraw(person, delete=True)
         raise
-    return SimulatedSession(participant.person, trials, breaks, (clock() - start_s) / 60)
+    finally:
+        participant.close()
+    state = participant.state
+    return SimulatedSession(person, state.trials_over, state.count, breaks, clock() - start_s)
+
+
+def until_s(step: Step[Any]) -> float:
+    """Return the wall time at which a gap is over."""
+    return datetime.fromisoformat(step.due_at).timestamp() + 1.0
 
 
 def do_step(
-    participant: Participant, simulated: SimulatedParticipant, step: Step[TrialFace], clock: SimulatedClock
+    participant: Sitting[Any], simulated: SimulatedPerson, step: Step[Any], clock: SimulatedClock
 ) -> None:
     """Do what a step asks for: answer a page or a trial, or wait until a break ends."""
     if step.kind == "page":
@@ -156,11 +172,4 @@ def do_step(
         clock.skip(step.left_s)
         participant.end_break()
     else:
-        participant.show_trial(step.number)
-        order = simulated.order(step.trial.labels)
-        piece_s = simulated.takes_s() / (len(order) + 1)
-        for label in order:
-            participant.go_to(label)
-            clock.skip(piece_s)
-        clock.skip(piece_s)
-        participant.answer(step.number, simulated.answer(step.trial.item))
+        simulated.do(participant, step, clock)

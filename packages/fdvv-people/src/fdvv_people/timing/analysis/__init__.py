@@ -1,1 +1,0 @@
-"""Unsealed scores, their statistics, and the report in the paper's form."""

@@ -1,1 +1,0 @@
-"""A timing study in its folder, and how far its people are."""

@@ -1,1 +1,0 @@
-"""Plan, schedule, events and state of a timing study, as plain records."""

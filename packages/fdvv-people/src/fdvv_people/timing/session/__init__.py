@@ -1,1 +1,0 @@
-"""A participant's session: every press is on the disk before it counts."""

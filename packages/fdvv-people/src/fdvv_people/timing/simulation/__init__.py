@@ -1,1 +1,0 @@
-"""Simulated participants who play a whole timing study. Simulated."""
