@@ -15,8 +15,8 @@ from tools.snapshot.commands import Commands
 from tools.snapshot.compare import difference
 from tools.snapshot.contract import type_lines
 from tools.snapshot.files import text_of
-from tools.snapshot.kept import FOLDER, MACHINE, Kept, Snapshot, snapshots
 from tools.snapshot.normalise import Normaliser
+from tools.snapshot.reference import FOLDER, MACHINE, Reference, Snapshot, snapshots
 from tools.snapshot.values import lines_of, shorten_repeats
 
 from tests.support.campaign import campaign
@@ -32,30 +32,32 @@ def commands() -> Iterator[Commands]:
 
 
 @pytest.fixture(scope="session")
-def kept() -> Kept:
-    return Kept()
+def reference() -> Reference:
+    return Reference()
 
 
 @pytest.mark.parametrize("snapshot", [s for s in SNAPSHOTS if not s.slow], ids=lambda s: s.name)
-def test_nothing_differs_that_no_commit_changes(snapshot: Snapshot, commands: Commands, kept: Kept) -> None:
-    compare(snapshot, commands, kept)
+def test_nothing_differs_that_no_commit_changes(
+    snapshot: Snapshot, commands: Commands, reference: Reference
+) -> None:
+    compare(snapshot, commands, reference)
 
 
 @pytest.mark.slow
 @campaign("snapshot", [s for s in SNAPSHOTS if s.slow], part=4)
 def test_nothing_long_differs_that_no_commit_changes(
-    snapshot: Snapshot, commands: Commands, kept: Kept
+    snapshot: Snapshot, commands: Commands, reference: Reference
 ) -> None:
-    compare(snapshot, commands, kept)
+    compare(snapshot, commands, reference)
 
 
-def compare(snapshot: Snapshot, commands: Commands, kept: Kept) -> None:
+def compare(snapshot: Snapshot, commands: Commands, reference: Reference) -> None:
     """Take a snapshot and compare it with the one that is kept; skip where it cannot be taken."""
     if not snapshot.possible:
         pytest.skip("the real measurements (../shared/data or FDVV_SHARED) are not on this machine")
-    if kept.other_libraries:
-        pytest.skip(f"figures are those of {kept.other_libraries}")
-    differs = kept.differs(snapshot.name, snapshot.take(commands))
+    if reference.other_libraries:
+        pytest.skip(f"figures are those of {reference.other_libraries}")
+    differs = reference.differs(snapshot.name, snapshot.take(commands))
     assert not differs, f"{differs}\nwhere it is meant: python -m tools.snapshot --write {snapshot.name}"
 
 

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Iterator
 
 from tools.snapshot.commands import Commands
-from tools.snapshot.kept import Kept, Snapshot, snapshots, write
+from tools.snapshot.reference import Reference, Snapshot, snapshots, write
 
 OTHER_MACHINE = (
     "this machine rounds otherwise than the one that wrote tests/files/snapshot, or has other libraries: "
@@ -27,16 +27,16 @@ def main() -> int:
     known = {snapshot.name: snapshot for snapshot in snapshots()}
     if unknown := sorted(set(options.names) - set(known)):
         parser.error(f"no snapshot {', '.join(unknown)}; there are {', '.join(known)}")
-    kept = Kept()
-    if options.write and options.names and (kept.other_libraries or not kept.exact):
+    reference = Reference()
+    if options.write and options.names and (reference.other_libraries or not reference.exact):
         parser.error(OTHER_MACHINE)
-    if kept.other_libraries:
-        print(f"they were taken with {kept.other_libraries}", file=sys.stderr)
+    if reference.other_libraries:
+        print(f"they were taken with {reference.other_libraries}", file=sys.stderr)
     texts = dict(take([known[name] for name in options.names or known]))
     if options.write:
         write(texts, whole=not options.names)
         return 0
-    return report({name: kept.differs(name, text) for name, text in texts.items()})
+    return report({name: reference.differs(name, text) for name, text in texts.items()})
 
 
 def take(wanted: list[Snapshot]) -> Iterator[tuple[str, str]]:

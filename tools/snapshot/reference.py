@@ -41,7 +41,7 @@ def snapshots() -> list[Snapshot]:
     ]
 
 
-class Kept:
+class Reference:
     """The texts that are kept, and the machine on which they were taken."""
 
     @cached_property
