@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from tools import check_budget
-from tools.budget_file import parse_limits, write_limits
+from tools.budget_file import Row, parse_limits, write_limits
 from tools.budget_house import begins_with_participle
 from tools.budget_measures import COUNTED, list_files, to_pattern, walk_files
 
@@ -274,6 +274,12 @@ def test_a_row_with_nothing_left_goes(house: Path, capsys: pytest.CaptureFixture
     document = tomllib.loads((house / "budget.toml").read_text())
     assert "page" not in document["parts"]
     assert document["arrows"] == {"__main__": ["study"]}
+
+
+def test_an_arrow_that_is_gone_leaves_the_others_of_its_row() -> None:
+    arrows = {Row("arrows", "study", name): limit for name, limit in (("io", 0), ("task", 1))}
+    text = write_limits('[arrows]\nstudy = ["io", "task"]\n', arrows)
+    assert text == '[arrows]\nstudy = ["task"]\n'
 
 
 def test_in_ci_a_lower_limit_is_only_named(

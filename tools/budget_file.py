@@ -99,7 +99,7 @@ def _write_row(line: str, values: Mapping[str, int]) -> str:
     if set(values) == set(SIZES):
         return re.sub(r"\b(lines|files) = \d+", lambda size: f"{size[1]} = {values[size[1]]}", line)
     key = line[: line.rindex(" = ")]
-    return f"{key} = {values[''] if '' in values else json.dumps(sorted(values))}"
+    return f"{key} = {values[''] if '' in values else json.dumps(sorted(filter(values.get, values)))}"
 
 
 def _key(name: str) -> str:
