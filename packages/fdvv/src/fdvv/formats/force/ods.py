@@ -13,6 +13,7 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+from xml.parsers import expat
 
 import numpy as np
 
@@ -77,6 +78,11 @@ def _check_archive(source: Path, content: bytes) -> None:
         raise refusal(source, "whole file", f"the .ods archive is damaged ({error})") from None
     except (RuntimeError, ValueError, zipfile.zlib.error) as error:  # type: ignore[attr-defined]
         raise refusal(source, "whole file", f"the .ods archive cannot be unpacked ({error})") from None
+    parser = expat.ParserCreate()
+    try:
+        parser.Parse(xml, True)  # the other parser goes on for ever where some elements are not closed
+    except expat.ExpatError as error:
+        raise refusal(source, "content.xml", f"it is not well formed ({error})") from None
     cells = _count_cells(xml)
     if cells > MOST_CELLS:
         reason = f"its repeats unfold to {cells} cells; at most {MOST_CELLS} are read"
