@@ -30,7 +30,7 @@ def test_a_way_to_learn_is_one_file_that_the_command_finds(tmp_path: Path) -> No
     (about / "METADATA").write_text("Metadata-Version: 2.1\nName: my-package\nVersion: 1\n")
     lines = [f"[{group}]", *(f"{name} = {place}" for name, place in entries.items())]
     (about / "entry_points.txt").write_text("\n".join(lines))
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), os.environ["PYTHONPATH"]])}
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, (tmp_path, *sys.path)))}
     words = "compensate mx-clear --velocity 100 --method half-the-error --rounds 2 --session s --json"
     ran = subprocess.run(
         [sys.executable, "-m", "fdvv", *words.split()],
