@@ -32,7 +32,7 @@ UP_mm = 0.1
 """A cap that was deeper than TOP_mm is back up above this."""
 LEAVES_s = 5.0
 """A device whose owner is going is waited for so long: a page that is loaded again asks at once."""
-UP, DOWN, BETWEEN = 0, 1, 2
+UP, DOWN, BETWEEN = 0, 1, 2  # names of three states: compared for equality only
 Send = Callable[[Struct], None]
 
 

@@ -25,7 +25,7 @@ TOKEN_FILE = ".serve-token"
 SILENT_s = 4.0
 """A client that answers no ping for twice so long is taken as gone."""
 ORIGIN = re.compile(r"https?://(\[[0-9a-f:]+\]|[a-z0-9.-]+)(:\d{1,5})?")
-FORBIDDEN = 4403
+FORBIDDEN = 4403  # from 4000 on codes are an application's own (RFC 6455, 7.4.2): 4000 + HTTP's status
 
 
 def check_origin(origin: str) -> str:

@@ -9,7 +9,7 @@ from typing import Protocol
 
 from fdvv.errors import InputError
 
-PATIENCE_s = 10.0
+PATIENCE_s = 10.0  # assumed: above the 4 s in which a rig is identified; a participant waits meanwhile
 
 
 class ParticipantScreen(Protocol):

@@ -6,7 +6,7 @@ from fdvv_people.stats.anova import Anova, AnovaEffect
 from fdvv_people.stats.effect_size import Estimate
 from fdvv_people.stats.post_hoc import PairedTest
 
-ALPHA = 0.05
+ALPHA = 0.05  # the usual level; a study's main claim has its own, in its plan
 
 
 def p_text(p: float) -> str:

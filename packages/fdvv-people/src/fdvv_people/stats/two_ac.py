@@ -31,7 +31,7 @@ ROOT_2 = math.sqrt(2)
 WIDEST = 40.0
 """Distance, in d', that is as good as infinite."""
 
-NODES = 15
+NODES = 15  # as `ordinal.NODES`, of the same fit: with 9 an error was off by up to 3 % where answers are few
 
 
 def two_ac(first: float, equal: float, second: float) -> DPrime:

@@ -34,8 +34,8 @@ FREEDOM, BROADER = 6.0, 1.1
 PRIOR_SHARE = 0.15
 """Of the particles: while little is known the posterior has the prior's tails."""
 
-ROUNDS, ENOUGH = 30, 1e-8
-SEED = 1
+ROUNDS, ENOUGH = 30, 1e-8  # assumed: the mode only places the particles, whose weights make up for errors
+SEED = 1  # any will do, always the same: whoever resumes believes the same
 
 
 @dataclass(frozen=True, eq=False)

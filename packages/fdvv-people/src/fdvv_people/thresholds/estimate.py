@@ -14,7 +14,7 @@ from fdvv_people.thresholds.belief import PARTICLES, Belief, Trial, belief_after
 from fdvv_people.thresholds.observer import JND, log_jnd_along
 from fdvv_people.thresholds.prior import ThresholdPrior
 
-INTERVAL = (0.025, 0.975)
+INTERVAL = (0.025, 0.975)  # equal tails of `fdvv_people.stats.effect_size.CONFIDENCE`, 95 %
 
 
 @dataclass(frozen=True)

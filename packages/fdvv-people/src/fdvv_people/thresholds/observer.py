@@ -18,7 +18,7 @@ import numpy as np
 from fdvv.model.noticeable import AT_JND, DIMENSIONS
 from fdvv.units import FloatArray
 
-PARAMETERS = 8
+PARAMETERS = 8  # the rows of the table above: three JNDs, three exponents, summation, lapses
 JND, EXPONENT, SUMMATION, LAPSE = slice(0, 3), slice(3, 6), 6, 7
 
 STEPS = 8

@@ -25,7 +25,7 @@ from fdvv_studio.library.catalog import ButtonFile, source_files
 from fdvv_studio.library.figures import UNREADABLE, read_file, refusal, row_of_file
 from fdvv_studio.library.table import FORMAT, VERSION, LibraryRecord, library_schema, sampled, table_of
 
-BLOCK_bytes = 1 << 20
+BLOCK_bytes = 1 << 20  # assumed: a single read of most files, and little memory for any
 
 
 def read_button(file: ButtonFile) -> LibraryRecord:

@@ -26,7 +26,7 @@ from fdvv.model.model import FDVVModel
 from fdvv_studio.library.row import NUMBERS, ButtonRow, Origin
 from fdvv_studio.library.stated import Stated, stated_type
 
-AVERAGED_mm = 0.02
+AVERAGED_mm = 0.02  # finer than the 50 um in which a clicky switch falls; a shorter mean leaves more noise
 
 
 def polyline_model(parts: MeasuredParts, name: str) -> FDVVModel:
@@ -87,7 +87,7 @@ STATED = re.compile(
     r"\b(silent|linear|tactile|clicky|click|dome|topre|optical|magnetic|hall|low profile|speed)\b", re.I
 )
 
-LONGEST_name = 200
+LONGEST_name = 200  # assumed: a heading may have any length, and a row shows it in a line
 
 
 class ReadFile(NamedTuple):

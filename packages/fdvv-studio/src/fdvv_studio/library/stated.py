@@ -13,7 +13,7 @@ WORDS = {"click": "clicky", "topre": "dome", **{word: word for word in TYPES}}
 
 TABLES = ("types.csv", "switchmeta.csv")
 """Files with lines name,type; looked for in a file's folder and in the one above."""
-LARGEST_bytes = 1_000_000
+LARGEST_bytes = 1_000_000  # that of tg-strokes (switchmeta.csv) has 29 kB; what is beyond is not read
 
 MAKES = {
     "clicky": (

@@ -48,7 +48,8 @@ TEACHER = "mx-clear"
 """The button whose presses identify a rig."""
 
 TAUGHT_mm_s, RENDERED_mm_s = (50.0, 100.0, 150.0, 200.0), (10.0, 50.0, 100.0, 150.0, 200.0)
-STEP_mm = 0.02
+"""The first are the paper's; the others add a slow press, since a hand on the page may creep (assumed)."""
+STEP_mm = 0.02  # a clicky switch falls within 50 um (docs/explanation/library.md): a coarser step blunts it
 
 
 class PressMode(StrEnum):

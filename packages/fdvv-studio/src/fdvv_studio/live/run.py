@@ -40,7 +40,7 @@ class RealTimeClock:
 STEP_s = 0.004
 """Step of the simulation; input takes effect with the next one."""
 
-FRAME_s = 1 / 60
+FRAME_s = 1 / 60  # the refresh of a usual display: it shows no more pictures
 
 REST_AFTER_s = 5.0
 """Time stops where nothing happened for so long; pictures of the last seconds show nothing either."""

@@ -13,7 +13,7 @@ from fdvv.errors import InputError
 from fdvv.io.files import read_limited
 from fdvv.model.curve import Stroke
 
-LIMIT_bytes = 8_000_000
+LIMIT_bytes = 8_000_000  # a curve has four numbers at some 200 places, about 15 kB: hundreds of curves fit
 _REMEDY = "probe the button again"
 
 

@@ -24,7 +24,7 @@ TRASH = "trash"
 LARGEST_bytes = 2_000_000
 """Of a program's file: far above what a device holds (7 kB as an image), small enough to check at once."""
 NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9 ._-]{0,38}[A-Za-z0-9_-])?")
-MOST_COPIES = 1000
+MOST_COPIES = 1000  # three digits: with a stem of 34 letters and a blank they stay within NAME's 40
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ from fdvv_studio.studio.devices import DeviceLocks, require_listed
 from fdvv_studio.studio.jobs.check import RIGS
 from fdvv_studio.studio.studio import Studio
 
-STEP_mm = 0.05
+STEP_mm = 0.05  # as `fdvv.rendering.tuning` has it: a board's table of 255 columns reaches 12.7 mm
 HOLDER = "the device view"
 NONE = "no device is connected"
 

@@ -22,6 +22,7 @@ from fdvv_studio.studio.studio import Studio
 WAITING = 4000
 """So many messages may wait for a page; one that does not read is cut off and may come again."""
 SLOW, MALFORMED, FORBIDDEN = 4408, 4400, 4403
+"""From 4000 on codes are an application's own (RFC 6455, 7.4.2): 4000 + HTTP's status of that meaning."""
 log = logging.getLogger("fdvv_studio.studio")
 
 

@@ -23,7 +23,7 @@ from fdvv_studio.studio.studio import Studio
 
 log = logging.getLogger("fdvv_studio.studio")
 FOLDER, SUFFIX = "studies", ".seats"
-LARGEST_bytes = 4_000_000
+LARGEST_bytes = 4_000_000  # a seat takes some 250 bytes: sixteen for each of 1000 people, the most of a plan
 SEATS = Kind("fdvv-seats", 1, "the seats of a study", "delete it: invitations are made anew")
 
 

@@ -168,7 +168,7 @@ def create_app(studio: Studio, door: ServerAddress) -> Starlette:
     return Starlette(routes=routes, middleware=[Middleware(AuthMiddleware, door=door)], lifespan=lifespan)
 
 
-LARGEST_MESSAGE_bytes = 2_000_000
+LARGEST_MESSAGE_bytes = 2_000_000  # of the live connection: a model of many curves is some hundred kB
 
 
 def bound_socket(host: str, port: int) -> socket.socket:

@@ -35,7 +35,7 @@ from fdvv.model.fit import CurveFit, FitMethod, active_part, fit_curve
 from fdvv.model.landmarks import CUT_SHORT_mm, Landmarks, landmarks
 from fdvv.model.model import FDVVModel, Provenance
 
-STOP_REACH_mm = 0.1
+STOP_REACH_mm = 0.1  # strokes of a cycle leave their stop this close together; assumed, see _within
 
 DECIMALS_mm = 6
 """A nanometre: subtracting the contact leaves noise in the last digits, which nobody should read."""

@@ -21,7 +21,7 @@ from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel, Provenance
 from fdvv.model.vibration import Vibration
 
-HEAD_bytes = 4096
+HEAD_bytes = 4096  # assumed to reach beyond a file's metadata; where it does not, the suffix decides
 REMEDY = "give measured curves, *.ahap, *.haptic, *.hjif or *.wav"
 
 

@@ -25,9 +25,9 @@ STOP_cN_mm, STOP_most_cN = 150.0, 100.0
 GRID_mm = np.arange(0.1, 4.51, 0.1)
 """Where forces are compared, contact at 0; the first tenth of a millimetre is the contact step."""
 
-SHAPE_points = 32
+SHAPE_points = 32  # about every second point of a sketch; assumed fine enough for a shape
 _SIZES = (GRID_mm.size, GRID_mm.size, SHAPE_points, SHAPE_points, 5)
-_FORCE, _SHAPE, _LANDMARKS = (0, 1), (2, 3), (4,)
+_FORCE, _SHAPE, _LANDMARKS = (0, 1), (2, 3), (4,)  # places in _SIZES: press and release, then landmarks
 _NO_ROWS: FloatArray = np.empty((0, sum(_SIZES)))
 
 SKETCH_POINTS = 64

@@ -21,9 +21,9 @@ from fdvv.report.report import Download, Section, Table, render_html
 MOST_BUTTONS = 6
 """More colours are hard to distinguish."""
 
-WIDE, HIGH = 720.0, 340.0
-STEP_mm = 0.01
-SAME_jnd, NEAR_jnd = 1.0, 2.0
+WIDE, HIGH = 720.0, 340.0  # px; leaves a quarter of the report's 62rem to the legend; the height is assumed
+STEP_mm = 0.01  # 1.7 px of the chart at 4 mm of travel; finer is hardly seen
+SAME_jnd, NEAR_jnd = 1.0, 2.0  # 1: by what a JND is; 2: assumed; neither was tried on people
 
 LANDMARKS: tuple[tuple[str, str, int], ...] = (
     ("Travel, mm", "travel_mm", 2),

@@ -41,7 +41,7 @@ noise alone has 0.3."""
 
 MISFIT_ratio = 0.05
 """RMSE of 15 or more free control points over the range of the force. Real files: at most 0.022."""
-MISFIT_POINTS = 15
+MISFIT_POINTS = 15  # the paper's number; fewer may miss a shape that is real
 
 LOSS_ratio = (-0.05, 0.95)
 """Part of the work of the press that the release does not give back. A button has no motor, so below zero the

@@ -24,7 +24,7 @@ from fdvv.rendering.press_check import A_SESSION, check_device_recording, check_
 from fdvv.rendering.session import MANIFEST
 from fdvv.rendering.session_log import PRESSES
 
-HEAD_bytes = 400
+HEAD_bytes = 400  # twice that of io.documents: marks stand in the first field; other spacing is assumed
 IMAGE = b"FDVP"
 REMEDY = "name a file that fdvv wrote, the folder of a session, or a log of a bench"
 

@@ -62,8 +62,8 @@ BEATS = ("3", "2", "1")
 BEAT_s = 0.5
 DWELL_s = 0.05
 """At the stop, between down and up."""
-FRAME_s = 1 / 60
-WIDTH = 40
+FRAME_s = 1 / 60  # of a usual display of 60 Hz; more pictures are not shown
+WIDTH = 40  # half of a terminal of 80 columns; a block is 0.1 mm of 4 mm
 
 
 def minimum_jerk(part: float) -> float:

@@ -23,8 +23,8 @@ from fdvv.rendering.session_run import PressDone
 
 BUTTON = "mx-clear"
 SWITCH = "cherry-mx-hyperglide-brown.csv"
-VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0)
-PROBE_PRESSES, VIBRATION_PRESSES = 30, 10
+VELOCITIES_mm_s = (50.0, 100.0, 150.0, 200.0)  # of the published button, less the probe's 0.5 mm/s
+PROBE_PRESSES, VIBRATION_PRESSES = 30, 10  # per speed; assumed: benchmarks have 20
 FD_ONLY = "FD only"
 
 Stage = Callable[[str, int, int], None]

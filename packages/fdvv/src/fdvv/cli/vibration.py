@@ -117,7 +117,7 @@ def _print(document: dict[str, Any]) -> None:
         click.echo(f"written to {document['wav']['path']}; {scale}")
 
 
-LONGEST_s = 5.0
+LONGEST_s = 5.0  # assumed: a press lasts under a second; a longer sound likely holds several
 
 
 def is_sound(spec: str) -> bool:

@@ -64,7 +64,7 @@ def mean_speed_mm_s(t_s: FloatArray, displacement_mm: FloatArray, stroke: slice)
 
 PAUSE_WINDOW_ratio = 1 / 16
 """Part of the travel within which a finger counts as paused: 0.25 of 4 mm."""
-MS_PER_s = 1000.0
+MS_PER_s = 1000.0  # by definition
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from fdvv.model.curve import Stroke
 from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray
 
-LONGEST_STEP_s = 2.5e-4
+LONGEST_STEP_s = 2.5e-4  # of 4 kHz: finger on 1.3 N/mm advances 0.12 rad; in 1 ms 0.5, too coarse for Euler
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import Fault, Settings
 
-FORMAT = 1
+FORMAT = 1  # the first; any other is refused
 T = TypeVar("T")
 
 

@@ -38,7 +38,7 @@ REASONS = {
     Refusal.NO_LOAD_CELL: "it has no load cell",
     Refusal.HASH_MISMATCH: "its firmware speaks another version of the protocol; update one of the two",
 }
-WRAP_us = 2**32
+WRAP_us = 2**32  # the wire's clock has 32 bits (protocol/fdvv.toml: time_us)
 
 
 class Port(Protocol):

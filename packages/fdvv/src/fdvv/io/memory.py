@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import sys
 
-PR_SET_DUMPABLE = 4
+PR_SET_DUMPABLE = 4  # its number in linux/prctl.h
 
 
 def hide_memory() -> bool:

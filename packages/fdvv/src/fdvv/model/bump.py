@@ -84,7 +84,7 @@ LOADED_cN = 10.0
 WINDOW_mm = 0.02
 """Length over which a slope is taken: four steps of the finest bench, a third of a contact step."""
 
-STOP_EXCESS_cN_mm = 60.0
+STOP_EXCESS_cN_mm = 60.0  # over twice a spring's 25, under half of what the softest stop, 150, has above it
 
 STOP_LEAST_cN_mm = 100.0
 """A slope this much above the stroke's own, and at least this steep, is the stop. Springs of switches

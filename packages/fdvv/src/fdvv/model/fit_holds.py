@@ -22,14 +22,14 @@ Kept = Callable[[FloatArray, FloatArray, FloatArray], bool]
 BUMP_ROUNDS = 8
 BUMP_COST = 1.5
 """The error may grow by this factor for the bump's sake, no more."""
-BUMP_WEIGHT = 2.0
-BUMP_REACH_mm = 0.1
+BUMP_WEIGHT = 2.0  # assumed: the last of BUMP_ROUNDS weighs 128 times
+BUMP_REACH_mm = 0.1  # assumed: twice the 50 um over which peak and valley are averaged
 
 BELOW_cN, LEAST_cN = 0.4, -0.5
 """A curve may pass this far below the least force measured, which nobody feels, but not below -0.5 cN unless
 the measurement does: latching and magnetic keys pull."""
-DEAR_ratio = 1.02
-BETWEEN, BETWEEN_weight = 3, 0.2
+DEAR_ratio = 1.02  # assumed: a smaller rise of the RMSE is not worth a second search
+BETWEEN, BETWEEN_weight = 3, 0.2  # assumed: quarters of a gap, which weigh less than a sample: 0.6
 
 
 def hold_bump(x: FloatArray, y: FloatArray, degree: int, found: Spline, search: Search, kept: Kept) -> Spline:

@@ -20,7 +20,7 @@ FILE_NAME = "jnds.json"
 """Its name in a project."""
 REMEDY = f"write {FILE_NAME} again with fdvv study jnds, or remove it"
 KIND = Kind("fdvv-jnds", 1, "a file of JNDs", REMEDY)
-LARGEST_bytes = 1_000_000
+LARGEST_bytes = 1_000_000  # room for thousands of thresholds of a few hundred bytes; a study measures a few
 
 WIDE_factor = 2.0
 """By which an interval may reach either way of its middle."""

@@ -14,10 +14,10 @@ from msgspec import Meta
 from fdvv.errors import ModelError
 from fdvv.protocol.tables import Condition as Code
 
-EVENTS = 32
-LARGEST_mm = 100.0
-LARGEST_ms = 2**31 - 1
-LARGEST_mm_s = 4000.0
+EVENTS = 32  # bits of the word in which a board holds pending events (firmware/core/machine.h)
+LARGEST_mm = 100.0  # assumed; beyond every travel (20 mm at most), and fits the 32 bits of an image
+LARGEST_ms = 2**31 - 1  # a value is 32 bits with a sign (protocol/fdvv.toml, structs.transition)
+LARGEST_mm_s = 4000.0  # the firmware's predictor takes no cap for faster (firmware/core/predictor.h)
 
 
 class When(StrEnum):

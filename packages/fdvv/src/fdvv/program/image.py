@@ -18,7 +18,7 @@ from fdvv.protocol.tables import Surface as SurfaceRecord
 from fdvv.protocol.tables import Transition as TransitionRecord
 from fdvv.protocol.tables import Vibration as VibrationRecord
 
-NAME_BYTES = 10
+NAME_BYTES = 10  # room in the header (protocol/fdvv.toml, structs.image_header)
 
 
 class _Pool:

@@ -11,7 +11,7 @@ from fdvv.program.program import Program, Velocity
 from fdvv.program.reachability import Cells, make_cells
 from fdvv.program.surface import Limits
 
-cN_mm_PER_J = 1e5
+cN_mm_PER_J = 1e5  # 1 J = 1 N m = 100 cN times 1000 mm
 
 
 class Motion:

@@ -15,9 +15,9 @@ from fdvv.program.surface import Limits
 from fdvv.protocol.messages import UM16_PER_mm
 from fdvv.units import FloatArray
 
-SHALLOWEST_mm = -1.0
-FASTEST_mm_s = 4000.0
-WIDEST_mm = 0.05
+SHALLOWEST_mm = -1.0  # assumed; the cap rests at 0 and its top stop holds it there
+FASTEST_mm_s = 4000.0  # as condition.LARGEST_mm_s: no condition compares with more
+WIDEST_mm = 0.05  # assumed; wider cells bound force less closely, narrower need more time
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,10 @@ from fdvv.protocol.tables import SURFACE_DISPLACEMENTS, Settings
 from fdvv.protocol.tables import Surface as ImageSurface
 from fdvv.units import FloatArray
 
-DIGITS_cN = 4
-STEP_mm = 0.02
-COARSEST_um16 = 16_000
-FINEST_um16 = 16
+DIGITS_cN = 4  # an image counts in 1/64 cN: more digits make a file longer and change nothing
+STEP_mm = 0.02  # below the 0.05 mm over which a bump is measured; an image takes the columns it needs
+COARSEST_um16 = 16_000  # 1 mm, the widest step of an image (step_um16 in protocol/fdvv.toml)
+FINEST_um16 = 16  # 1 um, its narrowest
 START_um16 = ImageSurface.LIMITS["start_um16"]
 
 

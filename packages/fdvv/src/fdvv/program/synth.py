@@ -29,8 +29,8 @@ WAVE_SAMPLES = 512
 IntArray = npt.NDArray[np.int64]
 SINE_Q12: IntArray = np.rint(4096 * np.sin(2 * np.pi * np.arange(256) / 256)).astype(np.int64)
 """One turn of a sine in 256 steps, times 4096."""
-WAVE_PEAK = 127
-FASTEST_WAVE_Hz = 65_535 / 16
+WAVE_PEAK = 127  # samples are signed bytes; -128 would have no counterpart
+FASTEST_WAVE_Hz = 65_535 / 16  # a playback rate is 16 bits of 1/16 Hz
 
 
 class Waveform(IntEnum):

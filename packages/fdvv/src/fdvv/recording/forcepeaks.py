@@ -26,8 +26,8 @@ CLOCK, LOOSE_CLOCK = "board", "samples"
 MARKS = {"S": "beat", "R": "tap"}
 STEP_s = 1.024e-3
 """The board's millisecond counter advances once every 1024 µs."""
-WINDOW_s = 0.1
-FIRST_BEAT = 5
+WINDOW_s = 0.1  # for so long the published program samples after a tap
+FIRST_BEAT = 5  # it samples from the sixth beat on; beats are numbered from 0
 
 _LINE = re.compile(r"([SRV]) (\d{1,9}) (\d{1,10})\s*\Z", re.ASCII)
 Counts = npt.NDArray[np.int16]

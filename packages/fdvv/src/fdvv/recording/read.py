@@ -19,7 +19,7 @@ from fdvv.recording.sound import read_sound, sound_kind
 from fdvv.recording.table import find_header, is_counts, read_counts, read_table
 from fdvv.recording.types import Recording, Source, Take
 
-LARGEST_bytes = 512_000_000
+LARGEST_bytes = 512_000_000  # assumed; 1.5 hours of sound in 16 bits at 48 kHz, all of it in memory
 JOURNAL = b'{"crc32": '
 Lines = Sequence[str]
 

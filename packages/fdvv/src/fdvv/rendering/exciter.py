@@ -35,9 +35,10 @@ APART_Hz = 150.0
 TRAVEL_mm, SPRING_cN_mm = 4.0, 20.0
 """The motor holds the cap at mid travel on a spring too soft to affect the measurement."""
 SETTLE_s, START_s, END_s = 0.6, 0.1, 0.02
-LONGEST_s = 4.0
-COUNTS = 2047
-KNOWN_LAG_ratio = 0.1
+"""Assumed: until the cap has come up to mid travel, until a tone is steady, and a margin before its end."""
+LONGEST_s = 4.0  # a slot lasts 65,535 samples at 16 kHz at most: 4.096 s
+COUNTS = 2047  # full amplitude of the board's 12-bit converter (synth.AMPLITUDE_MAX_counts)
+KNOWN_LAG_ratio = 0.1  # assumed; of some 0.9 ms 0.11 ms are uncertain (docs/explanation/identification.md)
 Progress = Callable[[int, int], None]
 Record = tuple[FloatArray, FloatArray]
 

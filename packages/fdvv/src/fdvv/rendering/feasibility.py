@@ -31,7 +31,7 @@ from fdvv.rendering.probe import ProbeResult
 from fdvv.report.records import FeasibleCurve, RenderedBand
 from fdvv.units import FloatArray
 
-STEP_mm = 0.01
+STEP_mm = 0.01  # a fifth of the 50 um over which the steepest rise is taken (docs/explanation/feasibility.md)
 
 
 @dataclass(frozen=True, eq=False)

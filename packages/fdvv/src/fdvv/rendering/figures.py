@@ -26,8 +26,9 @@ ACHIEVABLE: Any = {"color": style.PALETTE[0], "linewidth": 1.6}
 MEASURED: Any = {"color": style.PALETTE[1], "linewidth": 1.4}
 CUT: Any = {"color": style.PALETTE[5], "alpha": 0.25, "linewidth": 0.0}
 JND_BAND: Any = {"color": "#dde2e7", "linewidth": 0.0, "zorder": 0.5}
-NOTICED_pt = 4.0
+NOTICED_pt = 4.0  # assumed; bars lie 0.035 of the axes apart, less than 6 pt: thicker bars would merge
 LINE_LENGTH, MOST_LINES, TEXT_pt = 70, 3, 8.0
+"""Assumed: 70 letters of 8 pt for a cell 5 in wide, three lines above the axes; a longer verdict is cut."""
 
 
 @style.in_house_style

@@ -108,7 +108,7 @@ def _unpacked(key: str, found: Any) -> None:
         raise ValueError("is no record of a session")
 
 
-BIN_mm = 0.05
+BIN_mm = 0.05  # the paper's bin of displacement (docs/explanation/paper-law.md)
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,7 +31,7 @@ from fdvv.rendering.tuning import TUNED, open_device
 
 MANIFEST = "session.json"
 KIND = Kind("fdvv-session", 1, "a session", "name the folder of a session, or one that is new or empty")
-LARGEST_bytes = 4_000_000
+LARGEST_bytes = 4_000_000  # assumed; manifests have about 1 kB (tests/files/old)
 MUST_AGREE = ("task", "model", "device", "method", "settings", "velocities_mm_s", "seed")
 
 

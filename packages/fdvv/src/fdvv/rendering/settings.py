@@ -23,9 +23,9 @@ Count = Annotated[int, Meta(ge=1, le=200)]
 PaceRatio = Annotated[float, Meta(ge=0.05, le=1)]
 SPEED_LIMIT = 16
 """Most rows of the table that a board holds (FDVV_SURFACE_VELOCITIES in firmware/core/protocol.h)."""
-SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
+SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)  # the paper's speeds; MX Clear is measured at them
 ROUNDS = {"rig-aware": 3, "paper": 4}
-PRESSES = 12
+PRESSES = 12  # in 4 rounds at 4 speeds 192 (docs/explanation/paper-law.md); 15 would be the paper's 240
 A_FEW = {"min_length": 1, "max_length": 5}
 
 

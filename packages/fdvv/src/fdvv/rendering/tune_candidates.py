@@ -22,8 +22,8 @@ from fdvv.vibration.inverse import correlation, spectral_similarity, st_sim
 from fdvv.vibration.templates import TemplateGrid, templates_around
 from fdvv.vibration.tune import SimulatedObserver
 
-SCORE_Hz = 16_000
-RING_s = 0.01
+SCORE_Hz = 16_000  # the vibration board's rate (synth.RATE_HZ): faster cannot be played
+RING_s = 0.01  # assumed; silence behind the longest candidate, which ends with its duration
 
 
 @dataclass(frozen=True, eq=False)

@@ -138,6 +138,7 @@ class TuneResult:
 Answerer = Callable[[Question], int | Preferred | None]
 """Asks a person or a simulated observer after the presses; None: press again."""
 PATIENCE = 10
+"""Assumed: a person may miss the speed some times, and a rig that never succeeds must not go on for ever."""
 
 
 def tune_vibration(

@@ -89,7 +89,7 @@ def open_device(name: str, rig: Path | None = None, finger: Path | None = None, 
 
 
 MAGIC = IMAGE_MAGIC.to_bytes(4, "little")
-STEP_mm = 0.05
+STEP_mm = 0.05  # as ForceSurface.of_model: the paper's bin; 4 mm take 81 of a board's 255 columns
 
 
 def program_image(

@@ -21,8 +21,8 @@ from fdvv.report.templates import environment
 
 READ_UNITS = {"mm_s": "mm/s", "cN_mm": "cN/mm", "mm": "mm", "cN": "cN", "mJ": "mJ", "ratio": "1"}
 """Last parts of our names, longest first, and what people read."""
-POINTS = 160
-LONGEST_LICENCE = 36
+POINTS = 160  # every 2.3 px of a chart, whose axes are 372 px wide; chart.MOST_POINTS thins longer lines
+LONGEST_LICENCE = 36  # assumed; names of licences fit, a sentence would widen the table beside the chart
 DISPLACEMENT = "displacement (mm)"
 
 

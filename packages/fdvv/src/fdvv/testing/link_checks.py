@@ -35,6 +35,8 @@ GRACE_ticks = 4
 SILENCE_s = 0.15
 """Beyond the host's timeout."""
 REVERSED_mm, DEEP_RATIO, LEAST_cN = 1.0, 0.9, 8.0
+"""Assumed, far from both cases: reversed, 4 mm read as -4; a sound press reaches the stop (conformance wants
+0.98 of the travel); half pressed, the table asks for 50 cN."""
 
 
 class Check(NamedTuple):

@@ -19,7 +19,7 @@ from fdvv.units import FloatArray, N_from_cN, m_from_mm
 FEWEST_FORCES = 8
 BUILT = ("elastic_N", "height_m", "rail_N", "friction_ratio")
 """Columns of a BuiltCam."""
-STEP_mm = 0.02
+STEP_mm = 0.02  # as Curve.step_m, which is left at its default
 
 
 @dataclass(frozen=True)

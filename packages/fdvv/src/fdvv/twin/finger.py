@@ -11,7 +11,7 @@ H_H = "Hajian & Howe 1997, recalled"
 P_H = "Pawluk & Howe 1999, values assumed"
 CLEARANCE_m = 2e-4
 """The stage begins this far above the cap, so that its gauge is seen to be free."""
-DWELL_s = 0.05
+DWELL_s = 0.05  # as PressVariability.dwell_s, assumed there
 
 
 @dataclass(frozen=True)

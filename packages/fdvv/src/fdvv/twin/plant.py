@@ -36,7 +36,7 @@ NEAR_1_s = 125.0
 """How fast a led finger nears what it is led to: 2 / NEAR_1_s = 16 ms behind a hand that moves evenly."""
 LIFTED_m = 2e-3
 """A finger that presses nothing waits so high above the cap."""
-KEPT_s = 60.0
+KEPT_s = 60.0  # assumed; bounds the memory of a plant that runs for hours, and is longer than any press
 
 
 class CursorInput(IntEnum):

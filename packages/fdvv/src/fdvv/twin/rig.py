@@ -15,7 +15,9 @@ from fdvv.twin.quantity import Section, choice, quantity, setting
 from fdvv.twin.rig_moves import Coil, Exciter, Mover, Servo, Stops
 
 PAPER_TRAVEL_m = 0.0064
-LONGEST_PULSE_us = 2600.0
+"""Deepest stop of the wire before its range was widened to 20 mm: up to it every plausible servo stays valid,
+even where the firmware would limit its pulse."""
+LONGEST_PULSE_us = 2600.0  # the firmware limits pulses to it (fdvv_clamp in firmware/core/core.c)
 
 
 @dataclass(frozen=True)

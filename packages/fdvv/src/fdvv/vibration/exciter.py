@@ -31,7 +31,7 @@ MODEL_ratio = 0.03
 FEWEST = 6
 EXCITER_SUFFIX = ".exciter.json"
 """How the name of a known exciter's file ends."""
-LIMIT_bytes = 100_000
+LIMIT_bytes = 100_000  # assumed; such a file has 400 bytes (tests/files/old)
 _REMEDY = "identify the exciter again"
 _KIND = Kind("fdvv-exciter", 1, "a known exciter", _REMEDY)
 

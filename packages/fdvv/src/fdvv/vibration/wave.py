@@ -23,7 +23,7 @@ COUNT_STEP = 16
 SILENCE_counts = 2048
 QUIET_s = 0.02
 """Silence before and after, so that no player cuts the onset off."""
-LARGEST_bytes = 20_000_000
+LARGEST_bytes = 20_000_000  # assumed; 3.5 minutes of 16 bits at 48 kHz, where a slot of the board lasts 4.1 s
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,7 +28,7 @@ LINE_WEIGHT = 0.4
 """Of each design of a line that was not chosen, in answers: all of them share the error of the best one."""
 NOISE = 0.3
 """SD of an answer's noise, parts of worth's own."""
-STEPS = 50
+STEPS = 50  # a bound, assumed: Newton's method, quadratic on a log-concave likelihood, ends at 1e-9
 Rows = np.ndarray[tuple[int], np.dtype[np.intp]]
 
 

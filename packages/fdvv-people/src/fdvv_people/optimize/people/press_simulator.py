@@ -37,7 +37,9 @@ AFTER_s = 0.02
 FIRST_ratio, PIECE_s = 0.55, 0.015
 """The cap is looked for at the stop after so much of the referent's stroke, then every so often."""
 SETTLE_s, HELD_s, SHORTEST_s = 0.05, 1.0, 0.01
-POOL_TICKS = 1 << 15
+"""For the finger to lie still on a rig at rest (assumed). A press is held for longer than it is recorded, so
+that no record holds its release. No stroke is shorter: 400 mm/s over KEY_mm (assumed)."""
+POOL_TICKS = 1 << 15  # 3.3 s at 10 kHz, tens of presses (assumed): fewer repeat noise, more fill memory
 
 
 @dataclass(frozen=True, eq=False)

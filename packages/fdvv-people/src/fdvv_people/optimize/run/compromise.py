@@ -16,7 +16,7 @@ from fdvv_people.optimize.run.setup import OptimizeSetup
 
 COMPROMISE_FILE = "compromise.json"
 KIND = Kind("fdvv-compromise", 1, "a chosen compromise", "delete the file; the run recommends one itself")
-LARGEST_bytes = 10_000
+LARGEST_bytes = 10_000  # it holds the number of a trial in under 100 bytes; what is larger is another file
 
 
 class Chosen(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-STEP_mm = 0.02
+STEP_mm = 0.02  # a clicky switch falls within 50 um (docs/explanation/library.md): a coarser step blunts it
 ACTUATION: Any = {"color": style.PALETTE[2], "linestyle": (0, (4, 2)), "linewidth": 1.4}
 VIBRATION: Any = {"color": style.PALETTE[1], "linestyle": (0, (1, 1.5)), "linewidth": 1.6}
 

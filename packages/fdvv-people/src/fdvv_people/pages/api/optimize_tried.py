@@ -11,8 +11,8 @@ from fdvv_people.optimize.run.session import Optimization
 from fdvv_people.task.score import Score
 from fdvv_studio.studio.contract import Message, message_of
 
-PICTURE_POINTS = 40
-DIGITS = 3
+PICTURE_POINTS = 40  # the page draws it 72 pixels wide (score_chart.ts)
+DIGITS = 3  # of cN, as `fdvv_studio.studio.rounding` has it: beyond any line's width
 
 
 class OptimizeCurve(Message):

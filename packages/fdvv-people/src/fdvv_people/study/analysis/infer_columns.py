@@ -40,7 +40,7 @@ RATINGS = ("rating", "score", "realism", "quality", "similarity", "likert", "mos
 """Headings of a rating where a row is one rating; another column of numbers is one if it is the only one."""
 
 EQUAL_WORDS = frozenset({"same", "tie", "tied", "neither", "both", "no difference", "no preference"})
-MOST_STIMULI = 12
+MOST_STIMULI = 12  # assumed: more words in a column are items rather than stimuli; --map says otherwise
 Rows = Sequence[Sequence[str]]
 
 

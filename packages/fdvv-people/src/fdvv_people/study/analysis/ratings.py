@@ -19,7 +19,7 @@ from fdvv_people.study.plan.plan import Claim
 MOST_CATEGORIES = 21
 """A slider to 100 is no list of categories."""
 
-FEWEST_PEOPLE = 3
+FEWEST_PEOPLE = 3  # the model has two spreads between people, and two people hardly show a spread
 
 
 def names_of(column: np.ndarray) -> tuple[str, ...]:

@@ -22,7 +22,7 @@ BUTTONS, PEOPLE, UNSEALED = "buttons", "people", "unsealed"
 PAGES_FILE = "pages.csv"
 SESSION_FILE, SCHEDULE_FILE, SEALED_FILE = "session.jsonl", "schedule.json", "sealed.jsonl"
 Record = TypeVar("Record")
-LARGEST_bytes = 64_000_000
+LARGEST_bytes = 64_000_000  # as of a model's file (`fdvv.model.file`), the largest that a study copies
 SMALLER = "name a smaller file"
 REMEDY = "take the study's folder from a backup, or declare a new study"
 FROZEN = Kind("fdvv-frozen", 2, "what is frozen of a study", REMEDY, oldest=1)

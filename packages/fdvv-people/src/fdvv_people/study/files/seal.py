@@ -26,8 +26,8 @@ ROOM_bytes = 8192
 """Data are padded to a multiple of it by default."""
 ALPHABET = "0123456789ABCDEFGHJKMNPQRSTVWXYZ"
 """Of codes: digits and letters that are not confused (Crockford's base 32)."""
-CODE_LETTERS = 12
-SHORTEST_PASSPHRASE = 12
+CODE_LETTERS = 12  # of 5 bits, 60 together: at CODE_COST a guess beyond any search; three groups of four
+SHORTEST_PASSPHRASE = 12  # assumed: four short words have as many; each guess costs PASSPHRASE_COST
 KEEPER = Kind(
     "fdvv-keeper", 1, "a keeper's file", "name the keeper.json that was made when the study was frozen"
 )

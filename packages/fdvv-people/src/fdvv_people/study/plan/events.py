@@ -21,7 +21,7 @@ from fdvv_people.study.plan.trial import EQUAL, StudyTrial, TrialAnswer
 Value = str | float | None
 """Of a question: the text of a choice in the study's first language, a number, free text, or nothing."""
 
-LONGEST_TEXT = 2000
+LONGEST_TEXT = 2000  # assumed: a page; an answer without a limit could fill the session's log
 CHOOSE = "answer it again"
 
 

@@ -26,7 +26,7 @@ STUDY_FILE = "study.toml"
 """Name of the file that declares a study, in its folder."""
 
 SUFFIX, TEMPLATES = ".toml", resources.files("fdvv_people.study").joinpath("templates")
-LONGEST_NAME = 60
+LONGEST_NAME = 60  # that of `fdvv_people.study.plan.plan.Name`: a longer name could not be read again
 NAME_LINE = re.compile(r'^name = "[^"]*"', re.MULTILINE)
 
 

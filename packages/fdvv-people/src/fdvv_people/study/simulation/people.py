@@ -14,7 +14,7 @@ from fdvv_people.study.simulation.perception import PerceivedDifference, Senses
 
 NOISE_JND = 1.0 / (math.sqrt(2.0) * 0.6744897501960817)
 """Spread of one percept: 1 JND is discriminated in 75 % of choices between two (Thurstone 1927)."""
-MOST_LAPSES = 0.5
+MOST_LAPSES = 0.5  # ten times what people show (Wichmann and Hill 2001); beyond, most answers are blind
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,8 @@ PACE_mm_s, PACE_SPREAD_ratio = 120.0, 0.12
 """Peak speed of the finger, and its spread between presses: people who follow a pace spread as much."""
 PIECE_s, LONGEST_s = 0.02, 2.0
 """How often the finger checks whether it has arrived, and when it gives up."""
-ARRIVED_ratio = 0.97
-UP_mm = 0.05
+ARRIVED_ratio = 0.97  # assumed: at 1 a cap that rests short of the stop takes LONGEST_s; less turns early
+UP_mm = 0.05  # below `press.TOP_mm`, where a press ends; at 0 a cap not quite up takes LONGEST_s (assumed)
 
 
 class SimulatedFingerRenderer(TwinLabels):

@@ -32,7 +32,7 @@ from fdvv_studio.live.press_subject import IDEAL_RIG, TABLES_RIG, PressSubject, 
 WORK_s = 0.05
 """Before the end of a switch, when its second half begins, which takes some milliseconds."""
 
-CLOCK_s = 1e-6
+CLOCK_s = 1e-6  # above the rounding of a clock's differences; at 0 a switch on time could take twice as long
 
 
 class StimulusRenderer(Protocol):

@@ -21,7 +21,7 @@ ON_THE_TABLE: tuple[ConditionKind, ...] = ("switch", "key")
 DESIGNED: tuple[ConditionKind, ...] = ("optimised", "random")
 KEYS: dict[str, str] = {"switch": "F13", "key": "Space"}
 """`KeyboardEvent.code` by kind, where the plan names none."""
-DAY_s = 86_400.0
+DAY_s = 86_400.0  # 24 h: gaps are counted from hour to hour, not by the calendar
 
 
 class Condition(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -20,7 +20,7 @@ from fdvv_people.study.files.layout import UNSEALED
 from fdvv_people.study.timing.plan import TimingPlan
 
 SCORES_FILE = "scores.csv"
-LARGEST_bytes = 64_000_000
+LARGEST_bytes = 64_000_000  # a row takes some 100 bytes: 600 trials each of 1000 people, a plan's most
 REMEDY = "unseal the study again"
 SIMULATED_HAND = "simulated"
 

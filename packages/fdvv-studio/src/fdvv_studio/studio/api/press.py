@@ -184,7 +184,7 @@ class PressRefused(Message, tag="refused"):
     reason: str
 
 
-PICTURE_POINTS = 60
+PICTURE_POINTS = 60  # or up to twice as many: the page draws them 84 pixels wide (Replay.svelte)
 
 
 def _trace_item(trace: PressTrace) -> TraceItem:

@@ -76,7 +76,7 @@ class PressFrame(Message, tag="frame"):
 
 ROW_s = 0.001
 """Between two rows of a frame."""
-DIGITS, FORCE_DIGITS = 4, 2
+DIGITS, FORCE_DIGITS = 4, 2  # 0.1 um, 0.1 ms (a tenth of ROW_s) and 0.01 cN: below a pixel
 
 
 def press_ready(subject: PressSubject) -> PressReady:

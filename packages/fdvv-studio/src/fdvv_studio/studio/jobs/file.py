@@ -33,6 +33,7 @@ REMEDY = "put the job's folder elsewhere, or begin the work anew"
 KIND = Kind("fdvv-job", 2, "a job", REMEDY, oldest=1)
 JOURNAL = JournalKind({"event": Any}, REMEDY)
 LARGEST_bytes, LARGEST_EVENTS_bytes = 1_000_000, 500_000_000
+"""An order takes some kB; that of the events is assumed. Bounds, as a project may come from somebody else."""
 COUNTED = ("run", "done", "total", "events")
 
 

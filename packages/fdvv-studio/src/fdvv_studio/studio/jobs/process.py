@@ -123,7 +123,7 @@ if __name__ == "__main__":
 
 
 ERRORS = "errors.txt"
-LARGEST_chars = 300
+LARGEST_chars = 300  # assumed: the last line of the errors becomes part of a line on the page
 
 
 class JobStart:

@@ -10,7 +10,7 @@ import click
 from fdvv.cli import ui
 from fdvv.cli.options import device_option, remote
 
-SPEAK_s = 1.0
+SPEAK_s = 1.0  # assumed: nobody reads a count faster
 
 
 @click.command()

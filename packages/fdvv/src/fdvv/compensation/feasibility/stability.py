@@ -21,7 +21,7 @@ from fdvv.units import FloatArray
 
 SHORTEST_s = 1e-5
 """Lower bound of lags: far below a tick, and avoids division by 0."""
-LEAST_kg = 5e-4
+LEAST_kg = 5e-4  # half the prior's least (RANGES: 1 g); below it an identification is assumed wrong
 PLACE, SPEED, COIL, SEEN, FINGER, FINGER_SPEED, ARM = range(7)
 
 

@@ -25,10 +25,10 @@ from fdvv.errors import ModelError
 from fdvv.protocol.tables import CellSpec, ForceLoopGains
 from fdvv.units import FloatArray, N_from_cN, m_from_mm
 
-LEAST_kg = 2e-3
-LEAST_s = 1e-5
-CONTACT_s = 1e-3
-LEAK_1_s = 2.0
+LEAST_kg = 2e-3  # assumed: a third of the 6 g in light.toml; above 0, as left() divides by it
+LEAST_s = 1e-5  # half the least of the prior (RANGES: 2e-5); above 0, as scaled_start divides by the age
+CONTACT_s = 1e-3  # assumed: ten ticks of 10 kHz, so that noise of the cell does not switch the correction
+LEAK_1_s = 2.0  # half a second, the pole of LoopController.on_force; assumed
 
 # Of the estimator: force noise per tick, and the walk of the force that the model does not know.
 FORCE_NOISE_N, STOP_NOISE_N = 0.05, 0.5
@@ -147,8 +147,8 @@ BACK_OFF_ratio = 0.85
 FARTHEST, FARTHEST_UP = 3.4, np.array([3.4, 3.4, 3.4, 3.4, 0.7, 3.4])
 """From the start, as a logarithm: a gain of a million behind a low pass of a millihertz is an integral. More
 damping than twice the start's pays in the margins of a perfect velocity; that of the estimate has noise."""
-ROUNDS = 40
-CALLS = 160
+ROUNDS = 40  # 0.85^40 leaves 0.15 % of the gains: no stable gain then
+CALLS = 160  # assumed; a design of six gains then takes 2 to 6 s (docs: force-loop.md)
 
 
 def scaled_start(plant: LoopPlant) -> LoopController:

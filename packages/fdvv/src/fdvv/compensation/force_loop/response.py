@@ -37,7 +37,7 @@ DOUBT, DOUBT_Hz = 0.3, 600.0
 """The inverse is not trusted where fingers differ, and less with the square of frequency."""
 LONGEST_s = 0.025
 """Of the inverse's answer to an impulse, to both sides."""
-LOWEST_Hz = 0.5
+LOWEST_Hz = 0.5  # in place of 0, by which left_N divides; below the transform's steps for strokes under 0.9 s
 
 
 def pressing_fingers() -> tuple[HeldFinger, ...]:

@@ -59,7 +59,7 @@ ROUNDS = 5
 """Windows and their weights depend on the parameters; they are recomputed at most this often."""
 SETTLED_ratio = 0.02
 """Of the prior's spread."""
-RESIDUAL_s = 8e-3
+RESIDUAL_s = 8e-3  # assumed: a little over a window's 6 ms, within which neighbours share noise
 
 
 def identify(presses: Sequence[Press], travel_mm: float, prior: Prior | None = None) -> RigModel:

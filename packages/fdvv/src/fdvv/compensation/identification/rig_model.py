@@ -193,7 +193,7 @@ RANGES: Mapping[str, Plausible] = {
     "electric_lag_s": Plausible(5e-4, 4e-4, 2e-5, 4e-3),
 }
 """Priors for voice coils of CLASS_N at full duty with their transformers and bushings."""
-CLASS_N = (5.0, 35.0)
+CLASS_N = (5.0, 35.0)  # movers of 22 +- 8 g, friction of 4 +- 3 cN (docs: files.md); its ends are assumed
 SIZED = ("viscous_N_s_m", "back_emf_N_s_m", "friction_cN", "weight_cN", "mass_g", "stick_cN")
 
 

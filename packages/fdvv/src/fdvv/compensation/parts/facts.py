@@ -11,7 +11,7 @@ from fdvv.units import FloatArray
 
 STEP_s, SMOOTH_s = 1e-3, 6e-3
 """Ticks are averaged to the one; rates and forces are then averaged over the other, all alike."""
-FEWEST_ticks = 20
+FEWEST_ticks = 20  # assumed: three spans of SMOOTH_s at 1 kHz; fewer show nothing of a press
 
 
 @dataclass(frozen=True, eq=False)

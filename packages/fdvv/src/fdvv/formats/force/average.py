@@ -30,12 +30,12 @@ from fdvv.model.bump import first_loaded
 from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.units import FloatArray, GRAM_FORCE_cN
 
-PLACE_mm = 0.05
+PLACE_mm = 0.05  # repeats agree to 0.02 mm; more than bump.RESOLUTION_mm would smear a bump in the mean
 FORCE_LEAST_cN = 1.0 * GRAM_FORCE_cN
-FORCE_PART = 0.02
-GAP_mm = 0.5
-STEP_mm = 0.005
-TRAVEL_PART = 0.9
+FORCE_PART = 0.02  # assumed; counts above a typical force of 49 cN, below it 1 gf is the larger
+GAP_mm = 0.5  # as repair.JUMP_mm, from which on samples are reported missing
+STEP_mm = 0.005  # a tenth of bump.RESOLUTION_mm; in a mean the own step of coarser files counts
+TRAVEL_PART = 0.9  # assumed; a mean covers what is common to all, so a tenth at most is lost
 
 
 @dataclass(frozen=True, eq=False)

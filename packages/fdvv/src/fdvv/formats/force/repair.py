@@ -26,8 +26,8 @@ RESTED, FELL_cN = 10, 12.0
 zero was right while the button was pressed."""
 LOST_TARE_ratio = 0.3
 """Of the greatest force; at most 0.17 was seen. More is no tare, and stays for the gates."""
-AIR_cN = 2.0
-SLIP_mm = 0.25
+AIR_cN = 2.0  # assumed; a fifth of LOADED_cN, the force of contact
+SLIP_mm = 0.25  # assumed; below the 0.48 mm by which a real file slips (tests/formats/test_shared_data.py)
 
 
 def where_x(track: Track, first: int, last: int) -> str:

@@ -22,7 +22,7 @@ LARGEST = 1e12
 """No column of a bench holds more, in any unit; what is larger is a fault and would overflow."""
 LEAST_SAMPLES = 4
 """Fewer samples than coefficients of a cubic are not a curve."""
-OTHER_ratio = 0.1
+OTHER_ratio = 0.1  # assumed; fewer are rows cut short, which are left out singly
 NO_VALUE = {"nan", "inf", "-inf", "na", "n/a", "#n/a", "null", "none"}
 REMEDY = "give a file of force and displacement"
 

@@ -29,8 +29,8 @@ PLACE_mm = 0.1
 """Spread of where its zero lies off the cap's rest."""
 APART_s = 4.0
 """A take begins this much after the one before it, give or take 0.2 s."""
-REST_s = 1.0
-PROBE_mm_s = 0.5
+REST_s = 1.0  # as fdvv.bench.plan.REST_s: a take of the untouched bench
+PROBE_mm_s = 0.5  # as fdvv.bench.plan.PROBE_mm_s: the speed of force testers
 
 
 def record_probe(
