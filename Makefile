@@ -34,12 +34,13 @@ packages/fdvv/src/fdvv/_native/$(LIBRARY): $(VENV)/.ready $(NATIVE) protocol/fdv
 demo: setup ## Fit, compensate on the simulated rig and write demo/report.html
 	$(BIN)/fdvv demo --output demo
 
-check: setup ## Format, lint, types, words, layers and the budget
+check: setup ## Format, lint, types, words, reasons, layers and the budget
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/python -m tools.check_words
 	$(BIN)/python -m tools.check_sentences
+	$(BIN)/python -m tools.check_reasons
 	$(BIN)/lint-imports --no-logo || { echo 'An import points up. Move the shared record down, or pass in a callable: see ARCHITECTURE.md.' >&2; exit 1; }
 	$(BIN)/python -m tools.check_budget
 
