@@ -7,7 +7,6 @@ import random
 import signal
 import subprocess
 import sys
-import time
 from functools import cache
 from pathlib import Path
 
@@ -21,16 +20,11 @@ from fdvv_people.optimize.run.session import Optimization
 from fdvv_people.optimize.run.setup import OptimizeSetup
 from fdvv_people.optimize.space import Design
 from fdvv_people.task.score import Objective, Score
+from tests.hatchery import Hatchery, fork_and_kill
 from tests.support.campaign import campaign
 
-HATCHERY = """
-import sys
-from tests.optimize.test_optimize_killed import hatch
-hatch(sys.argv[1])
-"""
 BUDGET = 100_000
 """More than a run makes in all its lives, on any machine: what it must read grows with what it made."""
-ROOT = Path(__file__).resolve().parents[4]
 
 
 def score(number: int, design: Design) -> Score:
@@ -73,69 +67,21 @@ def undisturbed(engine: str, seed: int, count: int) -> tuple[Trial, ...]:
 
 
 def hatch(engine: str) -> None:
-    """Fork a process for every folder and delay that is asked, kill it, and tell what it had acknowledged.
-
-    All imports are done before, so that a kill costs milliseconds and falls into the work of a run.
-    """
+    """Let an engine suggest once, then fork runs of it and kill them."""
     warm = engine_of(engine)
     case = Problem(paper_space(), (Objective("asynchrony_ms"),))
     designs = engine_of("sobol").suggest(case, [], 12)
     done = {"asynchrony_ms": score(0, designs[0])}
     warm.suggest(case, [Trial(i, design, TrialState.DONE, done) for i, design in enumerate(designs)])
-    tell("ready")
-    for line in sys.stdin:
-        folder, after_s = line.rstrip("\n").split("\t")
-        output, into = os.pipe()
-        child = os.fork()
-        if child == 0:
-            acknowledge(Path(folder), into)
-        os.close(into)
-        time.sleep(float(after_s))
-        os.kill(child, signal.SIGKILL)
-        _, status = os.waitpid(child, 0)
-        assert os.WTERMSIG(status) == signal.SIGKILL
-        with os.fdopen(output) as stream:
-            tell(" ".join(stream.read().split("\n")[:-1]))
+    fork_and_kill(acknowledge)
 
 
-def tell(line: str) -> None:
-    sys.stdout.write(f"{line}\n")
-    sys.stdout.flush()
-
-
-def acknowledge(folder: Path, into: int) -> None:
+def acknowledge(folder: str, into: int) -> None:
     """Go on with a run and tell every finished trial, until somebody kills this process."""
-    with Optimization.open(folder) as session:
+    with Optimization.open(Path(folder)) as session:
         for trial in go_on(session):
             os.write(into, f"{trial.number}:{trial.scores['asynchrony_ms'].value!r}\n".encode())
     signal.pause()
-
-
-class Hatchery:
-    """A process that starts runs and kills them."""
-
-    def __init__(self, engine: str) -> None:
-        command = [sys.executable, "-c", HATCHERY, engine]
-        self.process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT
-        )
-        assert self._line() == "ready"
-
-    def _line(self) -> str:
-        assert self.process.stdout is not None
-        return self.process.stdout.readline().rstrip("\n")
-
-    def killed(self, folder: Path, after_s: float) -> dict[int, float]:
-        """Kill a run after a while; return the trials that it acknowledged as finished."""
-        assert self.process.stdin is not None
-        self.process.stdin.write(f"{folder}\t{after_s!r}\n")
-        self.process.stdin.flush()
-        pairs = (pair.split(":") for pair in self._line().split())
-        return {int(number): float(value) for number, value in pairs}
-
-    def close(self) -> None:
-        self.process.communicate(timeout=30)
-        assert self.process.returncode == 0
 
 
 def check_kills(folder: Path, engine: str, seed: int, kills: int, longest_s: float) -> None:
@@ -143,9 +89,10 @@ def check_kills(folder: Path, engine: str, seed: int, kills: int, longest_s: flo
     rng = random.Random(seed)
     Optimization.create(folder, setup_of(engine, seed)).close()
     acknowledged: dict[int, float] = {}
-    hatchery = Hatchery(engine)
+    hatchery = Hatchery("tests.optimize.test_optimize_killed", engine)
     for _ in range(kills):
-        acknowledged |= hatchery.killed(folder, rng.uniform(0.0, longest_s))
+        pairs = (line.split(":") for line in hatchery.killed(folder, after_s=rng.uniform(0.0, longest_s)))
+        acknowledged |= {int(number): float(value) for number, value in pairs}
         with Optimization.open(folder) as session:
             trials = session.trials
         for number, value in acknowledged.items():

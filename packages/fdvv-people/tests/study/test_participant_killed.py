@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import os
 import random
-import signal
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping
@@ -21,6 +18,7 @@ from fdvv_people.study.plan.plan import Stimulus
 from fdvv_people.study.plan.sitting import ENDS, Step
 from fdvv_people.study.plan.trial import TrialAnswer
 from fdvv_people.study.session.participant import Participant
+from tests.hatchery import Hatchery, fork_and_kill
 from tests.support.campaign import campaign, in_turn
 from tests.support.studies import attended
 from tests.support.study_people import (
@@ -36,11 +34,6 @@ from tests.support.study_people import (
 )
 from tests.support.study_witness import Witness, check_labels
 
-HATCHERY = """
-from tests.study.test_participant_killed import hatch
-hatch()
-"""
-ROOT = Path(__file__).resolve().parents[4]
 FASTER = 60.0
 """The clock of these sessions: a break of three seconds takes a twentieth of one."""
 
@@ -50,28 +43,14 @@ def quick_clock() -> float:
 
 
 def hatch() -> None:
-    """Fork a process for every line, kill it, and tell what it had acknowledged.
+    """Fork lives and kill them.
 
-    It is killed so long after it acknowledged so many things. All imports are done before. Nothing is forced
-    to the disk: a process that is killed takes nothing with it that the system has, only a power cut does.
+    Nothing is forced to the disk: a process that is killed takes nothing with it that the system has, only a
+    power cut does.
     """
     os.fsync = lambda fd: None
     warm_up()
-    tell("ready")
-    for line in sys.stdin:
-        folder, person, code, after, after_s = line.rstrip("\n").split("\t")
-        output, into = os.pipe()
-        child = os.fork()
-        if child == 0:
-            live(attended(Path(folder), PASSPHRASE), person, code, into)
-        os.close(into)
-        with os.fdopen(output) as stream:
-            said = "".join(stream.readline() for _ in range(int(after)))
-            time.sleep(float(after_s))
-            os.kill(child, signal.SIGKILL)
-            _, status = os.waitpid(child, 0)
-            assert os.WTERMSIG(status) == signal.SIGKILL
-            tell("\t".join((said + stream.read()).split("\n")[:-1]))
+    fork_and_kill(live)
 
 
 def warm_up() -> None:
@@ -81,13 +60,9 @@ def warm_up() -> None:
         one.close()
 
 
-def tell(line: str) -> None:
-    sys.stdout.write(f"{line}\n")
-    sys.stdout.flush()
-
-
-def live(study: Study, person: str, code: str, into: int) -> None:
+def live(folder: str, person: str, code: str, into: int) -> None:
     """Go on with a session, then with further ones, and acknowledge each thing, until somebody kills it."""
+    study = attended(Path(folder), PASSPHRASE)
 
     def say(*words: object) -> None:
         os.write(into, (" ".join(map(str, words)) + "\n").encode())
@@ -117,41 +92,15 @@ def step_name(step: Step[TrialFace]) -> tuple[str, str]:
     return step.kind, step.page or str(step.number)
 
 
-class Hatchery:
-    """A process that starts sessions and kills them."""
-
-    def __init__(self) -> None:
-        command = [sys.executable, "-c", HATCHERY]
-        self.process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT
-        )
-        assert self._line() == "ready"
-
-    def _line(self) -> str:
-        assert self.process.stdout is not None
-        return self.process.stdout.readline().rstrip("\n")
-
-    def killed(self, folder: Path, person: str, code: str, after: int, after_s: float) -> list[list[str]]:
-        """Kill a session so long after so many acknowledgements; return all of them."""
-        assert self.process.stdin is not None
-        self.process.stdin.write(f"{folder}\t{person}\t{code}\t{after}\t{after_s!r}\n")
-        self.process.stdin.flush()
-        return [words.split() for words in self._line().split("\t") if words]
-
-    def close(self) -> None:
-        self.process.communicate(timeout=30)
-        assert self.process.returncode == 0
-
-
 def check_kills(folder: Path, kills: int, seed: int, rounds: int) -> Witness:
     """Kill sessions again and again, and hold what they acknowledged against what is kept."""
     study = frozen_study(folder, tables=CONSENT, rounds=rounds, break_every_min=0.2, break_min=0.05)
-    rng, witness, hatchery = random.Random(seed), Witness(study), Hatchery()
+    rng, witness = random.Random(seed), Witness(study)
+    hatchery = Hatchery("tests.study.test_participant_killed")
     for _ in range(kills):
-        moment = (rng.randint(0, 20), rng.uniform(0.0, 0.03))
-        messages = hatchery.killed(folder, witness.person, witness.code, *moment)
-        for words in messages:
-            witness.hear(words)
+        after, after_s = rng.randint(0, 20), rng.uniform(0.0, 0.03)
+        for line in hatchery.killed(folder, witness.person, witness.code, after=after, after_s=after_s):
+            witness.hear(line.split())
         if witness.person:
             witness.check()
     hatchery.close()

@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 import random
 import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -18,14 +16,10 @@ from fdvv_people.study.timing.events import RoundKept
 from fdvv_people.study.timing.participant import TimingParticipant
 from fdvv_people.study.timing.plan import DAY_s
 from fdvv_people.study.timing.state import TimingState
+from tests.hatchery import Hatchery, fork_and_kill
 from tests.support.studies import PASSPHRASE
 from tests.support.timing import SMALL, TIMING, Clock, attended, do_step, frozen, late_s
 
-HATCHERY = """
-from tests.study.timing.test_participant_killed import hatch
-hatch()
-"""
-ROOT = Path(__file__).resolve().parents[5]
 BIG = SMALL.replace("presses = 3", "presses = 20").replace("trials = 2", "trials = 6")
 WEEK_LATER = 30 * DAY_s
 
@@ -41,39 +35,17 @@ class LongClock(Clock):
 
 
 def hatch() -> None:
-    """Fork a process for every line, kill it, and tell what it had acknowledged.
-
-    It is killed so long after it acknowledged so many presses. All imports are done before.
-    """
+    """Fork lives and kill them."""
     import sklearn.gaussian_process  # noqa: F401
 
-    tell("ready")
-    for line in sys.stdin:
-        folder, person, code, after, after_s = line.rstrip("\n").split("\t")
-        output, into = os.pipe()
-        child = os.fork()
-        if child == 0:
-            live(Path(folder), person, code, into)
-        os.close(into)
-        with os.fdopen(output) as stream:
-            said = "".join(stream.readline() for _ in range(int(after)))
-            time.sleep(float(after_s))
-            os.kill(child, signal.SIGKILL)
-            _, status = os.waitpid(child, 0)
-            assert os.WTERMSIG(status) == signal.SIGKILL
-            tell("\t".join((said + stream.read()).split("\n")[:-1]))
+    fork_and_kill(live)
 
 
-def tell(line: str) -> None:
-    sys.stdout.write(f"{line}\n")
-    sys.stdout.flush()
-
-
-def live(folder: Path, person: str, code: str, into: int) -> None:
+def live(folder: str, person: str, code: str, into: int) -> None:
     """Go on with a session, tell every press that is kept, and wait to be killed."""
     os.fsync = lambda fd: None
     clock = LongClock()
-    with TimingParticipant.resume(attended(folder), person, code, clock=clock) as one:
+    with TimingParticipant.resume(attended(Path(folder)), person, code, clock=clock) as one:
         while (step := one.step()).kind not in ENDS:
             if step.kind == "wait":
                 clock.ahead_s = WEEK_LATER
@@ -88,32 +60,6 @@ def live(folder: Path, person: str, code: str, into: int) -> None:
     os.write(into, b"done\n")
     os.close(into)
     signal.pause()
-
-
-class Hatchery:
-    """A process that starts lives and ends them."""
-
-    def __init__(self) -> None:
-        command = [sys.executable, "-c", HATCHERY]
-        self.process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT
-        )
-        assert self._line() == "ready"
-
-    def _line(self) -> str:
-        assert self.process.stdout is not None
-        return self.process.stdout.readline().rstrip("\n")
-
-    def killed(self, folder: Path, person: str, code: str, after: int, after_s: float) -> list[str]:
-        """Kill a life after so many presses and so long; return what it acknowledged."""
-        assert self.process.stdin is not None
-        self.process.stdin.write(f"{folder}\t{person}\t{code}\t{after}\t{after_s!r}\n")
-        self.process.stdin.flush()
-        return [line for line in self._line().split("\t") if line]
-
-    def close(self) -> None:
-        self.process.communicate(timeout=30)
-        assert self.process.returncode == 0
 
 
 def kept_rounds(folder: Path, person: str) -> dict[tuple[int, int], float]:
@@ -131,10 +77,12 @@ def check_kills(folder: Path, seed: int, longest_s: float, most: int) -> int:
     study = frozen(folder, BIG)
     one, code = TimingParticipant.enrol(study)
     one.close()
-    hatchery, acknowledged, lives = Hatchery(), dict[tuple[int, int], float](), 0
+    hatchery = Hatchery("tests.study.timing.test_participant_killed")
+    acknowledged, lives = dict[tuple[int, int], float](), 0
     while True:
         lives += 1
-        said = hatchery.killed(folder, one.person, code, rng.randrange(most), rng.uniform(0.0, longest_s))
+        after, after_s = rng.randrange(most), rng.uniform(0.0, longest_s)
+        said = hatchery.killed(folder, one.person, code, after=after, after_s=after_s)
         for line in said:
             if line != "done":
                 number, round_, key_s = line.split()
