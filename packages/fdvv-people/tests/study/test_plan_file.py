@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from fdvv.errors import InputError
 from fdvv.model.file import load_model
-from fdvv_people.study.plan.plan_check import plan_problems
 from fdvv_people.study.plan.plan_file import (
     check_plan,
     read_plan_text,
@@ -29,14 +28,6 @@ title.en = "Small"
 name = "Red"
 stimuli = [{ name = "one", button = "mx-red" }, { name = "two", button = "mx-brown" }]
 """
-
-
-@pytest.mark.parametrize("name", template_names())
-def test_a_shipped_study_is_read_has_no_problem_and_is_of_its_kind(name: str) -> None:
-    plan = read_plan_text(template_text(name), name)
-    assert plan.kind == name
-    assert plan_problems(plan) == ()
-    check_plan(plan, name)
 
 
 def test_the_shipped_realism_study_is_the_papers() -> None:

@@ -216,11 +216,6 @@ def test_a_wrong_code_opens_nothing(frozen: Study) -> None:
         frozen.schedule("P99", code)
 
 
-def test_a_language_that_the_study_lacks_is_refused(frozen: Study) -> None:
-    with pytest.raises(InputError, match="is not one of the study"):
-        frozen.enrol("tlh", cost=CHEAP)
-
-
 def test_people_and_simulated_ones_do_not_mix(tmp_path: Path) -> None:
     study = small_study(tmp_path)
     study.enrol(simulated=True, cost=CHEAP)
@@ -297,12 +292,6 @@ def test_the_keepers_file_of_another_study_is_refused(tmp_path: Path, frozen: St
     assert isinstance(frozen.key_holder(PASSPHRASE), KeyHolder)
 
 
-def test_a_study_without_its_plan_is_none(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="holds no study"):
-        Study.open(tmp_path)
-    assert not list(tmp_path.iterdir())
-
-
 def test_a_built_in_button_that_another_version_ships_is_noticed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -365,19 +354,6 @@ def test_a_schedule_that_a_code_alone_opens_is_noticed_and_not_run(tmp_path: Pat
     assert study.verify()[0].startswith(problem)
     with pytest.raises(InputError, match="by a code alone"):
         study.schedule(person, code)
-
-
-def test_without_the_run_key_nobody_begins_and_opening_is_on_record(tmp_path: Path) -> None:
-    study = Study.open(small_study(tmp_path).folder)
-    assert not study.sessions_open
-    with pytest.raises(InputError, match="sessions are not open"):
-        study.enrol(cost=CHEAP)
-    assert not (study.folder / "people").exists()
-    study.open_sessions(PASSPHRASE)
-    assert study.history()[-1].keys() == {"opened"}
-    person, code = study.enrol(cost=CHEAP)
-    assert study.schedule(person, code).person == person
-    assert PASSPHRASE not in repr(study.run_key)
 
 
 def test_the_run_key_of_another_study_opens_nothing(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fdvv.errors import InputError, ModelError
+from fdvv.errors import ModelError
 from fdvv.model.model import FDVVModel
 from fdvv_people.study.files.chained_log import read_chained
 from fdvv_people.study.timing.events import RoundKept
@@ -18,8 +18,6 @@ from tests.support.timing import (
     SMALL,
     TIMING,
     Clock,
-    START_s,
-    attended,
     do_all,
     do_step,
     frozen,
@@ -180,12 +178,6 @@ def test_nobody_but_the_key_holder_learns_what_a_code_hides(tmp_path: Path) -> N
     assert not any(name in said for name in (b"optimised", b"MX Red", b"mx-red"))
 
 
-def test_who_does_not_agree_is_out_and_nothing_is_kept(tmp_path: Path) -> None:
-    one, _, _ = begun(tmp_path)
-    assert one.answer_page("consent", {}, agreed=False).kind == "declined"
-    assert not (one.study.folder / "people" / one.person).exists()
-
-
 def test_a_round_that_is_not_the_next_one_is_refused(tmp_path: Path) -> None:
     one, _, clock = begun(tmp_path)
     with one:
@@ -196,30 +188,3 @@ def test_a_round_that_is_not_the_next_one_is_refused(tmp_path: Path) -> None:
             one.begin(1, "page")
         with pytest.raises(ModelError):
             press(one, 0, 1)
-
-
-def test_without_the_run_key_nobody_comes_back(tmp_path: Path) -> None:
-    one, code, clock = begun(tmp_path)
-    one.close()
-    closed = type(one.study).open(one.study.folder)
-    with pytest.raises(InputError, match="sessions are not open"):
-        TimingParticipant.resume(closed, one.person, code, clock=clock)
-    TimingParticipant.resume(attended(one.study.folder), one.person, code, clock=clock).close()
-
-
-def test_breaks_come_between_trials(tmp_path: Path) -> None:
-    one, _, clock = begun(
-        tmp_path, SMALL.replace("break_every_min = 0", "break_every_min = 1\nbreak_min = 2")
-    )
-    with one:
-        do_step(one, one.step(), clock)
-        one.begin(0, "page")
-        clock.now_s += 61.0
-        for round_ in (1, 2, 3):
-            press(one, 0, round_)
-        assert (one.step().kind, one.step().left_s) == ("break", 120.0)
-        with pytest.raises(ModelError, match="not over"):
-            one.end_break()
-        clock.now_s += 120.0
-        assert one.end_break().kind == "trial"
-    assert clock() == START_s + 181.0

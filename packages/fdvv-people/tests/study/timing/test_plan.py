@@ -9,8 +9,6 @@ import pytest
 
 from fdvv.errors import InputError
 from fdvv_people.study.admin.study import Study
-from fdvv_people.study.kind import kind_of
-from fdvv_people.study.labels import KIND as LABELS
 from fdvv_people.study.plan.plan_file import write_template
 from fdvv_people.study.timing.kind import KIND
 from fdvv_people.study.timing.plan import Condition, TimingClaim, TimingPlan
@@ -20,15 +18,6 @@ from tests.support.timing import SMALL, declared
 PLAN = KIND.read_plan(SMALL, "small")
 
 
-@pytest.mark.parametrize("name", KIND.templates)
-def test_a_shipped_study_can_be_run_as_it_is(tmp_path: Path, name: str) -> None:
-    path = write_template(name, tmp_path / "mine", "mine")
-    study = Study.open(path.parent)
-    assert plan_problems(study.plan) == ()
-    assert (study.plan.name, study.plan.kind) == ("mine", name)
-    assert kind_of(path) is kind_of(path.parent) is study.kind is KIND
-
-
 def test_the_shipped_timing_study_is_the_papers(tmp_path: Path) -> None:
     plan = Study.open(write_template("timing", tmp_path / "s").parent).plan
     assert plan.training is not None
@@ -36,11 +25,6 @@ def test_the_shipped_timing_study_is_the_papers(tmp_path: Path) -> None:
     assert [one.kind for one in plan.conditions] == ["optimised", *["button"] * 4, "random"]
     # 10 people gave the paper's 240 observations of mean asynchrony
     assert 10 * (plan.trials - plan.training_trials) == 240
-
-
-def test_a_study_that_asks_is_no_timing_study(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text('format = "fdvv-study"\n')
-    assert kind_of(tmp_path) is kind_of(tmp_path / "none") is LABELS
 
 
 def test_an_unknown_field_is_refused_with_the_nearest_one() -> None:

@@ -37,10 +37,3 @@ def test_a_person_is_in_training_waits_is_due_overdue_and_done(tmp_path: Path) -
         assert (found.phase, found.reminder) == ("validation", "")
         list(do_all(again, clock))
     assert seen(one, clock).phase == "done"
-
-
-def test_who_withdrew_is_out(tmp_path: Path) -> None:
-    clock = Clock()
-    one, _ = TimingParticipant.enrol(frozen(tmp_path / "study"), clock=clock)
-    one.withdraw(delete=True)
-    assert seen(one, clock).phase == "out"
