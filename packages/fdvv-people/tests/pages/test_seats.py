@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Iterator
-from functools import partialmethod
 from pathlib import Path
 from typing import Any
 
@@ -13,22 +12,15 @@ from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from fdvv_people.pages.studies import Studies
-from fdvv_people.study.admin.study import Study
 from fdvv_studio.studio.parts import load_parts
 from fdvv_studio.studio.seats import Seats
 from fdvv_studio.studio.server import address_of, create_app
 from fdvv_studio.studio.studio import Studio
-from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE, frozen_study, plan_text
-from tests.pages.test_study import Screen
+from tests.browser.study_screens import NAME, PASSPHRASE, frozen_study, plan_text
+from tests.pages.screens import Page
 from tests.studio.conftest import HOST, LIVE, ORIGIN, PORT, TOKEN
 
 CALLS = sorted(load_parts().calls)
-
-
-@pytest.fixture(autouse=True)
-def _in_haste(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("os.fsync", lambda _file: None)
-    monkeypatch.setattr(Study, "enrol", partialmethod(Study.enrol, cost=CHEAP))
 
 
 @pytest.fixture
@@ -109,7 +101,7 @@ def test_a_seat_in_the_address_confines_the_operators_own_browser_too(word: str,
 def asked(client: TestClient, word: str, kind: str, **question: Any) -> dict[str, Any]:
     """Ask on the channel of a seat; return the first answer."""
     with client.websocket_connect(f"{LIVE}?seat={word}") as socket:
-        screen = Screen(socket)
+        screen = Page(socket)
         screen.say(kind, **question)
         return screen.hear({"look": "about", "sit": "card", "resume": "card"}[kind])
 

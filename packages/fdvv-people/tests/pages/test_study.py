@@ -8,11 +8,10 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from functools import partialmethod
 from typing import Any
 
 import pytest
-from starlette.testclient import TestClient, WebSocketTestSession
+from starlette.testclient import TestClient
 
 from fdvv.errors import InputError
 from fdvv_people.pages.api.study import StudyScreen
@@ -20,45 +19,15 @@ from fdvv_people.pages.participant.messages import StudyResume
 from fdvv_people.pages.studies import DEVICE_SUFFIX, Studies
 from fdvv_people.study.admin.study import Study
 from fdvv_studio.studio.studio import Studio
-from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE, frozen_study, names_in, plan_text
+from tests.browser.study_screens import NAME, PASSPHRASE, frozen_study, names_in, plan_text
+from tests.pages.screens import Page
 from tests.studio.conftest import LIVE
 
 SAME = ("about", "card", "step", "ready", "felt", "broke", "paused", "stopped", "error")
 
 
-class Screen:
-    """One page on the participant's channel. heard : all of it but frames."""
-
-    def __init__(self, socket: WebSocketTestSession) -> None:
-        self._socket, self.holder = socket, secrets.token_hex(8)
-        self.heard: list[dict[str, Any]] = []
-
-    def say(self, kind: str, **more: Any) -> None:
-        """Send an ask."""
-        self._socket.send_json({"channel": "study", "body": {"type": kind, **more}})
-
-    def hear(self, kind: str) -> dict[str, Any]:
-        """Return the next message of a kind, or the first error."""
-        while True:
-            envelope = self._socket.receive_json()
-            body = {"type": "error", **envelope} if "error" in envelope else envelope["body"]
-            if body["type"] != "frame":
-                self.heard.append(body)
-            if body["type"] in (kind, "error"):
-                return dict(body)
-
-    def sit(self, seat: str) -> dict[str, Any]:
-        """Sit down; return the card."""
-        self.say("sit", study=NAME, seat=seat, holder=self.holder, language="en")
-        card = self.hear("card")
-        self.step = self.hear("step")
-        return card
-
-    def resume(self, card: dict[str, Any]) -> dict[str, Any]:
-        """Go on with a card; return the step, or the error."""
-        self.say("resume", study=NAME, person=card["person"], code=card["code"])
-        self.step = self.hear("step")
-        return self.step
+class Screen(Page):
+    """A page on which labels are felt and answered."""
 
     def feel(self, label: str) -> dict[str, Any]:
         """Have a label under the hand; return what is sent about it."""
@@ -75,16 +44,7 @@ class Screen:
         task = self.step["task"]
         ratings = {"realism": dict.fromkeys(task["rated"], 4)}
         self.say("answer", **{"number": task["number"], "choice": choice, "ratings": ratings, **more})
-        found = self.hear("step")
-        self.step = found if found["type"] == "step" else self.step
-        return found
-
-
-@pytest.fixture(autouse=True)
-def _in_haste(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Codes of these tests need not be slow to guess, nor their answers outlive a power cut."""
-    monkeypatch.setattr("os.fsync", lambda _file: None)
-    monkeypatch.setattr(Study, "enrol", partialmethod(Study.enrol, cost=CHEAP))
+        return self.hear("step")
 
 
 @pytest.fixture
@@ -93,18 +53,6 @@ def study(own_studio: Studio) -> Study:
     study = frozen_study(own_studio.project, plan_text(2, 2, reference=True, switch_s=0.0))
     own_studio.part(Studies).open_sessions(NAME, PASSPHRASE, None)
     return study
-
-
-@pytest.fixture
-def ask(client: TestClient) -> Callable[..., Any]:
-    """Ask as the operator, and return the answer."""
-
-    def answer(name: str, /, **question: Any) -> Any:
-        found = client.post(f"/api/studies.{name}", json={"study": NAME, **question}).json()
-        assert "error" not in found, found
-        return found
-
-    return answer
 
 
 def where(ask: Callable[..., Any]) -> dict[str, Any]:
@@ -253,7 +201,7 @@ def test_a_pause_outlives_the_studio_and_is_on_record(
         screen.say("resume", study=NAME, person=card["person"], code=card["code"])
         assert screen.hear("paused")["on"]
         ask("open", passphrase=PASSPHRASE)
-        screen.step = screen.hear("step")
+        screen.hear("step")
         assert {"type": "paused", "on": True} in screen.heard
         screen.show()
         assert "pauses" in screen.answer()["error"]
@@ -335,7 +283,7 @@ def test_a_button_that_breaks_is_set_up_anew_and_the_trial_goes_on(
             message = screen.hear("broke")
         assert message == {"type": "broke"}
         screen.say("again")
-        screen.step = screen.hear("step")
+        screen.hear("step")
         assert screen.step["task"]["number"] == 0
         screen.show()
         assert screen.feel("A")["label"] == "A"

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import secrets
 import time
 from collections.abc import Callable, Iterator
-from functools import partialmethod
 from typing import Any
 
 import numpy as np
 import pytest
-from starlette.testclient import TestClient, WebSocketTestSession
+from starlette.testclient import TestClient
 
 from fdvv_people.pages.studies import Studies
 from fdvv_people.study.admin.study import Study
 from fdvv_studio.studio.studio import Studio
-from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE
+from tests.browser.study_screens import NAME, PASSPHRASE
 from tests.browser.timing_screens import frozen_timing, recorded, timing_text
+from tests.pages.screens import Page
 from tests.studio.conftest import LIVE
 from tests.support.pressed_rig import KeyedRig
 
@@ -24,39 +23,10 @@ PRESSES = 2
 DISPLAY_ms, INPUT_ms = 30.0, 10.0
 
 
-class Screen:
-    """One page on the participant's channel."""
+class Screen(Page):
+    """A page on which presses are timed."""
 
-    def __init__(self, socket: WebSocketTestSession) -> None:
-        self._socket, self.holder = socket, secrets.token_hex(8)
-        self.step: dict[str, Any] = {}
-        self.card: dict[str, Any] = {}
-
-    def say(self, kind: str, channel: str = "timing", **more: Any) -> None:
-        """Send an ask."""
-        self._socket.send_json({"channel": channel, "body": {"type": kind, **more}})
-
-    def hear(self, kind: str) -> dict[str, Any]:
-        """Return the next message of a kind, or the first error."""
-        while True:
-            envelope = self._socket.receive_json()
-            body = {"type": "error", **envelope} if "error" in envelope else envelope["body"]
-            if body["type"] == "step":
-                self.step = dict(body)
-            if body["type"] in (kind, "error"):
-                return dict(body)
-
-    def sit(self, seat: str) -> dict[str, Any]:
-        """Sit down; return the card."""
-        self.say("sit", study=NAME, seat=seat, holder=self.holder, language="en")
-        card = self.hear("card")
-        self.hear("step")
-        return card
-
-    def resume(self, card: dict[str, Any]) -> dict[str, Any]:
-        """Go on with a card; return the step, or the error."""
-        self.say("resume", study=NAME, person=card["person"], code=card["code"])
-        return self.hear("step")
+    channel = "timing"
 
     def begin(self) -> dict[str, Any]:
         """Begin the trial of the step, with what it asks for under the finger."""
@@ -96,13 +66,6 @@ class Screen:
         self.hear("step")
 
 
-@pytest.fixture(autouse=True)
-def _in_haste(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Codes of these tests need not be slow to guess, nor their rounds outlive a power cut."""
-    monkeypatch.setattr("os.fsync", lambda _file: None)
-    monkeypatch.setattr(Study, "enrol", partialmethod(Study.enrol, cost=CHEAP))
-
-
 @pytest.fixture
 def study(own_studio: Studio) -> Study:
     """A frozen study of one trial of training and three of validation; its sessions are open."""
@@ -112,23 +75,11 @@ def study(own_studio: Studio) -> Study:
 
 
 @pytest.fixture
-def ask(client: TestClient) -> Callable[..., Any]:
-    """Ask as the operator, and return the answer."""
-
-    def answer(name: str, /, **question: Any) -> Any:
-        found = client.post(f"/api/{name}", json={"study": NAME, **question}).json()
-        assert "error" not in found, found
-        return found
-
-    return answer
-
-
-@pytest.fixture
 def screen(study: Study, ask: Callable[..., Any], client: TestClient) -> Iterator[Screen]:
     """The screen of somebody who sat down."""
     with client.websocket_connect(LIVE) as socket:
         found = Screen(socket)
-        found.card = found.sit(ask("studies.seat")["seat"])
+        found.sit(ask("seat")["seat"])
         yield found
 
 
