@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -48,10 +49,11 @@ AHEAD_ms = 1000.0
 
 
 class Player:
-    """One page that plays."""
+    """One page that plays. ready : what it was told when it began."""
 
     def __init__(self, socket: WebSocketTestSession) -> None:
         self._socket, self.late_ms = socket, 0.0
+        self.ready: dict[str, Any] = {}
 
     def say(self, kind: str, **more: Any) -> None:
         """Send an ask on the channel."""
@@ -120,6 +122,16 @@ class Player:
         }
 
 
+@contextmanager
+def playing(client: TestClient, run: int, **more: Any) -> Iterator[Player]:
+    """Open a page on the first trial of a run."""
+    with client.websocket_connect(LIVE) as socket:
+        player = Player(socket)
+        player.say("open", run=run, trial=0, **more)
+        player.ready = player.hear("ready")
+        yield player
+
+
 @pytest.fixture
 def ask(client: TestClient) -> Callable[..., Any]:
     """Ask the part, and return its answer."""
@@ -130,6 +142,14 @@ def ask(client: TestClient) -> Callable[..., Any]:
         return found
 
     return answer
+
+
+@pytest.fixture
+def run(ask: Callable[..., Any]) -> int:
+    """Begin a run whose first trial waits to be played."""
+    begun = int(ask("create", **CREATE)["run"])
+    ask("next", run=begun)
+    return begun
 
 
 def refusal(client: TestClient, name: str, **question: Any) -> str:
@@ -195,15 +215,10 @@ def test_a_suggestion_can_be_edited_until_it_is_shown_and_abandoned(
 
 @pytest.mark.clock
 def test_a_press_comes_out_with_the_asynchrony_that_its_times_say(
-    ask: Callable[..., Any], client: TestClient, own_studio: Studio
+    run: int, client: TestClient, own_studio: Studio
 ) -> None:
-    run = ask("create", **CREATE)["run"]
-    ask("next", run=run)
-    with client.websocket_connect(LIVE) as socket:
-        player = Player(socket)
-        player.say("open", run=run, trial=0)
-        ready = player.hear("ready")
-        assert (ready["rounds"], ready["attempt"]) == (2, 1)
+    with playing(client, run) as player:
+        assert (player.ready["rounds"], player.ready["attempt"]) == (2, 1)
         player.say("ping", sent_ms=5.0)
         pong = player.hear("pong")
         assert pong["sent_ms"] == 5.0
@@ -228,15 +243,10 @@ def test_a_press_comes_out_with_the_asynchrony_that_its_times_say(
 
 @pytest.mark.clock
 def test_a_key_of_a_keyboard_presses_where_it_reaches_the_buttons_actuation(
-    ask: Callable[..., Any], client: TestClient, own_studio: Studio
+    ask: Callable[..., Any], run: int, client: TestClient, own_studio: Studio
 ) -> None:
-    run = ask("create", **CREATE)["run"]
-    ask("next", run=run)
     actuation_mm = ask("detail", run=run)["trials"][0]["design"]["actuation_mm"]
-    with client.websocket_connect(LIVE) as socket:
-        player = Player(socket)
-        player.say("open", run=run, trial=0)
-        player.hear("ready")
+    with playing(client, run) as player:
         for number in (1, 2):
             found, crossed_ms = player.deeper(number, actuation_mm)
             # less what the browser and the screen are said to take, alike in all rounds
@@ -252,15 +262,10 @@ def test_a_key_of_a_keyboard_presses_where_it_reaches_the_buttons_actuation(
 @pytest.mark.clock
 @pytest.mark.parametrize("way_ms", [0.0, 45.0, 150.0])
 def test_a_long_way_from_hand_to_simulation_moves_no_press(
-    ask: Callable[..., Any], client: TestClient, way_ms: float
+    run: int, client: TestClient, way_ms: float
 ) -> None:
     """The way down took long, the way up none: still the simulated finger holds as long as the hand did."""
-    run = ask("create", **CREATE)["run"]
-    ask("next", run=run)
-    with client.websocket_connect(LIVE) as socket:
-        player = Player(socket)
-        player.say("open", run=run, trial=0)
-        player.hear("ready")
+    with playing(client, run) as player:
         wanted = player.round(1)
         player.late_ms = way_ms
         found = player.round(2)
@@ -280,22 +285,16 @@ def table(monkeypatch: pytest.MonkeyPatch) -> Iterator[KeyedRig]:
 
 @pytest.mark.clock
 def test_a_press_on_a_device_is_timed_by_its_own_clock(
-    ask: Callable[..., Any], client: TestClient, own_studio: Studio, table: KeyedRig
+    ask: Callable[..., Any], run: int, client: TestClient, own_studio: Studio, table: KeyedRig
 ) -> None:
     device = ask("devices")["devices"][0]["name"]
     assert device == f"serial:{table.path}"
-    run = ask("create", **CREATE)["run"]
-    ask("next", run=run)
-    with client.websocket_connect(LIVE) as socket:
-        player = Player(socket)
-        player.say("open", run=run, trial=0, device=device)
-        assert player.hear("ready")["told"].endswith("under your own finger")
+    with playing(client, run, device=device) as player:
+        assert player.ready["told"].endswith("under your own finger")
         kept = [player.beside(number, table) for number in (1, 2)]
         # no other page gets the device while this one has it
-        with client.websocket_connect(LIVE) as second:
-            other = Player(second)
-            other.say("open", run=run, trial=0, device=device)
-            assert "the pointing task" in other.hear("ready")["error"]
+        with playing(client, run, device=device) as other:
+            assert "the pointing task" in other.ready["error"]
     rounds = TaskRounds(own_studio.project / "optimize" / str(run))
     timing = rounds.counting(0)[0].timing
     rounds.close()
@@ -311,18 +310,11 @@ def test_a_press_on_a_device_is_timed_by_its_own_clock(
     assert 0 < timing.input_error_ms < 20
 
 
-def test_a_device_that_is_not_listed_is_not_opened(
-    ask: Callable[..., Any], client: TestClient, table: KeyedRig
-) -> None:
-    run = ask("create", **CREATE)["run"]
-    ask("next", run=run)
-    with client.websocket_connect(LIVE) as socket:
-        player = Player(socket)
-        for device in ("serial:/dev/null", "host", "../etc"):
-            player.say("open", run=run, trial=0, device=device)
-            assert "choose one of the list" in player.hear("ready")["error"]
-        player.say("open", run=run, trial=0, device=f"serial:{table.path}")
-        player.hear("ready")
+def test_a_device_that_is_not_listed_is_not_opened(run: int, client: TestClient, table: KeyedRig) -> None:
+    for device in ("serial:/dev/null", "host", "../etc"):
+        with playing(client, run, device=device) as player:
+            assert "choose one of the list" in player.ready["error"]
+    with playing(client, run, device=f"serial:{table.path}") as player:
         player.say("round", **{**player.shown(1, player.now_ms()), "clock_ms": None})
         assert "is not yet joined" in player.hear("kept")["error"]
 
@@ -333,47 +325,31 @@ def test_a_fault_at_the_stop_costs_no_press(ask: Callable[..., Any], client: Tes
     run = ask("create", **{**CREATE, "task_presses": 3})["run"]
     ask("next", run=run)
     ask("edit", run=run, trial=0, design={**steep, "actuation_mm": 3.0, "vibration_mm": 3.0})
-    with client.websocket_connect(LIVE) as socket:
-        player = Player(socket)
-        player.say("open", run=run, trial=0)
-        player.hear("ready")
+    with playing(client, run) as player:
         found = [player.round(number)["late_ms"] for number in (1, 2, 3)]
     assert found == pytest.approx([found[0]] * 3, abs=5.0)
 
 
 def test_a_round_without_a_press_is_lost_and_a_trial_broken_off_begins_anew(
-    ask: Callable[..., Any], client: TestClient
+    ask: Callable[..., Any], run: int, client: TestClient
 ) -> None:
-    run = ask("create", **CREATE)["run"]
-    ask("next", run=run)
-    with client.websocket_connect(LIVE) as socket:
-        player = Player(socket)
-        player.say("open", run=run, trial=0)
-        player.hear("ready")
+    with playing(client, run) as player:
         kept = player.round(1, press=False)
         assert (kept["late_ms"], kept["finished"]) == (None, False)
         player.say("close")
         assert player.hear("over")["reason"] == ""
     assert ask("next", run=run)["trial"] == 0
-    with client.websocket_connect(LIVE) as socket:
-        player = Player(socket)
-        player.say("open", run=run, trial=0)
-        assert player.hear("ready")["attempt"] == 2
+    with playing(client, run) as player:
+        assert player.ready["attempt"] == 2
         assert not player.round(1, press=False)["finished"]
         assert player.round(2, press=False)["finished"]
-        player.say("open", run=run, trial=0)
-        assert "done" in player.hear("ready")["error"]
+    with playing(client, run) as player:
+        assert "done" in player.ready["error"]
 
 
-def test_the_page_that_plays_last_plays_alone(ask: Callable[..., Any], client: TestClient) -> None:
-    run = ask("create", **CREATE)["run"]
-    ask("next", run=run)
-    with client.websocket_connect(LIVE) as one, client.websocket_connect(LIVE) as other:
-        first, second = Player(one), Player(other)
-        first.say("open", run=run, trial=0)
-        first.hear("ready")
-        second.say("open", run=run, trial=0)
-        assert second.hear("ready")["attempt"] == 2
+def test_the_page_that_plays_last_plays_alone(run: int, client: TestClient) -> None:
+    with playing(client, run) as first, playing(client, run) as second:
+        assert second.ready["attempt"] == 2
         assert "played elsewhere" in first.round(1, press=False)["error"]
         assert not second.round(1, press=False)["finished"]
 
@@ -434,10 +410,8 @@ def test_presses_of_people_and_simulated_ones_are_never_mixed(
     own, simulated = (ask("create", **{**CREATE, "simulated": who})["run"] for who in (False, True))
     assert "a person plays this run" in refusal(client, "simulate", run=own, person=0, trials=1)
     ask("next", run=simulated)
-    with client.websocket_connect(LIVE) as socket:
-        player = Player(socket)
-        player.say("open", run=simulated, trial=0)
-        assert "a simulated person plays" in player.hear("ready")["error"]
+    with playing(client, simulated) as player:
+        assert "a simulated person plays" in player.ready["error"]
 
 
 def test_a_run_begins_from_what_others_of_the_project_did(
@@ -561,12 +535,9 @@ WISHES = {
 }
 
 
-def pressed_to_the_end(client: TestClient, run: int, trial: int) -> dict[str, Any]:
-    """Play both rounds of a trial without a press; return what is said of the last."""
-    with client.websocket_connect(LIVE) as socket:
-        player = Player(socket)
-        player.say("open", run=run, trial=trial)
-        player.hear("ready")
+def pressed_to_the_end(client: TestClient, run: int) -> dict[str, Any]:
+    """Play both rounds of the first trial without a press; return what is said of the last."""
+    with playing(client, run) as player:
         player.round(1, press=False)
         return player.round(2, press=False)
 
@@ -579,13 +550,11 @@ def test_a_trial_counts_once_its_questions_are_answered_and_they_are_on_the_disk
     asked = ask("detail", run=run)["questions"]
     assert (asked["trial"], asked["least"], asked["most"], len(asked["items"])) == (None, 1, 7, 4)
     assert "waits for no answers" in refusal(client, "rate", run=run, trial=0, answers=[4, 4, 4, 4])
-    assert pressed_to_the_end(client, run, 0)["finished"]
+    assert pressed_to_the_end(client, run)["finished"]
     found = ask("detail", run=run)
     assert (found["trials"][0]["state"], found["questions"]["trial"]) == ("shown", 0)
-    with client.websocket_connect(LIVE) as socket:
-        player = Player(socket)
-        player.say("open", run=run, trial=0)
-        assert "waits for answers" in player.hear("ready")["error"]
+    with playing(client, run) as player:
+        assert "waits for answers" in player.ready["error"]
     assert "from 1 to 7" in refusal(client, "rate", run=run, trial=0, answers=[4, 4, 4, 8])
     ask("rate", run=run, trial=0, answers=[4, 5, 6, 7])
     found = ask("detail", run=run)
@@ -601,7 +570,7 @@ def test_a_studio_that_was_killed_before_the_answers_asks_again_and_loses_no_pre
     """What a killed studio leaves: presses on the disk, and a trial that was shown and never scored."""
     run = ask("create", **WISHES)["run"]
     ask("next", run=run)
-    pressed_to_the_end(client, run, 0)
+    pressed_to_the_end(client, run)
     before = (own_studio.project / "optimize" / str(run) / "rounds.jsonl").read_bytes()
     other = Optimizations(own_studio)
     with other.session(run) as session:
