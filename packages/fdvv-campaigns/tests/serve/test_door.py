@@ -174,10 +174,7 @@ def test_an_owner_that_hangs_loses_the_device(server: RunningServer, client: Cli
         owner.kill()
 
 
-def _welcome_words(welcome: dict[str, Any]) -> set[str]:
-    return {word for key in ("engines", "devices", "buttons", "programs") for word in welcome[key]}
-
-
 def test_hello_says_what_there_is(client: Client) -> None:
-    assert _welcome_words(client.welcome) >= {"gp", "twin", "host", "mx-clear", "rapid-trigger"}
+    there = {word for key in ("engines", "devices", "buttons", "programs") for word in client.welcome[key]}
+    assert there >= {"gp", "twin", "host", "mx-clear", "rapid-trigger"}
     assert client.welcome["protocol"] == 1

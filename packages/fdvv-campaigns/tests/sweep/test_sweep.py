@@ -29,7 +29,7 @@ from fdvv.twin.finger import Finger
 from fdvv_campaigns.sweep.measure import JUDGE, LEARN
 from fdvv_campaigns.sweep.measure import MEASURES as SWEEP_MEASURES
 from fdvv_campaigns.sweep.plan import FIRST, LAST, SweepPlan, read_sweep_plan, sweep_schema, sweep_work
-from fdvv_campaigns.sweep.sweep import RESULTS, preview_sweep, run_sweep, sweep_summary
+from fdvv_campaigns.sweep.sweep import RESULTS, run_sweep, sweep_summary
 from fdvv_people.optimize.population.plan import seed_of
 from tests.support.deadly_work import DeadlyCells
 from tests.support.executors import Here
@@ -224,14 +224,6 @@ def test_a_summary_tells_medians_by_every_factor_that_varies(pressed: Path) -> N
     summary_row = summary["speed_mm_s"]["rows"][0]
     assert summary_row["median"] == pytest.approx(np.median([t for t in times if t is not None]))
     assert summary_row["cells"] == len(times)
-
-
-def test_a_preview_counts_and_times_without_writing(tmp_path: Path) -> None:
-    found = preview_sweep(PRESS, tmp_path / "none")
-    assert (found.cells, found.done, found.failed) == (8, 0, ())
-    assert found.cell_s > 0
-    assert found.seconds(2) == pytest.approx(4 * found.cell_s)
-    assert list(tmp_path.iterdir()) == []
 
 
 @given(st.floats(-1e3, 1e3), st.floats(-1e3, 1e3), st.integers(2, 50), st.sampled_from(["even", "ratio"]))

@@ -275,15 +275,6 @@ def test_an_experiment_leaves_report_result_and_trials(fdvv: Run, tmp_path: Path
     assert again.json == result
 
 
-@pytest.mark.slow
-def test_an_experiment_is_not_gone_on_with_under_other_settings(fdvv: Run) -> None:
-    short = (*EXPERIMENT, "--no-winner", "--processes", "2", "--rounds", "1")
-    assert fdvv(*short, "--engine", "sobol").status == 0
-    ran = fdvv(*short, "--engine", "random")
-    assert ran.status == 2
-    assert "was begun with engine 'sobol', not 'random'" in ran.err
-
-
 def test_an_experiment_begins_from_a_grid_of_each_level_or_from_none(fdvv: Run, tmp_path: Path) -> None:
     run_population(tmp_path / "easy", PopulationPlan(kind="grid", people=2, designs=3, rounds=2), Here())
     ran = fdvv(*EXPERIMENT, "--seed", "1", "--prior", "easy")

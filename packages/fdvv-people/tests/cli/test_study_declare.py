@@ -55,14 +55,6 @@ def test_a_folder_that_is_called_as_a_kind_is_of_that_kind() -> None:
     assert 'format = "fdvv-timing"' in Path("in/timing/study.toml").read_text()
 
 
-def test_an_unknown_kind_is_refused_with_the_list() -> None:
-    refused = invoke("new", "pilot", "--kind", "timming")
-    assert refused.exit_code == 2
-    assert "realism" in refused.stderr
-    assert "timing" in refused.stderr
-    assert not Path("pilot").exists()
-
-
 def test_no_preview_is_wider_than_a_terminal() -> None:
     for kind in template_names():
         invoke("new", kind, "--kind", kind)

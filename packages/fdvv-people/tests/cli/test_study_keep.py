@@ -175,13 +175,6 @@ def test_a_keepers_file_that_was_moved_is_named(fdvv: Run, study: Study) -> None
     assert fdvv(*asked, "--keeper", "moved.json").status == 0
 
 
-def test_unsealing_without_a_name_or_reason_is_refused(fdvv: Run, study: Study) -> None:
-    assert fdvv("study", "unseal", "s", "--why", "B", *WORDS).status == 2
-    assert fdvv("study", "unseal", "s", "--who", "A", *WORDS).status == 2
-    assert fdvv("study", "unseal", "s", "--who", " ", "--why", "B", *WORDS).status == 2
-    assert [record for record in study.history() if "unsealed" in record] == []
-
-
 def test_who_withdraws_is_gone_and_on_record(fdvv: Run, study: Study) -> None:
     ran = fdvv("study", "withdraw", "s", "P01", "--yes")
     assert (ran.status, ran.out) == (0, "P01 has withdrawn; all is deleted\n")
@@ -199,7 +192,7 @@ def test_withdrawing_asks_before_it_deletes(fdvv: Run, study: Study, monkeypatch
     assert study.person("P01").state == "withdrawn"
 
 
-@pytest.mark.parametrize("command", ["verify", "status", "freeze"])
+@pytest.mark.parametrize("command", ["verify", "status", "freeze", "simulate"])
 def test_a_folder_without_a_study_is_one_clear_line(fdvv: Run, tmp_path: Path, command: str) -> None:
     (tmp_path / "empty").mkdir()
     ran = fdvv("study", command, "empty")

@@ -25,9 +25,3 @@ def test_a_study_is_run_and_what_it_says_is_simulated(fdvv: Run, study: Path) ->
     assert again.json["simulated"] is True
     assert again.json["sessions"] == []
     assert again.json["finished"] == ["P01"]
-
-
-def test_a_folder_without_a_study_is_refused_in_one_line(fdvv: Run, tmp_path: Path) -> None:
-    ran = fdvv("study", "simulate", tmp_path)
-    assert ran.status == 2
-    assert len(ran.err.strip().splitlines()) == 1

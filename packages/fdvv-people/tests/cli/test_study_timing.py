@@ -12,7 +12,6 @@ from click.testing import CliRunner, Result
 
 from fdvv.cli.main import cli
 from fdvv.errors import InputError
-from fdvv_people.study.admin.study import Study
 from fdvv_people.study.timing.participant import TimingParticipant
 from fdvv_people.study.timing.plan import DAY_s
 from tests.support.timing import SMALL, Clock, attended, do_all
@@ -40,17 +39,6 @@ def test_a_check_says_what_the_study_comes_to() -> None:
     assert found.exit_code == 0
     assert "16 trials of validation a person" in found.stdout
     assert "7 days after 4 of training" in " ".join(found.stdout.split())
-
-
-def test_a_check_lists_all_that_is_wrong_and_fails() -> None:
-    path = Path("small/study.toml")
-    text = path.read_text().replace('"mx-red"', '"mx-pink"')
-    path.write_text(text.replace('better = "optimised"', 'better = "x"'))
-    found = invoke("check", "small")
-    assert found.exit_code == 1
-    assert "mx-pink" in found.stdout
-    assert "2 problems" in found.stdout
-    assert json.loads(invoke("check", "small", "--json").stdout)["ok"] is False
 
 
 def test_a_study_is_simulated_unsealed_analysed_and_exported() -> None:
@@ -98,11 +86,3 @@ def test_before_it_is_unsealed_nothing_is_analysed() -> None:
     refused = invoke("analyse", "small")
     assert isinstance(refused.exception, InputError)
     assert "is not unsealed" in str(refused.exception)
-
-
-def test_a_person_can_be_withdrawn() -> None:
-    freeze()
-    one, _ = TimingParticipant.enrol(attended(Path("small")))
-    one.close()
-    assert invoke("withdraw", "small", "P01", "--yes").exit_code == 0
-    assert Study.open(Path("small")).person("P01").state == "deleted"

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from fdvv_people.report.prose import effect_text, interval_text, listed, p_text, sphericity_text, stars
+from fdvv_people.report.prose import effect_text, interval_text, p_text, sphericity_text, stars
 from fdvv_people.stats.anova import AnovaEffect, Sphericity
 from fdvv_people.stats.effect_size import Estimate
 
@@ -42,7 +42,3 @@ def test_sphericity_is_reported_where_it_applies() -> None:
 def test_an_interval_holds_together_and_may_be_absent() -> None:
     assert interval_text(Estimate(0.2, 0.1, 0.3), 0, 100.0) == "20\N{NO-BREAK SPACE}[10,\N{NO-BREAK SPACE}30]"
     assert interval_text(Estimate(-1.25), 1) == "-1.2"
-
-
-def test_names_are_listed() -> None:
-    assert [listed(["a"]), listed(["a", "b", "c"])] == ["a", "a, b and c"]

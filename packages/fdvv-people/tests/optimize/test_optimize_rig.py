@@ -30,10 +30,3 @@ def test_a_run_carries_its_button_and_its_rig_with_it(tmp_path: Path) -> None:
             assert session.model(trial.design).actuation_mm == CLEAR.actuation_mm
         with pytest.raises(InputError, match="does not hold"):
             session.edit(0, {"force_ratio": 16.0, "snap_mm": 0.5})
-
-
-def test_a_run_on_a_rig_that_nobody_knows_is_refused(tmp_path: Path) -> None:
-    space = model_space_setup(CLEAR, ["bump_cN"], rig="own:mine")
-    with pytest.raises(InputError, match="own:mine"):
-        Optimization.create(tmp_path / "run", OptimizeSetup(space=space))
-    assert not (tmp_path / "run" / "optimize.json").exists()

@@ -257,3 +257,11 @@ def test_several_objectives_have_a_front_and_no_best(tmp_path: Path) -> None:
         with pytest.raises(ModelError, match="front"):
             session.best()
         assert 1 <= len(session.front().trials) <= 8
+
+
+def test_a_replay_writes_nothing_and_needs_no_lock(tmp_path: Path) -> None:
+    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol")) as session:
+        session.ask(2)
+        before = {path: path.read_bytes() for path in (tmp_path / "run").iterdir()}
+        assert replay_differences(tmp_path / "run") == ()
+        assert {path: path.read_bytes() for path in (tmp_path / "run").iterdir()} == before

@@ -14,7 +14,7 @@ from fdvv_people.optimize.problem import Trial, TrialState
 from fdvv_people.optimize.realistic import realistic_space
 from fdvv_people.optimize.run.begin import RunRequest, begin_run
 from fdvv_people.optimize.run.ending import ending_sentences, final_means
-from fdvv_people.optimize.run.front import front_report, score_label
+from fdvv_people.optimize.run.front import front_report
 from fdvv_people.optimize.run.player import player_of
 from fdvv_people.optimize.run.replay import replay_differences
 from fdvv_people.optimize.run.report import optimize_html, optimize_report
@@ -192,15 +192,3 @@ def test_wishes_are_known_and_each_counts_once() -> None:
     assert wished(("liking", "liking", "lost_ratio")) == (LIKING, *wished(("lost_ratio",)))
     with pytest.raises(InputError, match="use lost_ratio, effort_N_s, liking"):
         wished(("colour",))
-
-
-def test_labels_name_units_as_people_write_them() -> None:
-    names = ("asynchrony_ms", "effort_N_s", "stiffness_cN_mm", "lost_ratio", "bump_cN", "liking")
-    assert [score_label(name) for name in names] == [
-        "asynchrony (ms)",
-        "effort (N s)",
-        "stiffness (cN/mm)",
-        "lost (ratio)",
-        "bump (cN)",
-        "liking",
-    ]

@@ -122,13 +122,6 @@ def test_pairs_of_many_renderings_are_of_trials_in_which_both_were_rated() -> No
     assert found.unpaired == 3
 
 
-def test_only_a_claim_that_a_plan_fixed_is_registered() -> None:
-    answers = realism(6, 2, ("Clear", "Dome"))
-    for found, registered in ((analyse(answers), False), (analyse(answers, plan()), True)):
-        assert found.claim is not None
-        assert found.claim.registered is registered
-
-
 def test_a_singular_ordinal_fit_says_so_and_has_no_correlation() -> None:
     found = analyse(realism(6, 2, ("Clear",)))
     model = found.scales[0].model

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 
 from fdvv.errors import ModelError
 from fdvv_people.stats.rank_tests import signed_rank
-from fdvv_people.study.plan.answers import Answers, is_answered, means_by
+from fdvv_people.study.plan.answers import Answers, means_by
 from fdvv_people.study.plan.claim import (
     choice_claim,
     claim_holds,
@@ -22,7 +22,7 @@ from fdvv_people.study.plan.claim import (
     usual_claim,
 )
 from fdvv_people.study.plan.plan import Claim
-from tests.support.study_answers import EVERY_KIND, mushra, realism, right_or_wrong, staircase, timing
+from tests.support.study_answers import mushra, realism, right_or_wrong, staircase, timing
 
 CLAIM = Claim(more="FDVV", less="FD")
 
@@ -64,21 +64,6 @@ def test_a_rating_counts_as_its_difference() -> None:
     np.testing.assert_array_equal(scores, [2.0])
 
 
-def test_in_abx_what_is_right_counts_whichever_it_is() -> None:
-    given = answers({"P01": ["FDVV", "FD"], "P02": ["FDVV", "FDVV"]}, "abx")
-    _, scores = claim_scores(replace(given, correct=np.array([1.0, 1.0, 1.0, 0.0])), CLAIM)
-    np.testing.assert_array_equal(scores, [1.0, 0.0])
-
-
-def test_a_claim_that_the_answers_know_nothing_of_is_refused() -> None:
-    for claim in (
-        Claim(more="FDVV", less="FD", measure="beauty"),
-        Claim(more="X", less="FD", measure="realism"),
-    ):
-        with pytest.raises(ModelError):
-            claim_scores(answers({"P01": ["FD"]}), claim)
-
-
 def test_the_test_of_many_studies_is_that_of_each() -> None:
     scores = np.random.default_rng(0).integers(-3, 6, (50, 9)) / 6
     np.testing.assert_allclose(claim_p(scores), [signed_rank(row).p_exact for row in scores])
@@ -92,22 +77,6 @@ def test_whether_a_claim_holds_is_its_p_against_alpha(seed: int, people: int, al
     # from no leaning to a strong one, coarse enough for ties and zeros
     scores = np.rint(3 * (random.standard_normal((40, people)) + random.uniform(0, 1.5, (40, 1)))) / 6
     np.testing.assert_array_equal(claim_holds(scores, alpha), claim_p(scores) <= alpha)
-
-
-def test_a_choice_counts_for_against_or_neither() -> None:
-    answers = realism()
-    values = claim_values(answers, CLAIM)
-    assert set(zip(answers.choice.tolist(), values.tolist(), strict=True)) == {
-        ("FDVV", 1.0), ("FD", -1.0), ("equal", 0.0)
-    }  # fmt: skip
-
-
-def test_the_other_way_round_it_speaks_as_far_against() -> None:
-    answers = realism()
-    for measure in ("choice", "realism"):
-        forth = claim_values(answers, Claim(more="FDVV", less="FD", measure=measure))
-        back = claim_values(answers, Claim(more="FD", less="FDVV", measure=measure))
-        assert_allclose(forth, -back)
 
 
 def test_what_is_missing_is_nan_and_not_a_tie() -> None:
@@ -146,10 +115,6 @@ def test_in_abx_a_choice_is_right_or_wrong_for_it_names_no_stimulus() -> None:
     answers = right_or_wrong("abx")
     assert choice_claim(answers, CLAIM).measure == "correct"
     assert_allclose(claim_values(answers, CLAIM), 2 * answers.correct - 1)
-
-
-def test_every_kind_holds_answers() -> None:
-    assert all(is_answered(one).all() for one in EVERY_KIND.values())
 
 
 @pytest.mark.parametrize(

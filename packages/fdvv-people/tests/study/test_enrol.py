@@ -89,14 +89,6 @@ def test_a_second_time_does_nothing(study: Study) -> None:
     assert study.history() == before
 
 
-def test_nobody_can_go_on_who_withdrew(tmp_path: Path) -> None:
-    study = small_study(tmp_path)
-    person, code = study.enrol(cost=CHEAP)
-    study.withdraw(person, delete=False)
-    with pytest.raises(InputError, match="has withdrawn"):
-        study.schedule(person, code)
-
-
 def test_who_is_at_it_at_this_moment_is_not_deleted(tmp_path: Path) -> None:
     study = small_study(tmp_path)
     person, code = study.enrol(cost=CHEAP)

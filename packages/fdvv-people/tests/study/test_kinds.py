@@ -109,6 +109,8 @@ def test_who_withdraws_is_gone_and_their_data_too_if_they_wish(sat: Labels, dele
     assert sat.one.withdraw(delete).kind == "withdrawn"
     assert (sat.study.folder / "people/P01/session.jsonl").exists() != delete
     assert sat.study.verify() == ()
+    with pytest.raises(InputError, match="withdrawn"):
+        sat.resume()
     (view,) = study_progress(sat.study, sat.clock())
     assert view.state == view.place == sat.study.person("P01").state == ("deleted" if delete else "withdrawn")
 

@@ -164,16 +164,6 @@ def test_a_table_without_people_or_answers_says_which_columns_there_are(tmp_path
         read_answers(path, ColumnMap(columns={"person": "x", "choice": "y"}))
 
 
-def test_a_folder_without_answers_says_that_it_must_be_unsealed(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="unseal the study first"):
-        read_answers(tmp_path)
-
-
-def test_an_unknown_kind_is_refused() -> None:
-    with pytest.raises(InputError, match="use one of realism, abx"):
-        ColumnMap(kind="triangle")
-
-
 def test_the_documents_lines_for_pandas_read_what_is_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

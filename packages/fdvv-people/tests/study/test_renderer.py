@@ -104,10 +104,3 @@ def test_an_error_takes_as_long_as_a_change() -> None:
     with pytest.raises(DeviceError):
         ConstantTimeSwitch(0.6, clock, clock.sleep).make(work)
     assert clock.now_s == pytest.approx(0.6)
-
-
-def test_a_file_laid_beside_a_study_takes_the_place_of_none_that_it_keeps(tmp_path: Path) -> None:
-    save_model(load_builtin("mx-clear"), tmp_path / "buttons" / "mine.fdvv.json")
-    save_model(load_builtin("mx-red"), tmp_path / "mine.fdvv.json")
-    kept = stimulus_model(Stimulus(name="S", button="mine.fdvv.json"), tmp_path)
-    assert kept == load_builtin("mx-clear")

@@ -10,7 +10,6 @@ import pytest
 from fdvv.errors import InputError
 from fdvv_people.study.plan.plan import Stimulus, StudyPlan
 from fdvv_people.study.plan.plan_file import write_template
-from fdvv_people.study.simulation.people import ProxySettings
 from fdvv_people.study.simulation.perception import Senses, haptic_features, perceived_difference
 from fdvv_people.study.simulation.study_power import open_plan, power_design, reference_of, study_power
 from fdvv_people.study.stimulus.renderer import stimulus_model
@@ -36,10 +35,6 @@ def test_the_papers_study_is_planned_from_its_file_and_says_that_it_is_simulated
         assert one["for"] + one["equal"] + one["against"] == pytest.approx(1)
     power = parsed["rows"][1]["power"]
     assert power["low"] <= power["value"] <= power["high"]
-
-
-def test_a_folder_is_read_as_its_file(study: Path) -> None:
-    assert open_plan(study.parent)[0] == open_plan(study)[0]
 
 
 def test_what_is_compared_is_what_would_be_rendered(study: Path) -> None:
@@ -79,11 +74,6 @@ def test_abx_claims_that_both_can_be_distinguished(tmp_path: Path) -> None:
     assert all(effect.between.total_JND > 0 for effect in design.effects)
 
 
-def test_a_staircase_has_no_claim_to_plan(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="a staircase finds a threshold and claims nothing"):
-        power_design(*kind(tmp_path, "staircase"))
-
-
 def test_what_2afc_asks_for_must_be_what_is_claimed(tmp_path: Path) -> None:
     path = write_template("2afc", tmp_path)
     text = (
@@ -94,21 +84,3 @@ def test_what_2afc_asks_for_must_be_what_is_claimed(tmp_path: Path) -> None:
     path.write_text(text)
     with pytest.raises(InputError, match="the second stimulus"):
         power_design(*open_plan(path))
-
-
-def test_a_file_that_is_no_study_is_refused_in_one_line(tmp_path: Path) -> None:
-    for content in (b"\xff\xfe", b"name = ", b'name = "x"'):
-        (tmp_path / "study.toml").write_bytes(content)
-        with pytest.raises(InputError) as error:
-            study_power(tmp_path, [6])
-        assert "\n" not in str(error.value)
-    with pytest.raises(InputError):
-        study_power(tmp_path / "nothing.toml", [6])
-
-
-def test_ctrl_c_stops_at_once(study: Path) -> None:
-    def stop(label: str, done: int, total: int) -> None:
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        study_power(study, [6], studies=100, settings=ProxySettings(), progress=stop)

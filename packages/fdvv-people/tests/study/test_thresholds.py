@@ -177,8 +177,3 @@ def test_simulated_participants_play_it_to_a_report_that_says_so(tmp_path: Path)
         size = found.standards["MX Clear"][row["dimension"]]  # type: ignore[index]
         assert float(row["jnd"]) == pytest.approx(float(row["jnd_ratio"]) * size)
     assert len(analysis_dict(found)["jnds"]) == 2
-
-
-def test_a_plan_keeps_what_thresholds_it_asks_for() -> None:
-    prior = Thresholds(expected_ratio=OfDimensions(force=0.2, snap=1, vibration=1), spread=0.5).prior
-    assert (prior.jnd_ratio, prior.jnd_spread) == ((0.2, 1.0, 1.0), 0.5)

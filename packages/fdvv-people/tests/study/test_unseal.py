@@ -263,11 +263,3 @@ def test_the_claim_says_which_of_two_a_preference_counts_for(tmp_path: Path) -> 
 
     turned = msgspec.structs.replace(plan, claim=Claim(more="FD", less="FDVV"))
     assert stimuli_in_order(turned) == ("FDVV", "FD")
-
-
-def test_simulated_participants_are_marked(tmp_path: Path) -> None:
-    study = small_study(tmp_path)
-    person, code = study.enrol(simulated=True, cost=CHEAP)
-    answered(study, person, code, chosen("FDVV"))
-    assert study.unseal(PASSPHRASE, "me", "done").simulated
-    assert {row["simulated"] for row in table(study, "answers.csv")} == {"1"}

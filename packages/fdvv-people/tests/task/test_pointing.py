@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from fdvv.errors import ModelError
 from fdvv_people.task.pointing import LOST_ms, TemporalPointing
 from fdvv_people.task.score import Score
-from fdvv_people.task.task import Task, TaskPress
+from fdvv_people.task.task import TaskPress
 
 EXACT = TemporalPointing("easy", quantised=False)
 
@@ -18,12 +18,6 @@ EXACT = TemporalPointing("easy", quantised=False)
 def test_the_papers_levels_light_a_pixel_for_10_and_for_6_7_ms() -> None:
     assert TemporalPointing("easy").frame_s == pytest.approx(0.010)
     assert TemporalPointing("hard").frame_s == pytest.approx(0.0067, abs=5e-5)
-
-
-def test_it_is_a_task_of_twenty_presses() -> None:
-    task: Task = TemporalPointing("hard")
-    assert task.rounds == 20
-    assert [one.name for one in task.objectives] == ["asynchrony_ms"]
 
 
 def test_bullets_follow_each_other_by_the_length_of_the_strip() -> None:

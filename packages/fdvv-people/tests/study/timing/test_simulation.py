@@ -10,7 +10,6 @@ import pytest
 from fdvv.errors import InputError
 from fdvv_people.study.simulation.sessions import Simulation, simulate_study
 from fdvv_people.study.timing.analyse import analyse_timing
-from fdvv_people.study.timing.kind import KIND
 from fdvv_people.study.timing.people import seconds_of
 from fdvv_people.study.timing.plan import DAY_s
 from fdvv_people.study.timing.report import timing_html
@@ -56,7 +55,3 @@ def test_taps_are_kept_by_seconds_from_the_first() -> None:
     found = seconds_of([TaskPress(None, (5.0, 5.4)), TaskPress(None, (6.1, 9.0))], 3)
     assert [len(one.activations_s) for one in found] == [2, 1, 0]
     assert found[1].activations_s == pytest.approx((1.1,))
-
-
-def test_the_small_plan_is_sound() -> None:
-    assert KIND.read_plan(TAPPING, "tapping").trial_rounds == 3
