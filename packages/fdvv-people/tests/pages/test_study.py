@@ -7,7 +7,7 @@ import secrets
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
@@ -53,6 +53,15 @@ def study(own_studio: Studio) -> Study:
     study = frozen_study(own_studio.project, plan_text(2, 2, reference=True, switch_s=0.0))
     own_studio.part(Studies).open_sessions(NAME, PASSPHRASE, None)
     return study
+
+
+@pytest.fixture
+def screen(study: Study, ask: Callable[..., Any], client: TestClient) -> Iterator[Screen]:
+    """The screen of somebody who sat down."""
+    with client.websocket_connect(LIVE) as socket:
+        found = Screen(socket)
+        found.sit(ask("seat")["seat"])
+        yield found
 
 
 def where(ask: Callable[..., Any]) -> dict[str, Any]:
@@ -108,20 +117,17 @@ def test_answers_lead_on_to_the_end_and_the_operator_sees_how_far(
 
 
 def test_an_answer_out_of_turn_is_refused_and_a_stale_page_gets_the_current_step(
-    study: Study, ask: Callable[..., Any], client: TestClient
+    screen: Screen, ask: Callable[..., Any]
 ) -> None:
-    with client.websocket_connect(LIVE) as socket:
-        screen = Screen(socket)
-        screen.sit(ask("seat")["seat"])
-        # nothing is shown yet
-        assert screen.answer()["task"]["number"] == 0
-        screen.show()
-        assert "not offered" in screen.answer("C")["error"]
-        assert "not rated" in screen.answer(ratings={"realism": {"A": 4}})["error"]
-        assert "none of this trial" in screen.feel("Z")["error"]
-        assert screen.answer()["task"]["number"] == 1
-        # sent twice: the first answer stands
-        assert screen.answer(number=0)["task"]["number"] == 1
+    # nothing is shown yet
+    assert screen.answer()["task"]["number"] == 0
+    screen.show()
+    assert "not offered" in screen.answer("C")["error"]
+    assert "not rated" in screen.answer(ratings={"realism": {"A": 4}})["error"]
+    assert "none of this trial" in screen.feel("Z")["error"]
+    assert screen.answer()["task"]["number"] == 1
+    # sent twice: the first answer stands
+    assert screen.answer(number=0)["task"]["number"] == 1
     assert where(ask)["answered"] == 1
 
 
@@ -140,23 +146,16 @@ def test_a_wrong_code_takes_nobodys_screen_away_and_the_right_one_does(
 
 
 def test_who_comes_back_while_a_lost_page_still_takes_them_up_waits_for_it(
-    study: Study,
-    ask: Callable[..., Any],
-    client: TestClient,
-    own_studio: Studio,
-    monkeypatch: pytest.MonkeyPatch,
+    screen: Screen, own_studio: Studio, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     studies = own_studio.part(Studies)
-    with client.websocket_connect(LIVE) as socket:
-        screen = Screen(socket)
-        card = screen.sit(ask("seat")["seat"])
-        with studies.screens.exclusive(NAME, card["person"]):
-            monkeypatch.setattr("fdvv_people.pages.screens.PATIENCE_s", 0.05)
-            assert "taken up elsewhere" in screen.resume(card)["error"]
-            monkeypatch.setattr("fdvv_people.pages.screens.PATIENCE_s", 10.0)
-            screen.say("resume", study=NAME, person=card["person"], code=card["code"])
-            time.sleep(0.05)
-        assert screen.hear("step")["task"]["number"] == 0
+    with studies.screens.exclusive(NAME, screen.card["person"]):
+        monkeypatch.setattr("fdvv_people.pages.screens.PATIENCE_s", 0.05)
+        assert "taken up elsewhere" in screen.resume(screen.card)["error"]
+        monkeypatch.setattr("fdvv_people.pages.screens.PATIENCE_s", 10.0)
+        screen.say("resume", study=NAME, person=screen.card["person"], code=screen.card["code"])
+        time.sleep(0.05)
+    assert screen.hear("step")["task"]["number"] == 0
 
 
 def test_what_a_page_sent_before_it_went_away_takes_nobody_up_after_it_has_gone(
@@ -171,22 +170,17 @@ def test_what_a_page_sent_before_it_went_away_takes_nobody_up_after_it_has_gone(
     assert own_studio.part(Studies).screens.find(NAME, person) is None
 
 
-def test_a_pause_holds_every_answer_back_until_it_is_over(
-    study: Study, ask: Callable[..., Any], client: TestClient
-) -> None:
-    with client.websocket_connect(LIVE) as socket:
-        screen = Screen(socket)
-        screen.sit(ask("seat")["seat"])
-        screen.show()
-        assert ask("pause", person="P01", on=True)["people"][0]["paused"]
-        assert screen.hear("paused")["on"]
-        assert "pauses" in screen.answer()["error"]
-        assert "pauses" in screen.feel("A")["error"]
-        ask("pause", person="P01", on=False)
-        assert not screen.hear("paused")["on"]
-        assert screen.answer()["task"]["number"] == 1
-        ask("pause", person=None, on=True)
-        assert screen.hear("paused")["on"]
+def test_a_pause_holds_every_answer_back_until_it_is_over(screen: Screen, ask: Callable[..., Any]) -> None:
+    screen.show()
+    assert ask("pause", person="P01", on=True)["people"][0]["paused"]
+    assert screen.hear("paused")["on"]
+    assert "pauses" in screen.answer()["error"]
+    assert "pauses" in screen.feel("A")["error"]
+    ask("pause", person="P01", on=False)
+    assert not screen.hear("paused")["on"]
+    assert screen.answer()["task"]["number"] == 1
+    ask("pause", person=None, on=True)
+    assert screen.hear("paused")["on"]
 
 
 def test_a_pause_outlives_the_studio_and_is_on_record(
@@ -265,7 +259,7 @@ def test_a_studio_that_holds_a_run_key_hides_its_memory(own_studio: Studio) -> N
 
 
 def test_a_button_that_breaks_is_set_up_anew_and_the_trial_goes_on(
-    study: Study, ask: Callable[..., Any], client: TestClient, monkeypatch: pytest.MonkeyPatch
+    screen: Screen, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from fdvv.errors import DeviceError
     from fdvv_people.study.stimulus.twin import TwinRenderer
@@ -273,21 +267,18 @@ def test_a_button_that_breaks_is_set_up_anew_and_the_trial_goes_on(
     def fails(_self: TwinRenderer, _label: str) -> None:
         raise DeviceError("the twin fell to zero force: a test")
 
-    with client.websocket_connect(LIVE) as socket:
-        screen = Screen(socket)
-        screen.sit(ask("seat")["seat"])
-        screen.show()
-        with monkeypatch.context() as broken:
-            broken.setattr(TwinRenderer, "show", fails)
-            screen.say("go", label="A")
-            message = screen.hear("broke")
-        assert message == {"type": "broke"}
-        screen.say("again")
-        screen.hear("step")
-        assert screen.step["task"]["number"] == 0
-        screen.show()
-        assert screen.feel("A")["label"] == "A"
-        assert screen.answer()["task"]["number"] == 1
+    screen.show()
+    with monkeypatch.context() as broken:
+        broken.setattr(TwinRenderer, "show", fails)
+        screen.say("go", label="A")
+        message = screen.hear("broke")
+    assert message == {"type": "broke"}
+    screen.say("again")
+    screen.hear("step")
+    assert screen.step["task"]["number"] == 0
+    screen.show()
+    assert screen.feel("A")["label"] == "A"
+    assert screen.answer()["task"]["number"] == 1
 
 
 def test_a_device_on_the_table_renders_a_study_and_is_nobody_elses_meanwhile(
@@ -331,41 +322,35 @@ def test_a_device_that_a_file_defines_is_not_run_from_a_studys_folder(
 
 
 def test_a_person_is_withdrawn_and_deleted_while_they_sit_there(
-    study: Study, ask: Callable[..., Any], client: TestClient
+    screen: Screen, study: Study, ask: Callable[..., Any]
 ) -> None:
-    with client.websocket_connect(LIVE) as socket:
-        screen = Screen(socket)
-        card = screen.sit(ask("seat")["seat"])
-        screen.show()
-        screen.answer()
-        assert ask("withdraw", person="P01", delete=True)["people"][0]["state"] == "deleted"
-        assert screen.hear("step")["kind"] == "withdrawn"
-        assert "withdrawn" in screen.resume(card)["error"]
+    screen.show()
+    screen.answer()
+    assert ask("withdraw", person="P01", delete=True)["people"][0]["state"] == "deleted"
+    assert screen.hear("step")["kind"] == "withdrawn"
+    assert "withdrawn" in screen.resume(screen.card)["error"]
     assert not (study.folder / "people" / "P01" / "session.jsonl").exists()
 
 
 def test_no_message_names_what_a_label_hides_and_the_operators_none_holds_a_code(
-    study: Study, ask: Callable[..., Any], client: TestClient
+    screen: Screen, ask: Callable[..., Any], client: TestClient
 ) -> None:
     """And for each button all that is sent before it is pressed is the same, whichever label hides what."""
-    with client.websocket_connect(LIVE) as socket:
-        screen = Screen(socket)
-        card = screen.sit(ask("seat")["seat"])
-        descriptions: dict[str, set[str]] = {}
-        for _ in range(4):
-            item = screen.step["task"]["item"]
-            ready = {**screen.show(), "number": 0}
-            descriptions.setdefault(item, set()).add(
-                json.dumps([ready, *(screen.feel(label) for label in "XAB")])
-            )
-            screen.answer()
+    descriptions: dict[str, set[str]] = {}
+    for _ in range(4):
+        item = screen.step["task"]["item"]
+        ready = {**screen.show(), "number": 0}
+        descriptions.setdefault(item, set()).add(
+            json.dumps([ready, *(screen.feel(label) for label in "XAB")])
+        )
+        screen.answer()
     heard = json.dumps(screen.heard)
     assert {one["type"] for one in screen.heard} <= set(SAME)
     assert names_in(heard) == []
     assert {len(kinds) for kinds in descriptions.values()} == {1}
     seen = json.dumps([ask("detail"), ask("verify"), client.post("/api/studies.list", json={}).json()])
     assert names_in(seen) == []
-    assert card["code"] not in seen
+    assert screen.card["code"] not in seen
 
 
 def test_no_results_are_shown_before_the_seal_is_opened_on_record(
