@@ -69,12 +69,6 @@ def test_json_has_the_keys_that_programs_rely_on(fdvv: Run) -> None:
         assert trial["score"] == trial["scores"]["asynchrony_ms"]
 
 
-def test_the_same_options_give_the_same_trials(fdvv: Run) -> None:
-    first, second = (run_optimize(fdvv, name, "--json").json for name in ("a", "b"))
-    assert first["trials"] == second["trials"]
-    assert run_optimize(fdvv, "c", "--json", "--seed", "5").json["trials"] != first["trials"]
-
-
 def test_several_wishes_end_with_a_front_a_compromise_and_a_sentence(fdvv: Run) -> None:
     wishes = ("--also", "liking", "--also", "lost_ratio", "--switch", "none")
     ran = run_optimize(fdvv, "run", *wishes)

@@ -152,6 +152,14 @@ def run(ask: Callable[..., Any]) -> int:
     return begun
 
 
+def play_simulated(ask: Callable[..., Any], run: int, trials: int) -> Any:
+    """Let a simulated person play trials of a run; return what is told of it then."""
+    ask("simulate", run=run, person=3, trials=trials)
+    while (found := ask("detail", run=run))["simulated"]["running"]:
+        time.sleep(0.05)
+    return found
+
+
 def refusal(client: TestClient, name: str, **question: Any) -> str:
     found = client.post(f"/api/optimize.{name}", json=question)
     assert found.status_code in (400, 422)
@@ -355,23 +363,17 @@ def test_the_page_that_plays_last_plays_alone(run: int, client: TestClient) -> N
 
 
 def test_a_simulated_person_plays_to_the_end_of_the_budget(
-    ask: Callable[..., Any], client: TestClient, own_studio: Studio
+    ask: Callable[..., Any], client: TestClient
 ) -> None:
     run = ask("create", **{**CREATE, "simulated": True})["run"]
-    ask("simulate", run=run, person=3, trials=9)
-    play = own_studio.part(Optimizations).simulated(run)
-    assert play is not None
-    play._thread.join(60)
-    found = ask("detail", run=run)
+    found = play_simulated(ask, run, 9)
     assert found["simulated"] == {**found["simulated"], "running": False, "done": 3, "fault": ""}
     assert [one["state"] for one in found["trials"]] == ["done"] * 3
     assert ask("best", run=run)["design"].keys() == found["start"].keys()
     assert "all over" in refusal(client, "next", run=run)
 
 
-def test_a_run_ends_beside_the_switches_if_it_is_asked_to(
-    ask: Callable[..., Any], own_studio: Studio
-) -> None:
+def test_a_run_ends_beside_the_switches_if_it_is_asked_to(ask: Callable[..., Any]) -> None:
     offers = ask("offers")
     assert offers["round_s"] == {"easy": 1.44, "hard": 0.96}
     some = {"simulated": True, "retest": 2, "switches": True, "start": "builtin:mx-brown"}
@@ -381,11 +383,7 @@ def test_a_run_ends_beside_the_switches_if_it_is_asked_to(
     # the start is one of the switches and comes once in a block
     assert (planned["total"], planned["rivals"]) == (2 * 5, others)
     assert (planned["ending"], planned["means"]) == ([], [])
-    ask("simulate", run=run, person=3, trials=3 + 2 * 5)
-    play = own_studio.part(Optimizations).simulated(run)
-    assert play is not None
-    play._thread.join(120)
-    found = ask("detail", run=run)["retest"]
+    found = play_simulated(ask, run, 3 + 2 * 5)["retest"]
     assert found["done"] == found["total"]
     (sentence,) = found["ending"]
     assert sentence.startswith("Against the best of ")
@@ -589,10 +587,7 @@ def test_a_compromise_is_taken_from_the_front_and_played_again_with_its_question
 ) -> None:
     run = ask("create", **{**WISHES, "simulated": True, "budget": 6, "retest": 2})["run"]
     assert ask("detail", run=run)["compromise"] is None
-    ask("simulate", run=run, person=3, trials=6)
-    while ask("detail", run=run)["simulated"]["running"]:
-        time.sleep(0.05)
-    found = ask("detail", run=run)
+    found = play_simulated(ask, run, 6)
     front = [one for one in found["trials"] if one["front"]]
     assert found["compromise"] in [one["number"] for one in front]
     assert all(set(one["expected"]) == {"asynchrony_ms", "liking"} for one in front)
@@ -601,10 +596,7 @@ def test_a_compromise_is_taken_from_the_front_and_played_again_with_its_question
     found = ask("detail", run=run)
     assert found["compromise"] == other
     assert ask("best", run=run)["design"] == found["trials"][other]["design"]
-    ask("simulate", run=run, person=3, trials=4)
-    while ask("detail", run=run)["simulated"]["running"]:
-        time.sleep(0.05)
-    retest = ask("detail", run=run)["retest"]
+    retest = play_simulated(ask, run, 4)["retest"]
     assert (retest["done"], retest["total"]) == (4, 4)
     assert "liking" in retest["sentence"] or "liked" in retest["sentence"]
     assert "between the search and its retest" in refusal(client, "take", run=run, trial=other)

@@ -6,6 +6,8 @@ import base64
 import json
 import logging
 import re
+from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -36,13 +38,9 @@ RANDOM = ("chain", "mark", "salt", "crc32", "next")
 BOX = re.compile(r"[A-Za-z0-9+/=]{16,}")
 
 
-class Clock:
-    def __init__(self) -> None:
-        self.now_s = 5000.0
-
-    def __call__(self) -> float:
-        self.now_s += 0.25
-        return self.now_s
+def ticking() -> Callable[[], float]:
+    """Return a clock that goes on by a quarter of a second whenever it is read."""
+    return count(5000.0, 0.25).__next__
 
 
 class Running:
@@ -65,7 +63,7 @@ class Running:
     def _join(self) -> None:
         uses = iter(range(1000))
         stage = StillStage(lambda: next(uses) == 6)
-        one, code = enrolled(self.study, stage, clock=Clock())
+        one, code = enrolled(self.study, stage, clock=ticking())
         self.codes[one.person] = code
         self.schedules[one.person] = self.study.schedule(one.person, code)
         self.sessions.append(one)
@@ -274,7 +272,7 @@ def test_the_same_holds_with_renderings_that_are_pressed_on_the_twin(tmp_path: P
     seen: dict[str, list[Any]] = {}
     drawn: set[str] = set()
     while len(drawn) < 2:
-        one, code = enrolled(study, SimulatedFingerRenderer(study.folder), clock=Clock())
+        one, code = enrolled(study, SimulatedFingerRenderer(study.folder), clock=ticking())
         drawn.add(json.dumps(assignments(study.schedule(one.person, code).trials)))
         do_all(one)
         one.close()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import partialmethod
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +14,6 @@ from msgspec import structs
 from fdvv.errors import InputError, ModelError
 from fdvv_people.study.admin.study import Study
 from fdvv_people.study.analysis.analyse import analyse
-from fdvv_people.study.files import people as _study_people
-from fdvv_people.study.files.run_key import RunKey
-from fdvv_people.study.files.seal import lock_with_code
 from fdvv_people.study.plan.claim import claim_p, claim_scores
 from fdvv_people.study.plan.plan import Claim
 from fdvv_people.study.simulation.people import ProxySettings
@@ -29,11 +27,7 @@ pytestmark = pytest.mark.usefixtures("hasty_disk")
 @pytest.fixture(autouse=True)
 def cheap_codes(monkeypatch: pytest.MonkeyPatch) -> None:
     """Stretch codes cheaply."""
-
-    def lock(data: bytes, code: str, room_bytes: int, _cost: object, run_key: RunKey | None) -> str:
-        return lock_with_code(data, code, room_bytes, CHEAP, run_key)
-
-    monkeypatch.setattr(_study_people, "lock_with_code", lock)
+    monkeypatch.setattr(Study, "enrol", partialmethod(Study.enrol, cost=CHEAP))
 
 
 def simulated(folder: Path, people: int = 2, **about: object) -> Study:
