@@ -50,12 +50,6 @@ def test_what_is_written_is_read_back_whole(tmp_path: Path) -> None:
     read.close()
 
 
-def test_an_edit_keeps_what_was_suggested() -> None:
-    trial = filled(None).trials[0]
-    assert (trial.design, trial.suggested) == (B, A)
-    assert trial.scores == {"asynchrony_ms": Score(81.5, 7.25)}
-
-
 @pytest.mark.parametrize("state", [TrialState.SHOWN, TrialState.DONE, TrialState.ABANDONED])
 @pytest.mark.parametrize("number", [0, 1, 2])
 def test_a_trial_at_its_end_stays_as_it_is(number: int, state: TrialState) -> None:
@@ -113,14 +107,6 @@ def test_a_record_that_cannot_follow_is_refused_by_its_number(tmp_path: Path) ->
         Ledger(path)
 
 
-def test_two_at_work_on_one_file_is_one_clear_line(tmp_path: Path) -> None:
-    first = filled(tmp_path / "trials.jsonl")
-    with pytest.raises(InputError, match="another process"):
-        Ledger(tmp_path / "trials.jsonl")
-    first.close()
-    Ledger(tmp_path / "trials.jsonl").close()
-
-
 def test_every_suggestion_is_found_with_what_was_known_then(tmp_path: Path) -> None:
     path = tmp_path / "trials.jsonl"
     filled(path).close()
@@ -130,15 +116,6 @@ def test_every_suggestion_is_found_with_what_was_known_then(tmp_path: Path) -> N
     assert found[0][1].design == A
     assert found[1][0][0].state is TrialState.DONE
     assert found[5][0][4].best == (1,)
-
-
-@pytest.mark.parametrize("best", [2, -1])
-def test_a_choice_is_one_of_the_designs(best: int) -> None:
-    ledger = filled(None)
-    before = ledger.trials
-    with pytest.raises(InputError, match="has designs 0 to 1"):
-        ledger.become(6, TrialState.DONE, best=[best])
-    assert ledger.trials == before
 
 
 EARLIER: tuple[dict[str, Any], ...] = (

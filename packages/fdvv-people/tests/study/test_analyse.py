@@ -54,25 +54,6 @@ def test_the_papers_statistics_come_out() -> None:
     assert found.preference.interval.low < 334 / 432 < found.preference.interval.high
 
 
-def test_tests_by_button_are_scipys_of_peoples_means_holm_corrected() -> None:
-    answers = realism(12, 2, ("Clear", "Red"), lean=0.5)
-    found = analyse(answers).tests
-    p = []
-    for one in found:
-        rows = answers.item == one.button
-        pair = answers.ratings["realism"][rows].reshape(12, 2, 2).mean(axis=1)
-        differences = np.round(pair[:, 1] - pair[:, 0], 9)
-        zeros = differences == 0
-        z = wilcoxon(differences[~zeros], method="approx", correction=False)
-        assert_allclose(one.test.p_asymptotic, z.pvalue)
-        assert_allclose([one.more_spread.mean, one.less_spread.mean], pair.mean(axis=0)[::-1])
-        assert_allclose(one.more_spread.sd, pair[:, 1].std(ddof=1))
-        p.append(one.test.p_exact)
-    order = np.argsort(p)
-    stepped = np.minimum(1, np.maximum.accumulate(np.sort(p) * np.arange(len(p), 0, -1)))
-    assert_allclose(np.array([one.p_holm for one in found])[order], stepped)
-
-
 def _harder_rounds() -> Answers:
     """Return six people of two rounds, the second rated higher, who all feel FDVV a step above FD."""
     answers = realism(6, 2, ("Clear",))

@@ -12,11 +12,11 @@ import pytest
 from fdvv.device.boards import HostBoard
 from fdvv.device.linked import LinkedDevice
 from fdvv.device.twin import SimulatedPerson
-from fdvv.errors import DeviceError
 from fdvv_people.study.plan.plan import Stimulus
 from fdvv_people.study.session.participant import Participant
 from fdvv_people.study.stimulus.device import DeviceRenderer
-from tests.support.study_people import PASSPHRASE, PLAN, answer_of, enrolled, frozen_study
+from tests.study.test_participant_killed import run_through_losses
+from tests.support.study_people import PASSPHRASE, PLAN, frozen_study
 
 pytestmark = pytest.mark.usefixtures("hasty_disk")
 
@@ -26,20 +26,18 @@ ONE_BUTTON = PLAN[: PLAN.rindex("[[items]]")] + PLAN[PLAN.index("[[ratings]]") :
 class KilledStage(DeviceRenderer):
     """A device whose process is killed at some moment, in the middle of whatever it does then.
 
-    Attributes
-    ----------
-    prepared : what its trials made ready.
+    labels : that its last trial made ready.
     """
 
     def __init__(self, folder: Path, after_s: float) -> None:
         self.board = HostBoard()
         super().__init__(LinkedDevice(self.board, SimulatedPerson()), folder, switch_s=0.0)
-        self.prepared: list[dict[str, Stimulus]] = []
+        self.labels: Mapping[str, Stimulus] = {}
         self._killer = threading.Timer(after_s, self.board._process.kill)
         self._killer.start()
 
     def prepare(self, labels: Mapping[str, Stimulus]) -> None:
-        self.prepared.append(dict(labels))
+        self.labels = dict(labels)
         super().prepare(labels)
 
     def close(self) -> None:
@@ -57,28 +55,9 @@ def run_with_kills(folder: Path, kills: int, seed: int, rounds: int) -> Particip
     def stage() -> KilledStage:
         return KilledStage(study.folder, rng.uniform(0.0, 2.0) if next(left, None) is not None else 3600.0)
 
-    now = stage()
-    one, _ = enrolled(study, now)
-    labels: dict[int, dict[str, Stimulus]] = {}
-    answered: list[tuple[int, str]] = []
-    while (step := one.step()).kind != "done":
-        assert step.number not in [number for number, _ in answered]
-        try:
-            one.show_trial(step.number)
-            assert labels.setdefault(step.number, now.prepared[-1]) == now.prepared[-1]
-            for label in step.trial.labels:
-                one.go_to(label)
-            answer = answer_of(one.state.started.trials[step.number], one.state.attempts[step.number])
-            one.answer(step.number, answer)
-            answered.append((step.number, answer.choice))
-        except DeviceError:
-            one.reconnect(now := stage())
-    assert [(number, event.answer.choice) for number, event in one.state.answers.items()] == answered
-    assert len(one.state.answers) + len(one.state.skipped) == len(one.state.started.trials)
-    one.close()
-    assert study.verify(passphrase=PASSPHRASE) == ()
+    one = run_through_losses(study, stage)
     found = study.unseal(PASSPHRASE, "a test", "to see whether all is there")
-    assert sum(found.choice != "") == len([number for number, _ in answered if number > 0])
+    assert sum(found.choice != "") == len([number for number in one.state.answers if number > 0])
     return one
 
 

@@ -8,6 +8,7 @@ import tempfile
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,7 +17,6 @@ from fdvv_people.study.admin.study import Study
 from fdvv_people.study.plan.events import TrialFace
 from fdvv_people.study.plan.plan import Stimulus
 from fdvv_people.study.plan.sitting import ENDS, Step
-from fdvv_people.study.plan.trial import TrialAnswer
 from fdvv_people.study.session.participant import Participant
 from tests.hatchery import Hatchery, fork_and_kill
 from tests.support.campaign import campaign, in_turn
@@ -126,41 +126,40 @@ def test_no_answer_is_lost_at_five_hundred_random_moments(
     assert witness.done
 
 
-def run_with_a_failing_device(study: Study, seed: int, share: float) -> tuple[Participant, int]:
-    """Run a session whose device goes away now and then; return it, and how often it went."""
-    rng = random.Random(seed)
-    lost = 0
-
-    def dies() -> bool:
-        nonlocal lost
-        gone = rng.random() < share
-        lost += gone
-        return gone
-
-    labels: dict[int, dict[str, Stimulus]] = {}
-    answered: list[tuple[int, TrialAnswer]] = []
-
-    def on_prepare(found: Mapping[str, Stimulus]) -> None:
-        number = one.step().number
-        assert labels.setdefault(number, dict(found)) == dict(found)
-        assert number not in [done for done, _ in answered]
-
-    one, _ = enrolled(study, StillStage(dies, on_prepare))
+def run_through_losses(study: Study, new_stage: Callable[[], Any]) -> Participant:
+    """Run a session on stages that go away, one after the other; each tells the labels that it prepared."""
+    stage = new_stage()
+    one, _ = enrolled(study, stage)
+    labels: dict[int, Mapping[str, Stimulus]] = {}
+    answered: list[tuple[int, str]] = []
     while (step := one.step()).kind != "done":
+        assert step.number not in [number for number, _ in answered]
         try:
             one.show_trial(step.number)
+            assert labels.setdefault(step.number, stage.labels) == stage.labels
             for label in step.trial.labels:
                 one.go_to(label)
             answer = answer_of(one.state.started.trials[step.number], one.state.attempts[step.number])
             one.answer(step.number, answer)
-            answered.append((step.number, answer))
+            answered.append((step.number, answer.choice))
         except DeviceError:
-            one.reconnect(StillStage(dies, on_prepare))
+            one.reconnect(stage := new_stage())
+    assert [(number, event.answer.choice) for number, event in one.state.answers.items()] == answered
     assert len(one.state.answers) + len(one.state.skipped) == len(one.state.started.trials)
-    kept = [(number, event.answer.choice) for number, event in one.state.answers.items()]
-    assert kept == [(number, answer.choice) for number, answer in answered]
     one.close()
-    return one, lost
+    assert study.verify(passphrase=PASSPHRASE) == ()
+    return one
+
+
+def run_with_a_failing_device(study: Study, seed: int, share: float) -> tuple[Participant, int]:
+    """Run a session whose device goes away now and then; return it, and how often it went."""
+    rng, gone = random.Random(seed), list[bool]()
+
+    def dies() -> bool:
+        gone.append(rng.random() < share)
+        return gone[-1]
+
+    return run_through_losses(study, lambda: StillStage(dies)), sum(gone)
 
 
 @pytest.mark.usefixtures("hasty_disk")
@@ -168,7 +167,6 @@ def test_a_device_may_go_away_at_any_moment_of_a_session(tmp_path: Path) -> None
     study = frozen_study(tmp_path / "study", rounds=3)
     one, lost = run_with_a_failing_device(study, 1, 0.2)
     assert lost >= one.state.interruptions > 0
-    assert study.verify(passphrase=PASSPHRASE) == ()
 
 
 @pytest.mark.slow
@@ -184,4 +182,3 @@ def test_no_answer_is_lost_when_the_device_goes_away_five_hundred_times(
         answers, skipped = answers + len(one.state.answers), skipped + len(one.state.skipped)
     for name, count in (("lost", lost), ("answers", answers), ("skipped", skipped)):
         record_property(name, count)
-    assert study.verify(passphrase=PASSPHRASE) == ()

@@ -14,7 +14,6 @@ from fdvv.errors import ModelError
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
-from fdvv.model.noticeable import vibration_threshold_um
 from fdvv.model.vibration import Mode, Vibration
 from fdvv_people.study.simulation.perception import (
     Senses,
@@ -100,14 +99,6 @@ def test_a_decaying_vibration_has_the_energy_of_its_samples(decay_1_s: float, du
     t_s = (np.arange(20_000) + 0.5) * duration_s / 20_000
     energy = np.sum(np.exp(-2 * decay_1_s * t_s)) * duration_s / 20_000 / 0.2
     assert vibration_above_threshold(decaying, SENSES) == pytest.approx(math.sqrt(energy), rel=1e-4)
-
-
-def test_the_threshold_is_lowest_at_250_hz_and_twelve_decibels_an_octave_away() -> None:
-    lowest = vibration_threshold_um(250)
-    assert lowest == SENSES.threshold_um
-    assert vibration_threshold_um(500) / vibration_threshold_um(1000) == pytest.approx(1 / 4, rel=0.1)
-    assert vibration_threshold_um(62.5) / vibration_threshold_um(125) == pytest.approx(4, rel=0.1)
-    assert vibration_threshold_um(10) == vibration_threshold_um(40)
 
 
 def test_a_difference_is_none_between_the_same_and_the_same_both_ways() -> None:

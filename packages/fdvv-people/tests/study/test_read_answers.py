@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -176,10 +175,3 @@ def test_the_documents_lines_for_pandas_read_what_is_written(
     exec(code, found)
     assert found["means"].shape == (8, 2)
     np.testing.assert_allclose(found["shares"].sum(axis=1), 1.0)
-
-
-def test_a_column_of_simulated_answers_is_believed_without_a_code_book(tmp_path: Path) -> None:
-    answers = replace(realism(2, 1, ("Clear",)), simulated=True)
-    write_answers(tmp_path, answers)
-    (tmp_path / "codebook.json").unlink()
-    assert read_answers(tmp_path, ColumnMap(kind="realism", stimuli=("FD", "FDVV"))).simulated

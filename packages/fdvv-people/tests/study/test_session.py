@@ -26,7 +26,6 @@ from fdvv_people.study.plan.events import (
     TrialSkipped,
     check_answer,
     checked_page,
-    choices_of,
     face_of,
     record_of,
 )
@@ -323,13 +322,6 @@ def test_what_is_asked_may_be_answered(choice: str) -> None:
 def test_what_is_not_asked_may_not_be_answered(answer: TrialAnswer) -> None:
     with pytest.raises(InputError):
         check_answer(plan_of(ratings=RATED), TRIAL, answer)
-
-
-def test_ties_are_offered_where_the_kind_allows_them_and_the_plan_wants_them() -> None:
-    assert choices_of(plan_of()) == ("A", EQUAL, "B")
-    assert choices_of(plan_of(ties=False)) == ("A", "B")
-    assert choices_of(plan_of(kind="abx")) == ("A", "B")
-    assert choices_of(plan_of(kind="mushra")) == ()
 
 
 QUESTIONS = (

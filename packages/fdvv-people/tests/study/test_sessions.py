@@ -9,13 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from msgspec import structs
 
 from fdvv.errors import InputError, ModelError
 from fdvv_people.study.admin.study import Study
-from fdvv_people.study.analysis.analyse import analyse
-from fdvv_people.study.plan.claim import claim_p, claim_scores
-from fdvv_people.study.plan.plan import Claim
 from fdvv_people.study.simulation.people import ProxySettings
 from fdvv_people.study.simulation.sessions import Simulation, simulate_study
 from tests.support.study_people import CHEAP, CONSENT, PASSPHRASE, frozen_study
@@ -134,17 +130,3 @@ def stopping(at: int) -> Callable[[int, int], None]:
             raise KeyboardInterrupt
 
     return tell
-
-
-@pytest.mark.slow
-def test_the_claim_is_analysed_by_the_very_test_that_planned_it(tmp_path: Path) -> None:
-    study = frozen_study(tmp_path / "s", rounds=1, practice=0)
-    sharp = ProxySettings().changed("weber_ratio", 0.02)
-    simulate_study(study, 6, Simulation(pressed=False, settings=sharp))
-    answers = study.unseal(PASSPHRASE, "a test", "to test")
-    claim = Claim(more="FDVV", less="FD")
-    found = analyse(answers, structs.replace(study.plan, claim=claim))
-    assert found.simulated
-    assert found.claim is not None
-    _, scores = claim_scores(found.screening.answers, claim)
-    assert found.claim.test.p_exact == claim_p(scores[np.newaxis])[0]

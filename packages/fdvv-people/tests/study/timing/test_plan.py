@@ -27,11 +27,6 @@ def test_the_shipped_timing_study_is_the_papers(tmp_path: Path) -> None:
     assert 10 * (plan.trials - plan.training_trials) == 240
 
 
-def test_an_unknown_field_is_refused_with_the_nearest_one() -> None:
-    with pytest.raises(InputError, match="gap_days"):
-        KIND.read_plan(SMALL.replace("presses = 3", "gap_day = 3"), "small")
-
-
 def changed(**changes: object) -> TimingPlan:
     return msgspec.structs.replace(PLAN, **changes)
 
