@@ -20,8 +20,6 @@ from fdvv_people.study.files.log_head import LogHead, head_path
 from tests.support.campaign import campaign
 from tests.support.kill import Killed, kill_at
 
-pytestmark = pytest.mark.usefixtures("hasty_disk")
-
 KEY = bytes(range(32))
 RECORDS = [{"shown": {"number": i}, "x": [0.1 * i, "ä\n", None]} for i in range(4)]
 KEYS = pytest.mark.parametrize("key", [b"", KEY], ids=["plain", "marked"])

@@ -13,8 +13,6 @@ from fdvv_people.study.admin.study import Study
 from tests.support.kill import Killed, kill_at
 from tests.support.studies import CHEAP, PASSPHRASE, all_files, answered, chosen, in_haste, small_study
 
-pytestmark = pytest.mark.usefixtures("hasty_disk")
-
 AGE = 87.5
 TRACES = (b"87.5", b"Oulu")
 

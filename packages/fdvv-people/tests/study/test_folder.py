@@ -23,8 +23,6 @@ from tests.support.studies import (
     small_study,
 )
 
-pytestmark = pytest.mark.usefixtures("hasty_disk")
-
 CODES: dict[str, str] = {}
 
 

@@ -27,8 +27,6 @@ from fdvv_people.study.simulation.sessions import Simulation, simulate_study
 from tests.support.jnds import measured, record_of
 from tests.support.study_people import CHEAP, PASSPHRASE
 
-pytestmark = pytest.mark.usefixtures("hasty_disk")
-
 
 def played(folder: Path, kind: str, **changes: str) -> Study:
     """Return an unsealed study of two simulated people, both of whom count."""

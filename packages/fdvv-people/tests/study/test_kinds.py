@@ -21,8 +21,6 @@ from tests.support.studies import all_files
 from tests.support.study_people import CHEAP, CONSENT, StillStage, answer_of
 from tests.support.timing import Clock
 
-pytestmark = pytest.mark.usefixtures("hasty_disk")
-
 SHIPPED = [(kind, name) for kind in all_kinds() for name in kind.templates]
 
 

@@ -28,8 +28,6 @@ from tests.support.study_people import (
 )
 from tests.support.timing import Clock
 
-pytestmark = pytest.mark.usefixtures("hasty_disk")
-
 
 def test_a_whole_session_ends_as_done_and_the_study_is_whole(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "study", tables=CONSENT)

@@ -28,8 +28,6 @@ from tests.support.study_people import PASSPHRASE, PLAN, StillStage, answer_of, 
 
 ONE, OTHER = "plain-curve-at-all-speeds", "curves-that-follow-the-velocity-of-a-press"
 """Names of stimuli so long that no random bytes hold them, and of different length."""
-pytestmark = pytest.mark.usefixtures("hasty_disk")
-
 WHOLE = PLAN.replace('name = "FD"', f'name = "{ONE}"').replace('name = "FDVV"', f'name = "{OTHER}"')
 NAMED = WHOLE[: WHOLE.rindex("[[items]]")] + WHOLE[WHOLE.index("[[ratings]]") :]
 """One item, for the orders of items differ between people and are no secret."""

@@ -18,8 +18,6 @@ from fdvv_people.study.stimulus.device import DeviceRenderer
 from tests.study.test_participant_killed import run_through_losses
 from tests.support.study_people import PASSPHRASE, PLAN, frozen_study
 
-pytestmark = pytest.mark.usefixtures("hasty_disk")
-
 ONE_BUTTON = PLAN[: PLAN.rindex("[[items]]")] + PLAN[PLAN.index("[[ratings]]") :]
 
 

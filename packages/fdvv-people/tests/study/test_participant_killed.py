@@ -162,7 +162,6 @@ def run_with_a_failing_device(study: Study, seed: int, share: float) -> tuple[Pa
     return run_through_losses(study, lambda: StillStage(dies)), sum(gone)
 
 
-@pytest.mark.usefixtures("hasty_disk")
 def test_a_device_may_go_away_at_any_moment_of_a_session(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "study", rounds=3)
     one, lost = run_with_a_failing_device(study, 1, 0.2)

@@ -11,11 +11,11 @@ from fdvv.errors import InputError
 from fdvv_people.study.admin.study import Study
 from fdvv_people.study.files.people import EVERYBODY
 from tests.support.kill import Killed, kill_at
-from tests.support.studies import CHEAP, in_haste, small_study
+from tests.support.studies import CHEAP, small_study
 
 
 @pytest.fixture
-def study(tmp_path: Path, hasty_disk: None) -> Study:
+def study(tmp_path: Path) -> Study:
     """A study with two people."""
     found = small_study(tmp_path)
     for _ in range(2):
@@ -59,8 +59,7 @@ def test_nobody_is_paused_who_is_not_there_and_nothing_before_it_is_frozen(
 def test_a_pause_that_is_killed_is_in_force_or_not_and_the_record_whole(
     tmp_path: Path, step: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with in_haste():
-        study = small_study(tmp_path)
+    study = small_study(tmp_path)
     with contextlib.suppress(Killed), kill_at(step, monkeypatch):
         study.pause()
     assert study.verify() == ()

@@ -16,7 +16,6 @@ from fdvv_people.study.analysis.read_answers import read_answers
 from tests.support.studies import CHEAP, PASSPHRASE, answered, chosen, small_study
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="Windows knows no such permissions")
-pytestmark = pytest.mark.usefixtures("hasty_disk")
 
 
 def open_to_others(folder: Path) -> list[str]:

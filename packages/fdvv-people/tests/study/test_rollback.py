@@ -23,8 +23,6 @@ from fdvv_people.study.session.participant import Participant
 from tests.support.studies import all_files, attended, in_haste
 from tests.support.study_people import PASSPHRASE, StillStage, do_all, enrolled, frozen_study
 
-pytestmark = pytest.mark.usefixtures("hasty_disk")
-
 LOGS = ("session.jsonl", "sealed.jsonl")
 CODES: dict[str, str] = {}
 

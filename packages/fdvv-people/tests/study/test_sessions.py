@@ -17,7 +17,6 @@ from fdvv_people.study.simulation.sessions import Simulation, simulate_study
 from tests.support.study_people import CHEAP, CONSENT, PASSPHRASE, frozen_study
 
 FAST = Simulation(pressed=False)
-pytestmark = pytest.mark.usefixtures("hasty_disk")
 
 
 @pytest.fixture(autouse=True)

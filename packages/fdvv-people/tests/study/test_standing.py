@@ -41,7 +41,6 @@ def test_a_draft_says_what_it_comes_to_or_what_is_missing() -> None:
     assert missing == ("Not ready to freeze: rounds: too few (and 1 more).", "warning")
 
 
-@pytest.mark.usefixtures("hasty_disk")
 def test_a_frozen_study_counts_who_is_there_and_who_is_done(tmp_path: Path) -> None:
     study = frozen_study(tmp_path, plan_text())
     assert standing(study) == ("0 of 2 participants done.", "")

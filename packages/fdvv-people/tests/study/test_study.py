@@ -22,8 +22,6 @@ from fdvv_people.study.stimulus.renderer import stimulus_model
 from tests.support.kill import Killed, kill_at
 from tests.support.studies import CHEAP, PASSPHRASE, all_files, in_haste, plan_file, small_study
 
-pytestmark = pytest.mark.usefixtures("hasty_disk")
-
 
 @pytest.fixture(scope="module")
 def frozen(tmp_path_factory: pytest.TempPathFactory) -> Study:

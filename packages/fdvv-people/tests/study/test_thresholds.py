@@ -147,7 +147,6 @@ def test_jnds_are_in_the_units_of_the_button() -> None:
     assert standards_of(PLAN, Path()) == {"MX Clear": sizes}
 
 
-@pytest.mark.usefixtures("hasty_disk")
 def test_simulated_participants_play_it_to_a_report_that_says_so(tmp_path: Path) -> None:
     text = (
         template_text("thresholds").replace("trials = 54", "trials = 8").replace("people = 8", "people = 2")

@@ -27,8 +27,6 @@ from tests.support.studies import (
     small_study,
 )
 
-pytestmark = pytest.mark.usefixtures("hasty_disk")
-
 
 def table(study: Study, name: str) -> list[dict[str, str]]:
     with (study.folder / "unsealed" / name).open(newline="") as stream:
