@@ -10,7 +10,6 @@ from benchmarks.people_calibration import (
     BAATH,
     Taps,
     fit_timing,
-    person_spreads_ms,
     pooled_log_likelihood,
     read_taps,
     spread_error_ratio,
@@ -52,12 +51,6 @@ def test_a_clock_that_scales_tells_unknown_people_better_than_one_normal_for_all
     guess = fit.clock_ratio * np.array(PERIODS_ms)
     assert spread_error_ratio(guess, unknown) < 0.35
     assert spread_error_ratio(np.full(3, known.late_ms.std()), unknown) > 0.5
-
-
-def test_people_can_be_split_and_spreads_are_reported_person_by_person() -> None:
-    taps = drawn(4, 3)
-    assert taps.of([1, 3]).people == (1, 3)
-    assert np.array_equal(person_spreads_ms(taps)[[1, 3]], person_spreads_ms(taps.of([1, 3])))
 
 
 def test_too_few_taps_are_refused() -> None:

@@ -87,13 +87,6 @@ def test_a_batch_that_was_half_written_comes_out_as_the_whole_one(tmp_path: Path
         assert not {trial.number for trial in session.ask()} & {trial.number for trial in whole}
 
 
-def test_the_start_is_tried_first_and_marked(tmp_path: Path) -> None:
-    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol", start=MIDDLE)) as session:
-        first, second = session.ask(2)
-        assert (first.design, first.origin) == (MIDDLE, "start")
-        assert second.origin == "sobol"
-
-
 def test_a_suggestion_can_be_edited_until_it_is_shown(tmp_path: Path) -> None:
     with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol")) as session:
         (trial,) = session.ask()
@@ -106,17 +99,6 @@ def test_a_suggestion_can_be_edited_until_it_is_shown(tmp_path: Path) -> None:
             session.edit(trial.number, MIDDLE)
         session.answer(trial.number, scored(MIDDLE))
     assert replay_differences(tmp_path / "run") == ()
-
-
-def test_failed_trials_count_and_abandoned_ones_do_not(tmp_path: Path) -> None:
-    with Optimization.create(tmp_path / "run", OptimizeSetup(engine="sobol", budget=3)) as session:
-        a, b = session.ask(2)
-        session.give_up(a.number, "the rig refused it")
-        session.give_up(b.number, failed=False)
-        assert session.left == 2
-        go_on(session, 2)
-        assert session.finished
-        assert [t.state for t in session.trials] == ["failed", "abandoned", "done", "done"]
 
 
 def test_scores_of_every_objective_are_asked_for(tmp_path: Path) -> None:
@@ -145,16 +127,6 @@ def test_a_setup_that_cannot_be_leaves_no_folder(tmp_path: Path) -> None:
         with pytest.raises(InputError):
             Optimization.create(tmp_path / "run", setup)
     assert not (tmp_path / "run").exists()
-
-
-def test_a_setup_is_read_back_as_it_was(tmp_path: Path) -> None:
-    with Optimization.create(tmp_path / "a", OptimizeSetup(engine="sobol")) as session:
-        go_on(session, 3)
-        trials = session.trials
-    setup = OptimizeSetup(engine="sobol", prior=trials, level="easy", about={"person": {"name": "P1"}})
-    with Optimization.create(tmp_path / "b", setup) as session:
-        assert session.setup == setup
-        assert session.problem.prior == trials
 
 
 def test_a_run_states_the_options_whose_defaults_may_change_and_one_that_does_not_has_the_earlier_ones(

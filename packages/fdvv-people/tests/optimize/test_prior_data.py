@@ -15,7 +15,7 @@ from fdvv_people.optimize.population.plan import PopulationPlan
 from fdvv_people.optimize.population.population import run_population
 from fdvv_people.optimize.run.begin import experiment_prior, read_grid
 from tests.support.executors import Here
-from tests.support.grids import SEED, grid
+from tests.support.grids import grid
 
 
 @pytest.fixture(scope="module")
@@ -36,11 +36,6 @@ def test_a_level_without_a_grid_or_with_two_is_refused(grids: tuple[Path, Path])
         experiment_prior(grids[:1], 1)
     with pytest.raises(InputError, match="is a second grid of the level easy"):
         experiment_prior((grids[0], *grids), 1)
-
-
-def test_the_experiments_own_people_are_no_others(grids: tuple[Path, Path]) -> None:
-    with pytest.raises(InputError, match=f"both are drawn with seed {SEED}; give the experiment another"):
-        experiment_prior(grids, SEED)
 
 
 def test_what_is_no_finished_grid_is_refused(tmp_path: Path) -> None:

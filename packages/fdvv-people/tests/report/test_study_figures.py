@@ -46,13 +46,15 @@ def test_marks_and_means_are_written_above_the_bars() -> None:
     assert labels[0] == f"{scores()[:, 0].mean():.1f}"
 
 
-def test_bars_of_other_counts_than_their_names_are_refused() -> None:
+def test_bars_of_other_counts_than_their_names_and_figures_of_nothing_are_refused() -> None:
     with pytest.raises(ModelError, match="3 conditions need columns"):
         bars("easy", scores((10, 4)))
     with pytest.raises(ModelError, match="as many marks"):
         bars("easy", scores(), ("*",))
     with pytest.raises(ModelError, match="at least one level"):
         plot_score_bars([], "asynchrony (ms)")
+    with pytest.raises(ModelError, match="at least one"):
+        plot_designs([])
 
 
 def test_the_best_so_far_never_rises_and_passes_over_a_trial_without_a_score() -> None:
@@ -72,11 +74,6 @@ def test_designs_show_their_points_and_marks_in_a_grid() -> None:
     assert [text.get_text() for text in legend.get_texts()] == [
         "force of the press", "control point", "activation", "vibration"
     ]  # fmt: skip
-
-
-def test_a_figure_without_a_design_is_refused() -> None:
-    with pytest.raises(ModelError, match="at least one"):
-        plot_designs([])
 
 
 def test_of_one_person_failed_trials_leave_gaps_and_no_median_is_drawn() -> None:

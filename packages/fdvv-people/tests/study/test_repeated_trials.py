@@ -59,13 +59,6 @@ def test_a_trial_that_stands_twice_is_refused_with_both_lines(
             assert f": {trial} {named[2]}, participant {named[0]}, button {named[1]}" in said
 
 
-@pytest.mark.parametrize("trial", ["trial", "block"])
-def test_a_table_that_is_pasted_twice_is_refused(trial: str, tmp_path: Path) -> None:
-    head, rows = f"participant,button,{trial},preferred", trials(["FD", "FDVV"])
-    with pytest.raises(InputError, match="line 20: is the trial of line 2 once more, word for word"):
-        table(tmp_path / "a.csv", head, rows * 2)
-
-
 def test_a_column_that_is_mapped_as_the_round_is_refused_alike(tmp_path: Path) -> None:
     for (heads, cells, _), asked in KINDS:
         head, rows = f"participant,button,pass,{heads}", trials(cells, long="equal" not in cells[1])
