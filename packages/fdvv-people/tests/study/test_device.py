@@ -179,11 +179,6 @@ def test_labels_that_the_paper_s_rig_was_compensated_with_are_felt_as_intended(t
         assert all(error is not None and error < Exclusion().error_cN for error in found.error_cN), found
 
 
-def test_buttons_of_different_travel_are_refused_together() -> None:
-    with pytest.raises(InputError, match="travels differ"):
-        scripted().prepare({"A": FD, "B": Stimulus(name="other", button="rubber-dome")})
-
-
 def silent(tick: int, inputs: Inputs) -> Inputs:
     """Have the vibration board not answer."""
     return inputs._replace(board=1 << 3) if tick > 50 else inputs

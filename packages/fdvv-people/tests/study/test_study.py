@@ -103,13 +103,6 @@ def test_a_plan_may_be_changed_until_it_is_frozen(tmp_path: Path) -> None:
         study.freeze(PASSPHRASE, CHEAP)
 
 
-def test_nothing_can_be_done_before_the_study_is_frozen(tmp_path: Path) -> None:
-    study = Study.declare(tmp_path / "study", plan_file(tmp_path / "desk"))
-    with pytest.raises(InputError, match="is not frozen"):
-        study.enrol(cost=CHEAP)
-    assert study.history() == ()
-
-
 def test_a_plan_with_problems_is_not_frozen(tmp_path: Path) -> None:
     path = plan_file(tmp_path / "desk")
     path.write_text(path.read_text().replace('title = { en = "Consent" }', "title = {}"))
@@ -267,19 +260,6 @@ def test_the_room_of_a_schedule_does_not_depend_on_what_was_drawn(kind: str, tmp
     assert len({room_bytes(schedule) for schedule in schedules}) == 1
     holder, _ = new_key_holder(PASSPHRASE, CHEAP)
     assert len({len(lock_schedule(one, holder.seal, "0" * 12, CHEAP)) for one in schedules[:6]}) == 1
-
-
-def test_a_keepers_file_may_lie_elsewhere(tmp_path: Path) -> None:
-    study = small_study(tmp_path)
-    person, code = study.enrol(cost=CHEAP)
-    moved = tmp_path / "safe" / "mine.json"
-    write_atomic(moved, (study.folder / "keeper.json").read_bytes())
-    (study.folder / "keeper.json").unlink()
-    assert study.verify(study.fingerprint) == ()
-    with pytest.raises(InputError, match="No such file"):
-        study.key_holder(PASSPHRASE)
-    keeper = study.key_holder(PASSPHRASE, moved)
-    assert study.schedule(person, keeper) == study.schedule(person, code)
 
 
 def test_the_keepers_file_of_another_study_is_refused(tmp_path: Path, frozen: Study) -> None:

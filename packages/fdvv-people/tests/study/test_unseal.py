@@ -95,21 +95,6 @@ def test_the_tables_tell_what_was_rendered_and_what_pages_asked(unsealed: tuple[
     assert (study.folder / "unsealed" / "codebook.json").is_file()
 
 
-def test_a_second_time_is_on_record_too(tmp_path: Path) -> None:
-    study = small_study(tmp_path)
-    for who in ("one", "other"):
-        study.unseal(PASSPHRASE, who, "to see")
-    assert [r["unsealed"]["who"] for r in study.history() if "unsealed" in r] == ["one", "other"]
-    assert study.verify(study.fingerprint, PASSPHRASE) == ()
-
-
-def test_nobody_begins_a_study_that_was_unsealed(tmp_path: Path) -> None:
-    study = small_study(tmp_path)
-    study.unseal(PASSPHRASE, "me", "to see")
-    with pytest.raises(InputError, match="was unsealed"):
-        study.enrol(cost=CHEAP)
-
-
 @pytest.mark.parametrize(
     ("words", "who", "why", "reason"),
     [
