@@ -40,11 +40,7 @@ PRESS = SweepPlan(
     version=1,
     measure="press",
     seed=5,
-    factors={
-        "button": ["mx-clear", "mx-red"],
-        "speed_mm_s": [50.0, 150.0],
-        "finger": {"draw": 2},
-    },
+    factors={"button": ["mx-clear", "mx-red"], "speed_mm_s": [50.0, 150.0], "finger": {"draw": 2}},
     settings={"presses": 1},
 )
 

@@ -20,20 +20,8 @@ from tests.support.command_line import Ran, Run
 from tests.support.executors import Here
 
 SHORT = (
-    "--trials",
-    "4",
-    "--presses",
-    "4",
-    "--person",
-    "3",
-    "--seed",
-    "4",
-    "--engine",
-    "sobol",
-    "--space",
-    "paper",
-    "--retest",
-    "2",
+    *("--trials", "4", "--presses", "4", "--person", "3", "--seed", "4"),
+    *("--engine", "sobol", "--space", "paper", "--retest", "2"),
 )
 
 

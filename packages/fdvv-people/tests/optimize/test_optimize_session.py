@@ -111,10 +111,7 @@ def test_scores_of_every_objective_are_asked_for(tmp_path: Path) -> None:
 
 def test_a_folder_in_use_or_with_something_in_it_is_refused_in_one_line(tmp_path: Path) -> None:
     setup = OptimizeSetup(engine="sobol")
-    with (
-        Optimization.create(tmp_path / "run", setup),
-        pytest.raises(InputError, match="another process"),
-    ):
+    with Optimization.create(tmp_path / "run", setup), pytest.raises(InputError, match="another process"):
         Optimization.open(tmp_path / "run")
     with pytest.raises(InputError, match="not empty"):
         Optimization.create(tmp_path / "run", setup)

@@ -97,18 +97,8 @@ class Adversary:
         chosen = [float(answer["choice"] == label) for label in ("A", "B", "equal")]
         pressed = [float(n) for n in answer["presses"].values()]
         first = [t for t, _ in answer["switches"]][:2]
-        return [
-            1.0,
-            i,
-            i % 2,
-            one["at_s"] % 60,
-            len(text),
-            sealed,
-            *chosen,
-            *pressed,
-            *first,
-            *rated.values(),
-        ]
+        placed = [1.0, i, i % 2, one["at_s"] % 60, len(text), sealed]
+        return [*placed, *chosen, *pressed, *first, *rated.values()]
 
 
 def right_of(adversary: Adversary, finished: Finished) -> np.ndarray:

@@ -14,16 +14,7 @@ from fdvv_people.study.timing.participant import TimingParticipant
 from fdvv_people.study.timing.plan import DAY_s
 from fdvv_people.study.timing.state import TimingState
 from tests.support.studies import PASSPHRASE
-from tests.support.timing import (
-    SMALL,
-    TIMING,
-    Clock,
-    do_all,
-    do_step,
-    frozen,
-    late_s,
-    press,
-)
+from tests.support.timing import SMALL, TIMING, Clock, do_all, do_step, frozen, late_s, press
 
 TAPPING = SMALL.split("[[conditions]]")[0].replace('levels = ["easy", "hard"]', 'task = "tapping"\ntap_s = 3')
 TAPPING = (
