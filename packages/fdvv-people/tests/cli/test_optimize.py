@@ -157,37 +157,21 @@ def test_the_report_is_a_page_that_says_simulated(fdvv: Run, tmp_path: Path) -> 
     page = (tmp_path / "run" / "report.html").read_text()
     assert "<strong>Simulated:</strong>" in page
     assert page.count("<svg") == 2
-    assert ran_json(fdvv)["report"] == "other.html"
-
-
-def ran_json(fdvv: Run) -> dict[str, Any]:
-    return fdvv("optimize", "report", "run", "-o", "other.html", "--json").json
-
-
-def started(tmp_path: Path, trials: int) -> subprocess.Popen[str]:
-    command = [sys.executable, "-m", "fdvv", "optimize", "run", "--folder", "run", *SHORT]
-    command[command.index("--trials") + 1] = str(trials)
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-    return subprocess.Popen(command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True)
-
-
-def kept_lines(tmp_path: Path) -> int:
-    journal = tmp_path / "run" / "trials.jsonl"
-    return journal.read_bytes().count(b"\n") if journal.exists() else 0
-
-
-def wait_for_lines(tmp_path: Path, lines: int, process: subprocess.Popen[str]) -> None:
-    while kept_lines(tmp_path) < lines:
-        assert process.poll() is None, "it ended before it was stopped"
-        time.sleep(0.01)
+    other = fdvv("optimize", "report", "run", "-o", "other.html", "--json")
+    assert other.json["report"] == "other.html"
 
 
 @pytest.mark.parametrize("stop", [signal.SIGKILL, pytest.param(signal.SIGINT, marks=pytest.mark.slow)])
 def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(
     fdvv: Run, tmp_path: Path, stop: signal.Signals
 ) -> None:
-    process = started(tmp_path, 24)
-    wait_for_lines(tmp_path, 7, process)
+    command = [sys.executable, "-m", "fdvv", "optimize", "run", "--folder", "run", *SHORT, "--trials", "24"]
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    process = subprocess.Popen(command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True)
+    journal = tmp_path / "run" / "trials.jsonl"
+    while not journal.exists() or journal.read_bytes().count(b"\n") < 7:
+        assert process.poll() is None, "it ended before it was stopped"
+        time.sleep(0.01)
     process.send_signal(stop)
     stderr = process.communicate()[1]
     if stop is signal.SIGINT:

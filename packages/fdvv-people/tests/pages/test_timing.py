@@ -290,14 +290,6 @@ def test_a_pause_of_the_operator_begins_no_trial_and_loses_no_round(
     assert "pauses" in screen.hear("ready")["error"]
 
 
-def test_who_leaves_takes_their_presses_along(study: Study, screen: Screen) -> None:
-    screen.begin()
-    screen.round(1)
-    screen.say("withdraw")
-    assert screen.hear("step")["kind"] == "withdrawn"
-    assert [one.state for one in study.people()] == ["deleted"]
-
-
 @pytest.mark.parametrize("kind", ["timing", "tapping"])
 def test_a_template_is_declared_ready_to_be_frozen_and_says_what_it_comes_to(
     own_studio: Studio, client: TestClient, kind: str

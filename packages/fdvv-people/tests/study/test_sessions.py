@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from functools import partialmethod
 from pathlib import Path
 
@@ -114,18 +113,13 @@ def test_a_study_that_is_not_frozen_is_refused(tmp_path: Path) -> None:
 
 def test_ctrl_c_leaves_whole_people_only_and_the_same_command_goes_on(tmp_path: Path) -> None:
     study = frozen_study(tmp_path / "s")
+
+    def stop(done: int, _total: int) -> None:
+        if done >= 150:  # hundredths of a person
+            raise KeyboardInterrupt
+
     with pytest.raises(KeyboardInterrupt):
-        simulate_study(study, 2, FAST, progress=stopping(at=150))
+        simulate_study(study, 2, FAST, progress=stop)
     assert [one.state for one in study.people()] == ["finished", "deleted"]
     assert study.verify() == ()
     assert simulate_study(study, 2, FAST).finished == ("P01", "P03")
-
-
-def stopping(at: int) -> Callable[[int, int], None]:
-    """Stop as Ctrl-C does once so many hundredths of a person are done."""
-
-    def tell(done: int, _total: int) -> None:
-        if done >= at:
-            raise KeyboardInterrupt
-
-    return tell
