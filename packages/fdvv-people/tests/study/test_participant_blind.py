@@ -155,9 +155,7 @@ def plainly(data: bytes, person: str) -> list[Any]:
 
     def bare(value: Any) -> Any:
         if isinstance(value, dict):
-            return {
-                k: bare(v) for k, v in value.items() if k not in ("chain", "mark", "salt", "crc32", "next")
-            }
+            return {k: bare(v) for k, v in value.items() if k not in RANDOM}
         if isinstance(value, list):
             return [bare(one) for one in value]
         if isinstance(value, str) and len(value) > 200:

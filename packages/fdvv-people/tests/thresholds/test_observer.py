@@ -53,13 +53,7 @@ def test_with_an_exponent_of_two_squares_add_up() -> None:
     assert np.exp(log_strength(parameters(m=2.0), both))[0] == pytest.approx(5.0)
 
 
-@given(
-    st.floats(1.05, 8.0),
-    st.floats(0.5, 2.0),
-    st.floats(0.01, 1.0),
-    st.floats(0.01, 1.0),
-    st.floats(0.01, 1.0),
-)
+@given(st.floats(1.05, 8.0), st.floats(0.5, 2.0), RATIOS, RATIOS, RATIOS)
 def test_several_changes_are_felt_at_least_as_the_strongest_and_at_most_as_their_sum(
     m: float, exponent: float, force: float, snap: float, vibration: float
 ) -> None:
