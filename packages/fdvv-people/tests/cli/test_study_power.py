@@ -1,4 +1,4 @@
-"""fdvv study power."""
+"""fdvv study power and simulate."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import pytest
 
 from fdvv_people.study.plan.plan_file import write_template
 from tests.support.command_line import Run
+from tests.support.study_people import frozen_study
 
 
 @pytest.fixture
@@ -59,3 +60,16 @@ def test_for_a_study_without_a_claim_the_missing_entry_is_named(fdvv: Run, tmp_p
     ran = fdvv("study", "power", path)
     assert ran.status == 2
     assert "claims nothing" in ran.err
+
+
+def test_a_study_is_run_and_what_it_says_is_simulated(fdvv: Run, tmp_path: Path) -> None:
+    study = frozen_study(tmp_path / "s", rounds=1).folder
+    ran = fdvv("study", "simulate", study, "--people", "1", "--fast")
+    assert ran.status == 0, ran.err
+    assert ran.out.startswith("simulated: demo, 1 simulated participant done")
+    assert "Nothing was pressed" in ran.out
+    assert "P01" in ran.out
+    again = fdvv("study", "simulate", study, "--people", "1", "--fast", "--json")
+    assert again.json["simulated"] is True
+    assert again.json["sessions"] == []
+    assert again.json["finished"] == ["P01"]

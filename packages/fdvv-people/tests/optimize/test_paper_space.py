@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fdvv.model.curve import Stroke
-from fdvv.model.file import model_from_json, model_to_json
-from fdvv_people.optimize.paper_space import PAPER_TRAVEL_mm, paper_model, paper_space
+from fdvv.model.file import builtin_names, load_builtin, model_from_json, model_to_json
+from fdvv_people.optimize.paper_space import PAPER_TRAVEL_mm, paper_design_like, paper_model, paper_space
 
 SPACE = paper_space()
 PLACES = st.lists(st.floats(0, 1), min_size=8, max_size=8)
@@ -61,3 +61,18 @@ def test_a_design_is_a_whole_button_that_a_file_holds(place: list[float]) -> Non
         assert vibration.onset_mm == design["vibration_mm"]
     x = np.linspace(0, PAPER_TRAVEL_mm, 50)
     np.testing.assert_array_equal(model.force_cN(x, 50.0), model.force_cN(x, 200.0, Stroke.RELEASE))
+
+
+@pytest.mark.parametrize("name", builtin_names())
+def test_every_built_in_button_has_a_design_near_it_that_the_space_holds(name: str) -> None:
+    space, model = paper_space(), load_builtin(name)
+    design = paper_design_like(model)
+    assert space.checked(design) == design
+    assert not space.broken(design)
+    assert design["actuation_mm"] == pytest.approx(model.actuation_mm, abs=0.3)
+    x = np.linspace(0.3, model.travel_mm - 0.3, 50)
+    near = paper_model(design).force_cN(x, 50.0, Stroke.PRESS)
+    wanted = model.force_cN(x, 50.0, Stroke.PRESS)
+    middle = paper_model({one.name: (one.low + one.high) / 2 for one in space.parameters})
+    far = middle.force_cN(x, 50.0, Stroke.PRESS)
+    assert np.mean(np.abs(near - wanted)) < 0.5 * np.mean(np.abs(far - wanted))

@@ -1,12 +1,15 @@
-"""Rapid tapping and accuracy: what is scored."""
+"""Rapid tapping, accuracy and the questionnaire: what is scored."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from fdvv.errors import ModelError
+from fdvv.errors import InputError, ModelError
 from fdvv_people.task.accuracy import Accuracy
+from fdvv_people.task.questionnaire import HIGHEST, ITEMS, LIKING, LOWEST, liking_score
 from fdvv_people.task.tapping import RapidTapping, REPEAT_s, strokes_Hz
 from fdvv_people.task.task import Task, TaskPress
 
@@ -77,3 +80,26 @@ def test_rounds_of_go_come_in_an_order_of_the_seed() -> None:
     assert Accuracy(seed=1).goes() != Accuracy(seed=2).goes()
     with pytest.raises(ModelError, match="no-go"):
         Accuracy(rounds=4, go_ratio=0.99)
+
+
+answers = st.lists(st.integers(LOWEST, HIGHEST), min_size=len(ITEMS), max_size=len(ITEMS))
+
+
+@given(answers)
+def test_liking_is_the_mean_and_never_without_the_error_of_rounding(points: list[int]) -> None:
+    score = liking_score(points)
+    assert score.value == pytest.approx(sum(points) / len(points))
+    assert score.error is not None
+    assert score.error >= (1 / 12 / len(points)) ** 0.5 - 1e-12
+
+
+def test_answers_that_differ_leave_the_standard_error_of_their_mean() -> None:
+    # mean 4, squares 9, 1, 1, 9 over three degrees of freedom
+    assert liking_score((1, 3, 5, 7)).error == pytest.approx((20 / 3 / 4) ** 0.5)
+    assert LIKING.larger_is_better
+
+
+@pytest.mark.parametrize("points", [(), (4, 4, 4), (4, 4, 4, 4, 4), (0, 4, 4, 4), (4, 4, 4, 8)])
+def test_what_the_questionnaire_did_not_ask_is_refused(points: tuple[int, ...]) -> None:
+    with pytest.raises(InputError, match="answers"):
+        liking_score(points)
