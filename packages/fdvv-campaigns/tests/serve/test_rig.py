@@ -125,7 +125,7 @@ def test_one_client_owns_the_device_and_others_are_refused_until_it_goes(server:
         with pytest.raises(RefusedCall, match="another client owns the device"):
             second.call(call, **fields)
     first.vanish()
-    _until(lambda: _opens(second))
+    _until(lambda: _accepts(second, "device.open", device="twin"))
     second.close()
 
 
@@ -136,9 +136,9 @@ def test_a_page_that_is_loaded_again_has_its_device_at_once(server: RunningServe
         client.close()
 
 
-def _opens(client: Client) -> bool:
+def _accepts(client: Client, call: str, **fields: str) -> bool:
     try:
-        client.call("device.open", device="twin")
+        client.call(call, **fields)
     except RefusedCall:
         return False
     return True
@@ -215,7 +215,7 @@ def test_a_fault_and_a_rig_that_goes_are_events_and_what_follows_is_refused(
     with pytest.raises(RefusedCall, match=r"latched|fault"):
         client.call("device.arm")
     dark.fails = False
-    _until(lambda: _cleared(client))
+    _until(lambda: _accepts(client, "device.clear_fault"))
     assert client.call("device.info")["fault"] == ""
     rig.end()
     assert _event(client, "device.fault")["gone"]
@@ -230,14 +230,6 @@ def _event(client: Client, name: str) -> dict[str, Any]:
     while (message := client.receive()).get("event") != name:
         pass
     return message
-
-
-def _cleared(client: Client) -> bool:
-    try:
-        client.call("device.clear_fault")
-    except RefusedCall:
-        return False
-    return True
 
 
 def test_stop_does_not_wait_for_the_calls_before_it(client: Client, run: str) -> None:

@@ -60,10 +60,6 @@ def test_a_preference_has_a_sign_and_strict_abx_has_none() -> None:
     assert d_prime_abx(15, 20).d == d_prime_duo_trio(15, 20).d
 
 
-def test_the_independent_rule_needs_less_difference_for_as_many_correct() -> None:
-    assert d_prime_abx(15, 20, "independent").d < d_prime_abx(15, 20, "differencing").d
-
-
 @pytest.mark.parametrize("function", [d_prime_2afc, d_prime_abx, d_prime_duo_trio])
 def test_where_every_answer_is_correct_only_the_lower_bound_tells_something(function: Any) -> None:
     found = function(20, 20)

@@ -61,13 +61,6 @@ def test_a_passphrase_is_the_same_however_its_accents_are_typed() -> None:
     assert KeyHolder.open(text, "vier Wo\u0308rter ohne Sinn").unlock(made.seal.lock(b"x")) == b"x"
 
 
-def test_a_wrong_code_is_refused_in_one_line() -> None:
-    locked = lock_with_code(b"secret", "0123-4567-89AB", cost=CHEAP)
-    with pytest.raises(InputError, match="is not the code of this person") as caught:
-        unlock_with_code(locked, "0123-4567-89AC")
-    assert "\n" not in str(caught.value)
-
-
 def test_a_code_is_read_as_people_type_it() -> None:
     locked = lock_with_code(b"secret", "0O1I-l5S8-BABE".replace("O", "0").replace("I", "1"), cost=CHEAP)
     for typed in ("001115s8babe", " oOiL-15S8-babe ", "0011 15S8 BABE"):
@@ -100,11 +93,6 @@ def test_a_changed_box_is_noticed(place: int, by: int) -> None:
     box[place % len(box)] ^= by
     with pytest.raises(InputError):
         KeyHolder.open(KEEPER, PASSPHRASE).unlock(box.decode("latin-1"))
-
-
-def test_a_short_passphrase_is_refused() -> None:
-    with pytest.raises(InputError, match="has 11 characters, 12 are needed"):
-        new_key_holder("elevenchars", CHEAP)
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", "not JSON", '{"format": "fdvv-keeper", "version": 2}'])

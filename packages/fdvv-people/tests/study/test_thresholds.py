@@ -13,7 +13,6 @@ from msgspec.structs import replace
 from fdvv.model.file import load_builtin
 from fdvv_people.study.admin.preview import preview_sections
 from fdvv_people.study.admin.review import device_problems, review_plan, twin_problems
-from fdvv_people.study.admin.study import Study
 from fdvv_people.study.analysis.analyse import analyse
 from fdvv_people.study.analysis.code_book import write_answers
 from fdvv_people.study.analysis.export import JNDS_FILE, analysis_dict, write_analysis
@@ -26,8 +25,8 @@ from fdvv_people.study.plan.plan_check import plan_problems
 from fdvv_people.study.plan.plan_file import read_plan_text, template_text
 from fdvv_people.study.plan.schedule import draw_schedule
 from fdvv_people.study.plan.threshold_trials import largest_change, practice_change
-from fdvv_people.study.simulation.sessions import Simulation, simulate_study
-from tests.support.study_people import CHEAP, PASSPHRASE
+from tests.study.test_jnd_record import played
+from tests.support.study_people import PASSPHRASE
 
 PLAN = read_plan_text(template_text("thresholds"), "thresholds")
 RULE = PLAN.thresholds or Thresholds()
@@ -148,16 +147,9 @@ def test_jnds_are_in_the_units_of_the_button() -> None:
 
 
 def test_simulated_participants_play_it_to_a_report_that_says_so(tmp_path: Path) -> None:
-    text = (
-        template_text("thresholds").replace("trials = 54", "trials = 8").replace("people = 8", "people = 2")
-    )
-    # of 8 trials all may have one label by chance
-    text = text.replace("same_choice = 0.9", "same_choice = 1.0")
-    study = Study.declare_text(tmp_path / "study", text, tmp_path)
-    study.freeze(PASSPHRASE, CHEAP)
-    simulate_study(study, simulation=Simulation(pressed=False))
-    answers = study.unseal(PASSPHRASE, who="me", why="a test")
-    found = analyse(answers, study.plan, standards=standards_of(study.plan, study.folder))
+    study = played(tmp_path, "thresholds", trials="8")
+    standards = standards_of(study.plan, study.folder)
+    found = analyse(read_answers(study.folder), study.plan, standards=standards)
     assert [one.trials for one in found.jnds] == [8, 8]
     assert len(found.jnds[0].surfaces) == 3
     assert study.verify(passphrase=PASSPHRASE) == ()
