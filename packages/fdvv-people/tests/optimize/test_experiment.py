@@ -1,4 +1,4 @@
-"""The experiment on simulated people: who meets what, what a week does, what comes out of it."""
+"""The experiment on simulated people: who meets what, what others did before, what comes out of it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,12 @@ from fdvv_people.optimize.experiment.setup import ExperimentSetup, blocks_of
 from fdvv_people.optimize.paper_space import paper_space
 from fdvv_people.optimize.people.user import SimulatedUser
 from fdvv_people.optimize.people.week import WeekGap, a_week_later, random_design
+from fdvv_people.optimize.population.plan import PopulationPlan
+from fdvv_people.optimize.population.population import run_population
+from fdvv_people.optimize.run.begin import experiment_prior, read_grid
+from tests.support.executors import Here
 from tests.support.experiments import invented
+from tests.support.grids import grid
 
 SMALL = ExperimentSetup(people=4, trials=2, presses=3, engine="sobol", seed=2)
 
@@ -175,3 +180,49 @@ def test_the_report_reads_like_a_result_section_and_says_simulated(
     assert page == experiment_html(result, verdict)
     assert document["observations"][5] == asdict(result.observations[5])
     assert msgspec.json.decode((tmp_path / "result.json").read_bytes())["simulated"] is True
+
+
+@pytest.fixture(scope="module")
+def grids(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    folder = tmp_path_factory.mktemp("others")
+    return grid(folder / "easy", "easy"), grid(folder / "hard", "hard", 6)
+
+
+def test_each_level_begins_from_its_own_grid(grids: tuple[Path, Path]) -> None:
+    found = experiment_prior(grids[::-1], 1)
+    assert {level: len(trials) for level, trials in found.items()} == {"easy": 5, "hard": 6}
+    assert found["hard"] == read_grid(grids[1]).prior()
+    assert experiment_prior((), 1) == {}
+
+
+def test_a_level_without_a_grid_or_with_two_is_refused(grids: tuple[Path, Path]) -> None:
+    with pytest.raises(InputError, match="hard: is a level without a grid; name one grid per level"):
+        experiment_prior(grids[:1], 1)
+    with pytest.raises(InputError, match="is a second grid of the level easy"):
+        experiment_prior((grids[0], *grids), 1)
+
+
+def test_what_is_no_finished_grid_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="holds no grid that is finished"):
+        read_grid(tmp_path)
+    runs = PopulationPlan(people=1, engine="sobol", budget=1, judged=1, rounds=2)
+    run_population(tmp_path / "runs", runs, Here())
+    with pytest.raises(InputError, match="holds runs of many people, not a grid"):
+        read_grid(tmp_path / "runs")
+
+
+def test_an_experiment_trains_from_what_others_did_and_says_so(
+    grids: tuple[Path, Path], tmp_path: Path
+) -> None:
+    prior = experiment_prior(grids, 2)
+    setup = ExperimentSetup(people=3, trials=1, presses=2, rounds=1, engine="gp", seed=2, prior=prior)
+    result = run_experiment(tmp_path, setup, Here())
+    kept = msgspec.json.decode((tmp_path / "training" / "person-02-hard" / "optimize.json").read_bytes())
+    assert kept["prior"] == msgspec.json.decode(msgspec.json.encode(prior["hard"]))
+    assert result.to_dict()["prior_designs"] == {"easy": 5, "hard": 6}
+    page = experiment_html(result, judge_experiment(result))
+    assert "the mean scores that other simulated people gave 5 designs (easy) and 6 designs (hard)" in page
+    again = run_experiment(tmp_path, setup, Here())
+    assert again.observations == result.observations
+    with pytest.raises(InputError, match="was begun from other trials of others"):
+        run_experiment(tmp_path, msgspec.structs.replace(setup, prior={}), Here())

@@ -1,8 +1,9 @@
-"""A run in a folder: states, edits, resuming, replaying."""
+"""A run in a folder: states, edits, resuming, replaying, and what is remembered of its fits."""
 
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -11,12 +12,14 @@ from fdvv.errors import InputError, ModelError
 from fdvv_people.optimize.engines.gp import GPEngine
 from fdvv_people.optimize.paper_space import paper_space
 from fdvv_people.optimize.problem import TrialState
+from fdvv_people.optimize.run.memory import LastResult, RunMemory
 from fdvv_people.optimize.run.replay import replay_differences
 from fdvv_people.optimize.run.session import Optimization
 from fdvv_people.optimize.run.setup import OptimizeSetup
 from fdvv_people.optimize.space import Design
 from fdvv_people.task.score import Objective, Score
 
+TWO = (Objective("asynchrony_ms"), Objective("effort_N_s"))
 MIDDLE = paper_space().of_unit([0.5] * 8)[0]
 
 
@@ -99,8 +102,7 @@ def test_a_suggestion_can_be_edited_until_it_is_shown(tmp_path: Path) -> None:
 
 
 def test_scores_of_every_objective_are_asked_for(tmp_path: Path) -> None:
-    objectives = (Objective("asynchrony_ms"), Objective("effort_N_s"))
-    with Optimization.create(tmp_path / "run", OptimizeSetup(objectives=objectives)) as session:
+    with Optimization.create(tmp_path / "run", OptimizeSetup(objectives=TWO)) as session:
         (trial,) = session.ask()
         with pytest.raises(InputError, match="effort_N_s"):
             session.answer(trial.number, scored(trial.design))
@@ -213,8 +215,7 @@ def test_an_engine_that_reads_other_answers_is_refused(tmp_path: Path, task: str
 
 
 def test_several_objectives_have_a_front_and_no_best(tmp_path: Path) -> None:
-    objectives = (Objective("asynchrony_ms"), Objective("effort_N_s"))
-    setup = OptimizeSetup(engine="gp", objectives=objectives, budget=8)
+    setup = OptimizeSetup(engine="gp", objectives=TWO, budget=8)
     with Optimization.create(tmp_path / "run", setup) as session:
         for _ in range(8):
             (trial,) = session.ask()
@@ -231,3 +232,58 @@ def test_a_replay_writes_nothing_and_needs_no_lock(tmp_path: Path) -> None:
         before = {path: path.read_bytes() for path in (tmp_path / "run").iterdir()}
         assert replay_differences(tmp_path / "run") == ()
         assert {path: path.read_bytes() for path in (tmp_path / "run").iterdir()} == before
+
+
+def play(session: Optimization, count: int) -> None:
+    for _ in range(count):
+        (trial,) = session.ask()
+        slow, effort = trial.design["actuation_mm"], trial.design["y1_cN"]
+        scores = {"asynchrony_ms": Score(60.0 + 8.0 * slow, 1.0), "effort_N_s": Score(effort / 50.0, 1.0)}
+        session.answer(trial.number, scores)
+
+
+def test_a_result_is_computed_anew_for_other_inputs_and_after_an_error_only() -> None:
+    asked: list[int] = []
+
+    def squared(number: int) -> int:
+        asked.append(number)
+        if number < 0:
+            raise ValueError("negative")
+        return number**2
+
+    last = LastResult[int]()
+    assert [last.of(one, partial(squared, one)) for one in (3, 3, 4, 3)] == [9, 9, 16, 9]
+    assert asked == [3, 4, 3]
+    for _ in range(2):
+        with pytest.raises(ValueError, match="negative"):
+            last.of(-1, partial(squared, -1))
+    assert asked == [3, 4, 3, -1, -1]
+
+
+def test_a_run_opened_with_its_memory_has_the_same_front_until_a_trial_is_done(tmp_path: Path) -> None:
+    memory, folder = RunMemory(), tmp_path / "run"
+    Optimization.create(folder, OptimizeSetup(engine="sobol", objectives=TWO, budget=7)).close()
+    with Optimization.open(folder, memory) as session:
+        play(session, 6)
+        front = session.front()
+        session.ask()
+    with Optimization.open(folder, memory) as session:
+        assert session.front() is front
+        play(session, 1)
+        longer, found = session.front(), session.recommended()
+        assert longer is not front
+    with Optimization.open(folder) as session:
+        assert (session.front(), session.recommended()) == (longer, found)
+
+
+def test_a_memory_of_another_run_changes_nothing(tmp_path: Path) -> None:
+    memory = RunMemory()
+    for seed in (0, 1):
+        folder = tmp_path / str(seed)
+        Optimization.create(folder, OptimizeSetup(engine="sobol", seed=seed, budget=3)).close()
+        with Optimization.open(folder, memory) as session:
+            play(session, 3)
+            best = session.best()
+            assert session.best() is best
+        with Optimization.open(folder) as session:
+            assert session.best() == best

@@ -112,14 +112,9 @@ def test_a_plan_with_problems_is_not_frozen(tmp_path: Path) -> None:
     assert study.frozen is None
 
 
-def written_beside(folder: Path) -> Path:
-    """Write a study as people do by hand: its plan in a folder, and the button beside it."""
-    plan_file(folder).rename(folder / "study.toml")
-    return folder
-
-
 def test_a_button_beside_the_plan_is_frozen_and_from_then_on_the_copy_is_played(tmp_path: Path) -> None:
-    folder = written_beside(tmp_path / "study")
+    folder = tmp_path / "study"
+    plan_file(folder).rename(folder / "study.toml")
     assert review_study(folder).problems == ()
     study = Study.open(folder)
     study.freeze(PASSPHRASE, CHEAP)
