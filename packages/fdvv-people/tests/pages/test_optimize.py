@@ -49,7 +49,7 @@ AHEAD_ms = 1000.0
 
 
 class Player:
-    """One page that plays. ready : what it was told when it began."""
+    """One page that plays. ready : the message with which it began."""
 
     def __init__(self, socket: WebSocketTestSession) -> None:
         self._socket, self.late_ms = socket, 0.0
@@ -153,7 +153,7 @@ def run(ask: Callable[..., Any]) -> int:
 
 
 def play_simulated(ask: Callable[..., Any], run: int, trials: int) -> Any:
-    """Let a simulated person play trials of a run; return what is told of it then."""
+    """Let a simulated person play trials of a run; return its detail then."""
     ask("simulate", run=run, person=3, trials=trials)
     while (found := ask("detail", run=run))["simulated"]["running"]:
         time.sleep(0.05)
