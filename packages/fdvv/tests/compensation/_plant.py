@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.model.press import Press
@@ -93,6 +94,12 @@ def known_of(plant: Plant) -> RigModel:
         plant.mass_g,
         2 * plant.half_play_cN,
     )
+
+
+def keep_rows(press: Press, rows: slice | npt.NDArray[np.intp]) -> Press:
+    """Return a press that has only these rows."""
+    names = ("t_s", "displacement_mm", "force_cN", "sensed_mm", "sensed_cN", "commanded_cN")
+    return replace(press, **{name: getattr(press, name)[rows] for name in names})
 
 
 def lagged(signal: FloatArray, lag_s: float, step_s: float) -> FloatArray:

@@ -54,17 +54,6 @@ def test_a_constant_force_stays_itself_wherever_it_was_visited(level: float, pla
     np.testing.assert_allclose(found[np.isfinite(found)], level)
 
 
-def test_bins_outside_the_visited_range_are_unknown() -> None:
-    found = bin_force(np.array([1.0, 2.0]), np.array([10.0, 30.0]), GRID)
-    assert np.isnan(found[:20]).all()
-    assert np.isnan(found[41:]).all()
-    assert found[30] == pytest.approx(20.0)
-
-
-def test_no_sample_on_the_grid_gives_no_force() -> None:
-    assert np.isnan(bin_force(np.array([9.0]), np.array([1.0]), GRID)).all()
-
-
 def test_columns_of_different_length_are_refused() -> None:
     with pytest.raises(ModelError, match="one shape"):
         bin_force(np.zeros(3), np.zeros(2), GRID)
@@ -82,13 +71,6 @@ def test_smoothing_damps_a_wave_as_a_gaussian_does() -> None:
     middle = slice(300, 500)
     gain = np.exp(-2 * np.pi**2 * 0.15**2)
     np.testing.assert_allclose(smooth(wave, 0.15, 0.05)[middle], gain * wave[middle], atol=1e-3)
-
-
-def test_smoothing_is_zero_phase() -> None:
-    pulse = np.zeros(81)
-    pulse[40] = 1.0
-    out = smooth(pulse, 0.1, 0.05)
-    np.testing.assert_allclose(out, out[::-1], atol=1e-12)
 
 
 def test_the_printed_smoothing_erases_the_bump_and_the_default_keeps_it() -> None:

@@ -96,16 +96,6 @@ def test_without_lag_the_identity_is_exact_also_for_a_changed_motion(velocity_mm
     np.testing.assert_allclose(rendered, wanted_cN, atol=1e-9)
 
 
-def test_at_rest_the_first_table_holds_the_target() -> None:
-    known = replace(known_of(VOLTAGE), friction_cN=0.0)
-    command, still = command_cN(known, GRID_mm, TARGET_cN), np.zeros(200)
-    for k in range(0, GRID_mm.size, 40):
-        held = np.full(200, GRID_mm[k]), still, still, np.full(200, command[k])
-        assert known.rendered_cN(1e-3 * np.arange(200, dtype=np.float64), *held)[-1] == pytest.approx(
-            TARGET_cN[k]
-        )
-
-
 def test_a_tuning_looks_ahead_by_all_that_is_late_and_pushes_at_the_gain_of_mid_travel() -> None:
     known = known_of(VOLTAGE)
     tuning = tuning_of(known, TRAVEL_mm, 120.0, FRICTION_mm_s)

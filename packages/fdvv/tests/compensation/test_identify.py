@@ -17,7 +17,7 @@ from fdvv.errors import FitError, ModelError
 from fdvv.model.file import load_builtin
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
-from tests.compensation._plant import Plant, TRAVEL_mm, known_of
+from tests.compensation._plant import Plant, TRAVEL_mm, keep_rows, known_of
 from tests.support.rig_truth import draw_fast_rig, missed_cN, rig_truth
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
@@ -121,37 +121,23 @@ def test_truth_is_not_looked_at() -> None:
 def test_rows_between_ticks_and_missing_ticks_change_little() -> None:
     presses = presses_of(NOISY)
     plain = identify(presses, TRAVEL_mm)
-    holed = [without(press, slice(150, 153)) for press in presses]
+    holed = [keep_rows(press, np.delete(np.arange(press.t_s.size), slice(150, 153))) for press in presses]
     again = identify(holed, TRAVEL_mm)
     assert abs(again.mass_g - plain.mass_g) < 3 * plain.error["mass_g"]
     assert abs(again.drag_N_s_m - plain.drag_N_s_m) < 3 * plain.error["drag_N_s_m"]
 
 
-def without(press: Press, rows: slice) -> Press:
-    keep = np.ones(press.t_s.size, np.bool_)
-    keep[rows] = False
-    names = ("t_s", "displacement_mm", "force_cN", "sensed_mm", "sensed_cN", "commanded_cN")
-    return replace(press, **{name: getattr(press, name)[keep] for name in names})
-
-
-def still() -> Press:
-    press = NOISY.press(100.0)
-    return replace(press, sensed_mm=np.zeros(press.t_s.size))
-
-
-def broken() -> Press:
-    press = NOISY.press(100.0)
-    return replace(press, sensed_cN=np.full(press.t_s.size, np.nan))
+SOUND = NOISY.press(100.0)
 
 
 @pytest.mark.parametrize(
     ("presses", "says"),
     [
         ([], "needs presses"),
-        ([replace(NOISY.press(100.0), commanded_cN=None)], "press 1 holds no commanded force"),
-        ([NOISY.press(100.0), without(NOISY.press(100.0), slice(30, None))], "press 2 has 30 ticks"),
-        ([broken()], "press 1 holds numbers that are not finite"),
-        ([still()], "too few rows between the stops"),
+        ([replace(SOUND, commanded_cN=None)], "press 1 holds no commanded force"),
+        ([SOUND, keep_rows(SOUND, slice(0, 30))], "press 2 has 30 ticks"),
+        ([replace(SOUND, sensed_cN=np.nan * SOUND.t_s)], "press 1 holds numbers that are not finite"),
+        ([replace(SOUND, sensed_mm=0.0 * SOUND.t_s)], "too few rows between the stops"),
     ],
 )
 def test_presses_that_tell_nothing_give_one_line(presses: list[Press], says: str) -> None:

@@ -137,17 +137,6 @@ def test_the_filter_leaves_the_target_itself_alone() -> None:
     np.testing.assert_allclose(command, TARGET + 2.0)
 
 
-def test_states_are_not_changed_by_a_step() -> None:
-    law = PaperLaw()
-    state = law.init(TARGET, GRID, LIMIT)
-    before = state.command_cN.copy()
-    law.step(TARGET - 5.0, state)
-    np.testing.assert_array_equal(state.command_cN, before)
-    assert state.errors_cN == ()
-    with pytest.raises(ValueError, match="read-only"):
-        state.command_cN[0] = 1.0
-
-
 def test_a_curve_that_was_never_pressed_is_the_target_and_says_so() -> None:
     learned = plain(0.3).done(plain(0.3).init(TARGET, GRID, LIMIT))
     np.testing.assert_array_equal(learned.command_cN, TARGET)
@@ -159,13 +148,6 @@ def test_the_sentence_tells_what_smoothing_leaves_of_the_bump() -> None:
     state = run(law, lambda u: u, 1)[-1]
     kept = bump_kept_ratio(GRID, TARGET, 0.06)
     assert f"sigma 0.06 mm (keeps {kept:.0%} of the target's bump)" in law.done(state).sentence
-
-
-def test_the_literal_law_adds_nothing_and_the_default_names_its_additions() -> None:
-    assert PaperLaw.literal().additions == ()
-    named = " ".join(PaperLaw().additions)
-    for word in ("delays", "filter", "held", "first", "average"):
-        assert word in named
 
 
 @pytest.mark.parametrize(

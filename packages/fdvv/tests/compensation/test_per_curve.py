@@ -109,14 +109,3 @@ def test_a_finished_job_takes_no_press() -> None:
         state = method.step(press(), state)
     with pytest.raises(ModelError, match="finished"):
         method.step(press(), state)
-
-
-def test_the_outcome_lists_presses_then_releases_by_speed() -> None:
-    method = PerCurve(LAW)
-    curves = method.done(method.init(job())).curves
-    assert [(str(c.stroke), c.velocity_mm_s) for c in curves] == [
-        ("press", 50.0),
-        ("press", 100.0),
-        ("release", 50.0),
-        ("release", 100.0),
-    ]

@@ -9,10 +9,9 @@ import pytest
 
 from fdvv.compensation.identification.identify import identify
 from fdvv.compensation.identification.own_force import NODES, prior_root
-from fdvv.compensation.identification.prior_file import check_range, load_prior, load_sensor
+from fdvv.compensation.identification.prior_file import load_prior, load_sensor
 from fdvv.compensation.identification.rig_model import RANGES, Prior, ranges_of, size_of
 from fdvv.errors import InputError
-from fdvv.model.file import load_builtin
 from tests.compensation._plant import Plant, TRAVEL_mm
 
 SENSOR = "range_N = 5.0\nnoise_cN = 0.3\ndelay_ms = 0.04\n"
@@ -84,12 +83,6 @@ def test_a_wrong_data_sheet_is_refused_with_file_key_and_remedy(tmp_path: Path, 
     with pytest.raises(InputError) as caught:
         load_sensor(written(tmp_path, text))
     assert said in str(caught.value)
-
-
-def test_a_button_beyond_the_sensors_range_is_refused(tmp_path: Path) -> None:
-    path = written(tmp_path, SENSOR.replace("5.0", "0.3"))
-    with pytest.raises(InputError, match=r"range_N: is 0\.3, mx-clear needs"):
-        check_range(path, load_builtin("mx-clear"), [50.0])
 
 
 def test_rigs_of_the_class_keep_their_prior_and_others_go_with_their_force() -> None:

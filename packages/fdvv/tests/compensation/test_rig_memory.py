@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.identification.rig_model import RigModel
-from fdvv.errors import ModelError
 from fdvv.model.surface import ForceSurface
 
 GRID_mm = np.arange(81, dtype=np.float64) * 0.05
@@ -56,9 +54,3 @@ def test_a_rig_met_at_one_speed_gives_its_row_at_every_speed() -> None:
     one = ForceSurface(GRID_mm, SPEEDS_mm_s[:1], ROWS_cN[:1], ROWS_cN[:1])
     press, _ = LearnedRig(RigModel(), one, 4.0, np.ones((2, 1))).rows_cN(GRID_mm, SPEEDS_mm_s, 4.0)
     np.testing.assert_allclose(press, np.repeat(ROWS_cN[:1], 3, axis=0))
-
-
-@pytest.mark.parametrize("error_cN", [np.ones((2, 2)), np.ones(3), np.full((2, 3), np.nan)])
-def test_errors_that_do_not_fit_its_speeds_are_refused(error_cN: np.ndarray) -> None:
-    with pytest.raises(ModelError, match=r"needs \(2, 3\) finite errors"):
-        LearnedRig(RigModel(), MEMORY.residual, 4.0, error_cN)

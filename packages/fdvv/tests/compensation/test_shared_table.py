@@ -95,31 +95,6 @@ def test_a_press_moves_other_rows_by_what_the_covariance_says() -> None:
     assert moved[3] > moved[1]
 
 
-def test_rows_believed_alone_are_not_moved_by_others() -> None:
-    alone = SharedTable(GRID_mm, SPEEDS_mm_s, np.zeros((4, GRID_mm.size)), np.diag([9.0, 9.0, 9.0, 9.0]))
-    after = alone.updated(even(5.0), 100.0, 2.0, 0.0, 1.0)
-    np.testing.assert_array_equal(after.rows_cN[[0, 2, 3]], 0.0)
-    np.testing.assert_allclose(after.rows_cN[1], 5.0 * 9 / 13)
-
-
-def test_what_is_noise_alone_teaches_nothing() -> None:
-    before = fresh()
-    after = before.updated(even(5.0), 100.0, 1e6, 0.0, 1.0)
-    np.testing.assert_allclose(after.rows_cN, 0.0, atol=1e-9)
-    np.testing.assert_allclose(after.covariance_cN2, before.covariance_cN2, rtol=1e-9)
-
-
-def test_a_row_that_many_presses_have_updated_moves_little_more() -> None:
-    table = fresh()
-    moved = []
-    for _ in range(12):
-        after = table.updated(even(3.0), 100.0, 3.0, 0.0, 1.0)
-        moved.append(abs(after.rows_cN - table.rows_cN)[1, 0])
-        table = after
-    assert moved == sorted(moved, reverse=True)
-    assert moved[-1] < 0.02 * moved[0]
-
-
 def test_bins_that_tell_nothing_take_their_neighbours_surprise() -> None:
     force = np.where((np.arange(GRID_mm.size) > 9) & (np.arange(GRID_mm.size) < 20), 4.0, np.nan)
     force[14] = np.nan

@@ -58,13 +58,5 @@ def test_the_mean_speed_is_length_over_time_and_positive() -> None:
     assert np.isnan(mean_speed_mm_s(T, PRESS, slice(3, 4)))
 
 
-def test_a_press_that_stops_short_says_where() -> None:
-    assert "2.50 of 4.00 mm" in why_incomplete(record((0.0, 0.0), (0.1, 2.5), (0.2, 0.0)), 4.0)
-
-
 def test_a_press_that_starts_deep_says_so() -> None:
     assert "rested at 3.00 mm" in why_incomplete(record((0.0, 3.0), (0.1, 4.0), (0.2, 0.0)), 4.0)
-
-
-def test_a_plain_press_is_complete() -> None:
-    assert why_incomplete(PRESS, 4.0) == ""

@@ -4,7 +4,7 @@ from typing import Literal
 
 import pytest
 
-from fdvv.compensation.paper import RIG_DELAYS, HOLDS_cN, PaperLaw, tuned_paper_law
+from fdvv.compensation.paper import RIG_DELAYS, PaperLaw, tuned_paper_law
 
 SPEEDS = 4
 
@@ -29,9 +29,3 @@ def test_a_faster_loop_has_shorter_delays() -> None:
     assert slow == RIG_DELAYS
     assert fast.position_s < slow.position_s
     assert fast.command_s < slow.command_s
-
-
-def test_the_hold_tried_first_is_the_least() -> None:
-    assert list(HOLDS_cN) == sorted(HOLDS_cN)
-    assert tuned_paper_law(20).hold_cN == HOLDS_cN[0]
-    assert tuned_paper_law(240, hold_cN=HOLDS_cN[-1]).hold_cN == HOLDS_cN[-1]

@@ -7,13 +7,13 @@ from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
+from fdvv.protocol.tables import CellSpec
 
 from fdvv.compensation.force_loop.constants import of_earlier_version
 from fdvv.compensation.force_loop.gains import estimator_gains, force_loop_gains, rate
 from fdvv.compensation.force_loop.stability import LoopController
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import ModelError
-from fdvv.protocol.tables import CellSpec
 
 CELL = CellSpec(plate_kg=4e-4, stiffness_N_m=5e5, damping_N_s_m=1.4, filter_s=4e-5)
 RIG = RigModel(
@@ -88,8 +88,3 @@ def test_gains_of_a_file_that_knows_a_weight_alone_become_a_constant_own_force()
     assert of_earlier_version(now) == now
     with pytest.raises(ModelError, match="own_N has 8 numbers"):
         replace(force_loop_gains(RIG, CELL, 1e-4, CONTROLLER), own_N=(0.0,))
-
-
-def test_numbers_that_are_not_finite_are_refused() -> None:
-    with pytest.raises(ModelError, match=r"lead_s must be .* got nan"):
-        replace(force_loop_gains(RIG, CELL, 1e-4, CONTROLLER), lead_s=float("nan"))

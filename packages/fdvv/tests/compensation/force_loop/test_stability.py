@@ -17,7 +17,6 @@ from fdvv.compensation.force_loop.stability import (
     LOOP_Hz,
     LoopController,
     LoopPlant,
-    finger_bank,
 )
 from fdvv.errors import ModelError
 
@@ -107,12 +106,3 @@ def test_a_loop_with_four_times_the_delay_gets_less_gain(designed: LoopControlle
 def test_a_rig_that_no_gain_suits_is_refused() -> None:
     with pytest.raises(ModelError, match=r"no gain of the force loop is stable .* 30 ms of delay"):
         design_controller(replace(RECOMMENDED, delay_s=0.03, cell_N_s_m=1e-6))
-
-
-def test_the_bank_has_soft_and_stiff_fingers_at_every_force() -> None:
-    stiffness = [
-        abs(finger.dynamic_stiffness_N_m(np.array([2j * math.pi * 20]))[0]) for finger in finger_bank()
-    ]
-    assert min(stiffness) < 300
-    assert max(stiffness) > 1500
-    assert {finger.held_N for finger in finger_bank()} == {0.05, 0.2, 0.5, 1.0}
