@@ -52,6 +52,7 @@ def test_a_simulated_observer_tunes_a_model_and_every_word_says_simulated(fdvv: 
     assert ran.out.endswith("written to t.fdvv.json\n")
     model = load_model(tmp_path / "t.fdvv.json")
     assert model.provenance.simulated
+    assert "by a simulated observer (evidence of nothing)" in model.provenance.method
     assert model.vibration("press", 100.0) is not None
 
 

@@ -6,11 +6,10 @@ import pytest
 
 from fdvv.device.boards import HostBoard
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.twin import SimulatedPerson, TwinDevice
-from fdvv.errors import FitError, InputError
-from fdvv.protocol.messages import head_of
+from fdvv.device.twin import SimulatedPerson
+from fdvv.errors import FitError
 from fdvv.protocol.tables import Settings
-from fdvv.rendering.exciter import identify_exciter, prepare_exciter, tone_image, with_lead
+from fdvv.rendering.exciter import identify_exciter, with_lead
 from fdvv.twin.finger import Finger
 from fdvv.twin.rig import PositionSensor, Rig
 from fdvv.twin.rig_moves import Exciter
@@ -54,28 +53,9 @@ def test_a_rig_without_an_exciter_is_refused() -> None:
         identify_exciter(device, tone_s=0.3)
 
 
-def test_a_device_that_cannot_play_on_command_is_refused() -> None:
-    with pytest.raises(InputError, match="use host or serial:PORT"):
-        identify_exciter(TwinDevice(RIG))
-
-
-def test_tones_are_slots_of_a_program_that_holds_the_cap() -> None:
-    head = head_of(tone_image([300.0, 340.0], 1.0))
-    assert (head.slots, head.states) == (2, 1)
-
-
 def test_the_board_is_configured_once_to_begin_as_early_as_latency_and_drive_require() -> None:
     known = KnownExciter(20.0, 600.0, 2.0, latency_s=0.007)
     settings = with_lead(Settings(), known, 0.001)
     assert settings.vibration_latency_us == 8000
     assert with_lead(settings, known, 0.001) == settings
     assert with_lead(Settings(), replace(known, latency_s=None)) == Settings()
-
-
-def test_preparing_a_device_changes_its_settings_only_if_need_be() -> None:
-    device, known = TwinDevice(RIG), KnownExciter(20.0, 600.0, 2.0, latency_s=2e-4)
-    prepare_exciter(device, known)
-    assert device.settings().vibration_latency_us == 1200
-    before = device.settings()
-    prepare_exciter(device, known)
-    assert device.settings() is before

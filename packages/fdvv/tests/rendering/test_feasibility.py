@@ -13,7 +13,6 @@ from fdvv.compensation.feasibility.stability import NominalFinger, SampledLoop, 
 from fdvv.compensation.feasibility.verdict import Following
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.device.contract import DeviceInfo
-from fdvv.device.open import open_device
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import InputError, ModelError
 from fdvv.model.curve import Stroke
@@ -142,16 +141,6 @@ def test_bad_speeds_and_a_model_without_a_press_are_refused(
         feasibility(model, known, settings_of(rig), [])
     with pytest.raises(ModelError, match="no press curve"):
         feasibility(replace(model, curves=model.of("release")), known, settings_of(rig), [50.0])
-
-
-def test_devices_with_the_firmware_in_them_tell_their_settings(drawn: tuple[Rig, Finger, RigModel]) -> None:
-    rig, finger, _ = drawn
-    assert TwinDevice(rig, finger).settings() == settings_of(rig)
-    host = open_device("host", rig, finger)
-    try:
-        assert host.settings() == settings_of(rig)
-    finally:
-        host.close()  # type: ignore[attr-defined]
 
 
 def test_what_presses_measured_stands_beside_what_was_computed(

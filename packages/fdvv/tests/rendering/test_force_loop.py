@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.compensation.force_loop.method import ForceLoop
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LinkedDevice
@@ -106,12 +105,6 @@ def test_a_session_continues_where_it_stopped(learned: CompensationResult, tmp_p
 def test_a_rig_without_a_cell_refuses_an_actuation_of_a_loop(learned: CompensationResult) -> None:
     with pytest.raises(DeviceError, match="no load cell"):
         probe(TwinDevice(seed=1), CLEAR, learned.surface, SPEEDS, 1, tuning=learned.outcome.tuning)
-
-
-def test_the_method_names_what_it_does() -> None:
-    cell = TwinDevice(RIG).load_cell
-    assert cell is not None
-    assert "force-loop" in ForceLoop(cell, 1e-4).name
 
 
 FINGERS = {

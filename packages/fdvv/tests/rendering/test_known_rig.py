@@ -82,12 +82,3 @@ def test_the_file_of_a_table_keeps_the_rig_that_was_taken_for_granted(
     again = load_actuation(tmp_path / "red.actuation.json")
     assert again.known_rig == at_once.known_rig
     assert judged(again, rougher(rig), 5) == judged(at_once, rougher(rig), 5)
-
-
-def test_learning_on_another_rig_than_the_file_s_says_so_too(rig: Rig, at_once: CompensationResult) -> None:
-    notices = list[str]()
-    known = compensate(TwinDevice(rig, seed=1), CLEAR, [50.0, 100.0, 150.0, 200.0], RigAware(0)).learned_rig
-    law = RigAware(1, known)
-    compensate(TwinDevice(rougher(rig), seed=5), RED, SPEEDS_mm_s, law, guide=Guide(notice=notices.append))
-    assert len(notices) == 1
-    assert "friction rose" in notices[0]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fdvv.device.twin import TwinDevice
-from fdvv.errors import DeviceError, InputError
+from fdvv.errors import InputError
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
 from fdvv.model.press import Press
@@ -102,14 +102,6 @@ def test_fd_only_is_the_slowest_curve_of_each_stroke_at_every_speed() -> None:
         assert len(reduced.of(stroke)) == 1
     assert reduced.vibrations == ()
     assert "FD only" in reduced.name
-
-
-def test_a_press_that_cannot_reach_the_stop_ends_in_one_clear_line() -> None:
-    wall = ForceSurface(
-        SURFACE.displacement_mm, np.array([50.0]), *(np.full((1, 81), 430.0) for _ in range(2))
-    )
-    with pytest.raises(DeviceError, match="10 presses in a row could not be used"):
-        probe(TwinDevice(seed=1), MODEL, wall, [50.0], 2)
 
 
 def test_no_speed_is_refused() -> None:

@@ -1,7 +1,5 @@
 """The log of a session: nothing of it is lost, nothing false is read back."""
 
-import errno
-import os
 from dataclasses import fields
 from pathlib import Path
 
@@ -86,20 +84,6 @@ def test_every_column_of_every_press_comes_back_to_the_last_bit(tmp_path: Path) 
     again.close()
 
 
-def test_a_press_that_the_device_could_not_tell_of_is_kept_without_columns(tmp_path: Path) -> None:
-    log = PressLog(tmp_path)
-    log.add(PressRecord(record(1, "over speed").entry, SURFACE, None))
-    assert [k.press for k in log.records()] == [None]
-    log.close()
-
-
-def test_a_log_without_a_folder_keeps_what_became_of_presses(tmp_path: Path) -> None:
-    log = PressLog()
-    log.begin(RUN)
-    log.add(record(1))
-    assert (len(log.entries), list(log.records())) == (1, [])
-
-
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25, deadline=None)
 @given(part=st.floats(0, 1, exclude_max=True))
 def test_wherever_the_file_is_cut_the_whole_records_before_are_there(tmp_path: Path, part: float) -> None:
@@ -117,19 +101,6 @@ def test_wherever_the_file_is_cut_the_whole_records_before_are_there(tmp_path: P
     log.add(record(len(log.entries) + 1))
     log.close()
     assert len(PressLog.read(path)[1]) == max(0, whole - 1) + 1
-
-
-def test_a_record_cut_short_is_reported_once(tmp_path: Path) -> None:
-    filled(tmp_path).close()
-    path = tmp_path / PRESSES
-    path.write_bytes(path.read_bytes()[:-5])
-    log = PressLog(tmp_path)
-    warning = "the last record is not whole and is left out; presses kept: 2"
-    assert log.warnings == [f"{path}: {warning}"]
-    log.close()
-    log = PressLog(tmp_path)
-    assert log.warnings == []
-    log.close()
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25, deadline=None)
@@ -153,16 +124,6 @@ def test_a_changed_byte_is_never_read_as_a_press(tmp_path: Path, part: float, fl
         assert len(PressLog.read(path)[1]) == (at > last)
 
 
-def test_a_damaged_record_in_the_middle_is_refused_with_its_line(tmp_path: Path) -> None:
-    filled(tmp_path).close()
-    path = tmp_path / PRESSES
-    lines = path.read_bytes().split(b"\n")
-    lines[1] = lines[1].replace(b"98.5", b"99.5")
-    path.write_bytes(b"\n".join(lines))
-    with pytest.raises(InputError, match=r"presses\.jsonl: line 2: the record is damaged"):
-        PressLog(tmp_path)
-
-
 def test_a_missing_press_is_noticed_by_its_number(tmp_path: Path) -> None:
     filled(tmp_path).close()
     path = tmp_path / PRESSES
@@ -170,49 +131,3 @@ def test_a_missing_press_is_noticed_by_its_number(tmp_path: Path) -> None:
     path.write_bytes(b"\n".join([*lines[:2], *lines[3:]]))
     with pytest.raises(InputError, match="press 2: bears the number 3"):
         PressLog(tmp_path)
-
-
-def test_a_second_process_is_refused_while_the_first_is_at_work(tmp_path: Path) -> None:
-    first = PressLog(tmp_path)
-    with pytest.raises(InputError, match="another process is at work"):
-        PressLog(tmp_path)
-    first.close()
-    PressLog(tmp_path).close()
-
-
-def test_closing_twice_does_nothing(tmp_path: Path) -> None:
-    log = PressLog(tmp_path)
-    log.close()
-    log.close()
-
-
-def test_a_full_disk_leaves_no_half_record_and_names_the_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    log = filled(tmp_path)
-    size = (tmp_path / PRESSES).stat().st_size
-    write = os.write
-
-    def full(file: int, data: bytes) -> int:
-        if len(data) < 1000:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        return write(file, data[: len(data) // 2])
-
-    monkeypatch.setattr(os, "write", full)
-    with pytest.raises(OSError, match="No space left") as caught:
-        log.add(record(4))
-    assert caught.value.filename == str(tmp_path / PRESSES)
-    assert (tmp_path / PRESSES).stat().st_size == size
-    monkeypatch.undo()
-    log.add(record(4))
-    log.close()
-    assert len(PressLog.read(tmp_path / PRESSES)[1]) == 4
-
-
-def test_a_record_is_on_the_disk_before_add_returns(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    log = filled(tmp_path)
-    sizes: list[int] = []
-    monkeypatch.setattr(os, "fsync", lambda file: sizes.append(os.fstat(file).st_size))
-    log.add(record(4))
-    assert sizes == [(tmp_path / PRESSES).stat().st_size]
-    log.close()

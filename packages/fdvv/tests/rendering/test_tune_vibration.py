@@ -7,17 +7,15 @@ from typing import Any
 
 import pytest
 
-from fdvv.device.twin import TwinDevice
 from fdvv.errors import DeviceError, InputError
 from fdvv.model.curve import Stroke
-from fdvv.model.file import load_builtin, load_model, save_model
+from fdvv.model.file import load_model, save_model
 from fdvv.model.model import FDVVModel
 from fdvv.model.press import Press
 from fdvv.model.vibration import Mode, Vibration
-from fdvv.protocol.tables import Settings
 from fdvv.rendering.actuation_file import open_run_summary
 from fdvv.rendering.session import Session
-from fdvv.rendering.session_log import ANSWERS, AnswerLog
+from fdvv.rendering.session_log import ANSWERS
 from fdvv.rendering.session_run import Guide
 from fdvv.rendering.tune_candidates import candidates_for, simulated_observer, tuned_model
 from fdvv.rendering.tune_vibration import AnswerEvent, TuneResult, TuneSetup, tune_vibration
@@ -27,43 +25,25 @@ from fdvv.vibration.exciter import KnownExciter
 from fdvv.vibration.templates import TemplateGrid
 from fdvv.vibration.tune import Preferred, Question, Rating
 from fdvv.vibration.tune_compare import Comparing
+from tests.support.sessions import MODEL, SPEEDS, Hand
 
-MODEL = load_builtin("mx-clear")
-SPEEDS = [50.0, 100.0]
 GRID = TemplateGrid(gain_ratios=(1.0, 2.0), end_ratios=(0.1,))
 SETUP = TuneSetup(plain_surface(), grid=GRID)
 METHOD = Comparing(comparisons=3, fewest=3)
 
 
-class Hand(ScriptedDevice):
+class ProgramHand(Hand):
     """A device that runs programs, and a person who presses it as a script says."""
 
-    def __init__(self, script: dict[int, Any] | None = None) -> None:
-        super().__init__()
-        self.script, self.presses, self.stops = script or {}, 0, 0
-        self.images: list[bytes] = []
-        self.kept = Settings()
+    programs = 0
 
     def upload_program(self, image: bytes) -> None:
-        self.images.append(image)
+        self.programs += 1
         self.upload(plain_surface(), 4.0)
 
-    def settings(self) -> Settings:
-        return self.kept
 
-    def configure(self, settings: Settings) -> None:
-        self.kept = settings
-
-    def stop(self) -> None:
-        self.stops += 1
-
-    def press(self, velocity_mm_s: float) -> Press:
-        self.presses += 1
-        happens = self.script.get(self.presses)
-        if isinstance(happens, BaseException):
-            raise happens
-        press = super().press(velocity_mm_s)
-        return replace(press, t_s=press.t_s * happens) if happens else press
+def slow(press: Press) -> Press:
+    return replace(press, t_s=3.0 * press.t_s)
 
 
 def prefers(*better: int) -> Callable[[Question], Preferred]:
@@ -85,7 +65,7 @@ def tune(device: Any, answer: Any, folder: Path | None = None, **changed: Any) -
 
 
 def test_the_best_of_each_velocity_is_in_the_model_which_tells_how_it_came_about(tmp_path: Path) -> None:
-    result = tune(Hand(), prefers(2, 1, 0), method=Comparing(comparisons=12))
+    result = tune(ProgramHand(), prefers(2, 1, 0), method=Comparing(comparisons=12))
     assert [t.standing.best for t in result.tuned] == [2, 2]
     for speed in SPEEDS:
         found = result.model.vibration(Stroke.PRESS, speed)
@@ -109,12 +89,12 @@ def test_every_answer_is_reported_with_the_estimate_so_far_once_it_is_on_file(tm
         on_file = len((tmp_path / ANSWERS).read_text().splitlines()) - 1
         counts.append((now.given.number, on_file, sum(t.standing.answers for t in now.tuned)))
 
-    result = tune(Hand(), prefers(2, 1, 0), tmp_path, answered=look)
+    result = tune(ProgramHand(), prefers(2, 1, 0), tmp_path, answered=look)
     assert counts == [(n, n, n) for n in range(1, result.answers + 1)]
 
 
 def test_where_nothing_can_be_distinguished_the_measured_vibration_is_kept_and_that_is_said() -> None:
-    result = tune(Hand(), lambda _: Preferred.NEITHER)
+    result = tune(ProgramHand(), lambda _: Preferred.NEITHER)
     assert [t.standing.best for t in result.tuned] == [0, 0]
     assert (
         "no difference found between 3 vibrations; the measured one is kept" in result.model.provenance.method
@@ -122,28 +102,21 @@ def test_where_nothing_can_be_distinguished_the_measured_vibration_is_kept_and_t
 
 
 def test_every_press_follows_an_upload_so_that_no_pause_gives_a_template_away() -> None:
-    device = Hand()
+    device = ProgramHand()
     result = tune(device, prefers(0, 1, 2))
-    assert len(device.images) == device.presses == 2 * result.answers
-
-
-def test_a_person_may_press_again_before_answering() -> None:
-    answers = iter([None, Preferred.FIRST, *[Preferred.NEITHER] * 20])
-    device = Hand()
-    result = tune(device, lambda _: next(answers))
-    assert device.presses == 2 * (result.answers + 1)
+    assert device.programs == device.presses == 2 * result.answers
 
 
 def test_a_press_off_the_pace_is_made_again() -> None:
     notices: list[str] = []
-    device = Hand({1: 3.0})
+    device = ProgramHand({1: slow})
     result = tune(device, prefers(0, 1), guide=Guide(notice=notices.append))
     assert device.presses == 2 * result.answers + 1
     assert any("not used" in text for text in notices)
 
 
 def test_ten_presses_off_the_pace_end_the_session_and_say_how_to_go_on(tmp_path: Path) -> None:
-    device = Hand(dict.fromkeys(range(3, 30), 3.0))
+    device = ProgramHand(dict.fromkeys(range(3, 30), slow))
     with pytest.raises(DeviceError, match=r"10 presses in a row could not be used.*1 answer is kept"):
         tune(device, prefers(0), tmp_path / "s")
     assert device.stops == 1
@@ -153,7 +126,7 @@ def test_ten_presses_off_the_pace_end_the_session_and_say_how_to_go_on(tmp_path:
 @pytest.mark.parametrize("after", [1, 4])
 def test_an_interrupted_session_goes_on_exactly(method: Any, after: int, tmp_path: Path) -> None:
     observer = simulated_observer(candidates_for(MODEL, SPEEDS, GRID), 3)
-    whole = tune(Hand(), observer.answer, tmp_path / "whole", method=method)
+    whole = tune(ProgramHand(), observer.answer, tmp_path / "whole", method=method)
     asked: list[Question] = []
 
     def stops(question: Question) -> Any:
@@ -163,30 +136,20 @@ def test_an_interrupted_session_goes_on_exactly(method: Any, after: int, tmp_pat
         return observer.answer(question)
 
     with pytest.raises(KeyboardInterrupt, match=f"{after} answer.* kept in .*; run the same command again"):
-        tune(Hand(), stops, tmp_path / "torn", method=method)
-    torn = tune(Hand(), observer.answer, tmp_path / "torn", method=method)
+        tune(ProgramHand(), stops, tmp_path / "torn", method=method)
+    torn = tune(ProgramHand(), observer.answer, tmp_path / "torn", method=method)
     assert torn.to_dict() == whole.to_dict()
     assert torn.model == whole.model
     assert len(torn.receipt.runs) == 2
 
 
-def test_an_answer_is_on_file_before_the_next_press(tmp_path: Path) -> None:
-    seen: list[int] = []
-    tune(
-        Hand(), prefers(0), tmp_path / "s",
-        guide=Guide(ask=lambda _: seen.append((tmp_path / "s" / ANSWERS).read_bytes().count(b'"answer"'))),
-    )  # fmt: skip
-    assert seen == sorted(seen)
-    assert max(seen) >= 2 * (len(seen) // 2 - 1)
-
-
 @pytest.mark.parametrize("cut", [1, 10, 40])
 def test_a_last_answer_cut_short_is_left_out_and_asked_again(cut: int, tmp_path: Path) -> None:
-    whole = tune(Hand(), prefers(1, 0), tmp_path / "s")
+    whole = tune(ProgramHand(), prefers(1, 0), tmp_path / "s")
     path = tmp_path / "s" / ANSWERS
     path.write_bytes(path.read_bytes()[:-cut])
     notices: list[str] = []
-    device = Hand()
+    device = ProgramHand()
     again = tune(device, prefers(1, 0), tmp_path / "s", guide=Guide(notice=notices.append))
     assert again.to_dict() == whole.to_dict()
     assert device.presses == 2
@@ -194,8 +157,8 @@ def test_a_last_answer_cut_short_is_left_out_and_asked_again(cut: int, tmp_path:
 
 
 def test_a_finished_session_gives_its_result_again_without_a_press(tmp_path: Path) -> None:
-    whole = tune(Hand(), prefers(1, 0), tmp_path / "s")
-    device = Hand()
+    whole = tune(ProgramHand(), prefers(1, 0), tmp_path / "s")
+    device = ProgramHand()
     again = tune(device, prefers(0, 1), tmp_path / "s")
     assert device.presses == 0
     assert again.to_dict() == whole.to_dict()
@@ -206,7 +169,7 @@ def test_a_finished_session_gives_its_result_again_without_a_press(tmp_path: Pat
 
 def test_an_unfinished_session_has_a_receipt_too(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
-        tune(Hand({3: KeyboardInterrupt()}), prefers(0), tmp_path / "s")
+        tune(ProgramHand({3: KeyboardInterrupt()}), prefers(0), tmp_path / "s")
     receipt = open_run_summary(tmp_path / "s")
     assert receipt is not None
     assert receipt.used == 1
@@ -225,31 +188,18 @@ CHANGES: list[dict[str, Any]] = [
 
 @pytest.mark.parametrize("changed", CHANGES)
 def test_a_session_about_something_else_is_refused(changed: dict[str, Any], tmp_path: Path) -> None:
-    tune(Hand(), prefers(0), tmp_path / "s")
+    tune(ProgramHand(), prefers(0), tmp_path / "s")
     with pytest.raises(InputError, match="is another session"):
-        tune(Hand(), prefers(0), tmp_path / "s", **changed)
+        tune(ProgramHand(), prefers(0), tmp_path / "s", **changed)
 
 
 def test_a_damaged_answer_is_refused_with_its_place(tmp_path: Path) -> None:
-    tune(Hand(), prefers(0), tmp_path / "s")
+    tune(ProgramHand(), prefers(0), tmp_path / "s")
     path = tmp_path / "s" / ANSWERS
     lines = path.read_bytes().splitlines(keepends=True)
     path.write_bytes(b"".join([lines[0], lines[1].replace(b"50.0", b"51.0"), *lines[2:]]))
     with pytest.raises(InputError, match="line 2: the record is damaged"):
-        tune(Hand(), prefers(0), tmp_path / "s")
-
-
-def test_two_at_once_are_refused(tmp_path: Path) -> None:
-    tune(Hand(), prefers(0), tmp_path / "s")
-    log = AnswerLog(tmp_path / "s")
-    with pytest.raises(InputError, match="another process is at work"):
-        tune(Hand(), prefers(0), tmp_path / "s")
-    log.close()
-
-
-def test_a_model_without_a_vibration_of_the_press_is_refused() -> None:
-    with pytest.raises(InputError, match="it has none of the press to tune"):
-        tune(Hand(), prefers(0), model=load_builtin("mx-red"))
+        tune(ProgramHand(), prefers(0), tmp_path / "s")
 
 
 def test_a_device_that_runs_tables_only_is_refused() -> None:
@@ -258,9 +208,9 @@ def test_a_device_that_runs_tables_only_is_refused() -> None:
 
 
 def test_a_known_exciter_makes_the_board_begin_earlier() -> None:
-    device = Hand()
+    device = ProgramHand()
     tune(device, prefers(0), setup=replace(SETUP, exciter=KnownExciter(20.0, 600.0, 2.0, latency_s=0.007)))
-    assert device.kept.vibration_latency_us == 8000
+    assert device.settings().vibration_latency_us == 8000
 
 
 def test_candidates_begin_with_the_measured_vibration_and_do_not_repeat_it() -> None:
@@ -281,13 +231,3 @@ def test_vibrations_of_other_velocities_stay_and_one_for_all_is_replaced() -> No
     fresh = replace(at(100.0), duration_s=0.02)
     assert tuned_model(model, [fresh]).vibrations == (at(50.0), fresh)
     assert tuned_model(replace(MODEL, vibrations=(at(None),)), [fresh]).vibrations == (fresh,)
-
-
-def test_a_simulated_observer_on_the_twin_runs_it_all_and_is_named_as_such() -> None:
-    device = TwinDevice(seed=1)
-    observer = simulated_observer(candidates_for(MODEL, [100.0], GRID), 1)
-    setup = TuneSetup(grid=GRID, observer="simulated observer")
-    result = tune_vibration(device, MODEL, [100.0], METHOD, observer.answer, setup)
-    assert result.simulated
-    assert result.model.provenance.simulated
-    assert "by a simulated observer (evidence of nothing)" in result.model.provenance.method

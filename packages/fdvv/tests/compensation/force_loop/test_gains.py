@@ -7,13 +7,13 @@ from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
-from fdvv.protocol.tables import CellSpec
 
 from fdvv.compensation.force_loop.constants import of_earlier_version
 from fdvv.compensation.force_loop.gains import estimator_gains, force_loop_gains, rate
 from fdvv.compensation.force_loop.stability import LoopController
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import ModelError
+from fdvv.protocol.tables import CellSpec
 
 CELL = CellSpec(plate_kg=4e-4, stiffness_N_m=5e5, damping_N_s_m=1.4, filter_s=4e-5)
 RIG = RigModel(

@@ -140,8 +140,7 @@ def test_force_is_judged_on_the_silent_presses_as_if_nothing_were_played() -> No
 
 
 def test_a_rig_without_an_exciter_says_what_its_cap_does_by_itself() -> None:
-    rigs = Path(__file__).parents[5] / "packages/fdvv/src/fdvv/twin/rigs"
-    device = TwinDevice(load_rig(rigs / "recommended.toml"), seed=4)
+    device = TwinDevice(load_rig("recommended"), seed=4)
     result = probe(device, MODEL, SURFACE, [100.0], 2, playback=Playback(2))
     assert result.vibration_presses == 0
     found = result.curves[0].vibration.to_dict()
