@@ -11,7 +11,6 @@ from fdvv.compensation.presses import split_strokes
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.lacking import NO_FORCE_SENSOR, NO_LIMITER, NO_VIBRATION, lacking
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.open import open_device
 from fdvv.device.own_rig import OwnRigPerson, RigNumbers, find_rig
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import BuildError, InputError, ModelError
@@ -115,14 +114,6 @@ def test_full_duty_is_the_force_that_the_rig_says() -> None:
     settings = PlainRig.numbers.settings()
     force_cN64 = 64 * 100 * PlainRig.numbers.full_duty_N
     assert force_cN64 * settings.duty_gain_q16 / 2**16 == pytest.approx(2**15, rel=1e-4)
-
-
-def test_a_rig_is_opened_from_its_file_by_name(tmp_path: Path) -> None:
-    path = tmp_path / "mine.py"
-    path.write_text(f"from {PlainRig.__module__} import PlainRig as Mine\n")
-    device = open_device(f"rig:{path}:Mine")
-    device.upload(plain_surface(), 4.0)
-    assert device.press(100.0).displacement_mm.max() == pytest.approx(4.0, abs=0.1)
 
 
 def test_what_is_no_rig_is_refused_in_a_line(tmp_path: Path) -> None:

@@ -61,6 +61,8 @@ def test_a_replay_refuses_what_was_not_asked_then(tmp_path: Path) -> None:
     replay = ReplayDevice(session(tmp_path / "s"))
     with pytest.raises(DeviceError, match="this table is not in the rest"):
         replay.upload(plain_surface(41.0), 4.0)
+    with pytest.raises(DeviceError, match="this table is not in the rest"):
+        replay.upload(plain_surface(), 4.0, paced=True)
     replay.upload(plain_surface(), 4.0)
     with pytest.raises(DeviceError, match="asked at 100 mm/s, not at 60"):
         replay.press(60.0)
@@ -138,9 +140,3 @@ def test_a_recording_without_settings_is_read_with_the_default_ones_at_its_tick(
     assert replay.settings() == Settings(tick_us=250)
     replay.upload(plain_surface(), 4.0)
     assert replay.press(100.0).simulated
-
-
-def test_a_table_that_was_not_paced_then_is_not_found(tmp_path: Path) -> None:
-    replay = ReplayDevice(session(tmp_path / "s"))
-    with pytest.raises(DeviceError, match="this table is not in the rest"):
-        replay.upload(plain_surface(), 4.0, paced=True)

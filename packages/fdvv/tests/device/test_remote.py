@@ -83,12 +83,6 @@ def test_a_line_that_was_closed_and_opened_again_goes_on(rig: Callable[..., Rig]
     device.close()
 
 
-def test_a_port_that_is_not_there_is_refused_in_one_line() -> None:
-    with pytest.raises(DeviceError, match="cannot be opened") as caught:
-        SerialPort("/dev/there-is-none")
-    assert "\n" not in str(caught.value)
-
-
 def test_a_line_without_a_device_is_reported(rig: Callable[..., Rig]) -> None:
     line, slave = os.openpty()
     tty.setraw(slave)

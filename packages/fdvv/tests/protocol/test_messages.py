@@ -18,7 +18,6 @@ from fdvv.protocol.tables import DataRequest, Message, PingRequest, TickRecord
 
 GOLDEN = json.loads((Path(__file__).parents[4] / "protocol" / "golden.json").read_text())
 NAMES = [f"{example['message']} {example['part']}" for example in GOLDEN]
-PADDED = {"name": 16, "bytes": 192}
 
 
 def body_of(kind: type[Record] | None, fields: dict[str, Any] | None) -> Record | None:

@@ -106,12 +106,6 @@ def test_the_headers_compile_alone_and_together(tmp_path: Path) -> None:
     assert subprocess.run([program], check=False).returncode == 0
 
 
-def test_default_settings_pack_and_unpack_to_themselves() -> None:
-    settings = tables.Settings()
-    assert len(settings.pack()) == tables.Settings.length_bytes() == 96
-    assert tables.Settings.unpack(settings.pack()) == settings
-
-
 def test_a_number_out_of_range_is_refused_by_name() -> None:
     with pytest.raises(ModelError, match="tick_us must be 50 to 4000, got 7"):
         tables.Settings(tick_us=7)

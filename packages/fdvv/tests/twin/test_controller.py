@@ -17,7 +17,7 @@ from fdvv.twin.rig import Controller, Rig
 from fdvv.twin.rig_kernel import grid_of
 from fdvv.units import FloatArray
 from tests.support.table_press import simulate
-from tests.twin.conftest import FRICTIONLESS, PERFECT_POSITION, Bench, flat, surface_of
+from tests.twin.conftest import FRICTIONLESS, PERFECT_POSITION, Bench, flat
 
 
 def test_the_position_is_the_lagged_one_averaged_over_the_burst() -> None:
@@ -68,23 +68,6 @@ def test_a_command_beyond_the_limit_is_cut_and_flagged() -> None:
     assert high.commanded_cN == pytest.approx(440.0)
 
 
-def test_the_command_reads_the_table_at_the_sensed_place_stroke_and_speed(tactile: ForceSurface) -> None:
-    rig, gesture = Rig(), plan(Finger(), 0.004, 0.06)
-    trace = simulate(rig, Finger(), gesture, tactile, 4.0, silence(rig, gesture), 100.0)
-    press = np.interp(trace.sensed_mm, tactile.displacement_mm, tactile.press_cN[0])
-    release = np.interp(trace.sensed_mm, tactile.displacement_mm, tactile.release_cN[0])
-    assert trace.release.any()
-    assert trace.commanded_cN == pytest.approx(np.where(trace.release, release, press), abs=1 / 64)
-
-
-def test_release_begins_once_the_cap_has_come_back_by_the_reversal(tactile: ForceSurface) -> None:
-    rig, gesture = Rig(), plan(Finger(), 0.004, 0.06)
-    trace = simulate(rig, Finger(), gesture, tactile, 4.0, silence(rig, gesture), 100.0)
-    turn = int(np.argmax(trace.release))
-    assert trace.sensed_mm[:turn].max() - trace.sensed_mm[turn] >= 0.1
-    assert trace.sensed_mm[:turn].max() - trace.sensed_mm[turn - 1] < 0.1
-
-
 def speed_surface() -> ForceSurface:
     """A table whose force in cN is the speed in mm/s it was read at."""
     speeds = np.array([20.0, 400.0])
@@ -131,15 +114,6 @@ def test_noise_of_another_press_is_refused(tactile: ForceSurface) -> None:
     long, short = plan(finger, 0.004, 0.2), plan(finger, 0.004, 0.1)
     with pytest.raises(ModelError, match="noise must last"):
         simulate(rig, finger, long, tactile, 4.0, silence(rig, short), 100.0)
-
-
-def test_a_table_of_one_speed_serves_every_speed() -> None:
-    one = ForceSurface(np.array([0.0, 4.0]), np.array([100.0]), np.full((1, 2), 60.0), np.full((1, 2), 50.0))
-    two = surface_of(np.full(2, 60.0), np.full(2, 50.0))
-    rig, gesture = Rig(), plan(Finger(), 0.004, 0.1)
-    noise = silence(rig, gesture)
-    forces = [simulate(rig, Finger(), gesture, s, 4.0, noise, 100.0).force_cN for s in (one, two)]
-    assert np.array_equal(forces[0], forces[1])
 
 
 def test_a_bridge_that_cannot_pull_gives_no_negative_force() -> None:

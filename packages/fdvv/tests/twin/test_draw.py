@@ -53,13 +53,6 @@ def test_draws_are_spread_over_the_whole_range() -> None:
     )
 
 
-def test_what_a_builder_chooses_is_kept() -> None:
-    drawn = draw_rig(np.random.default_rng(1))
-    assert drawn.coil.supply_V == Rig().coil.supply_V
-    assert drawn.controller.tick_s == Rig().controller.tick_s
-    assert draw_finger(np.random.default_rng(1)).habit.lift_m == Finger().habit.lift_m
-
-
 def test_no_drawn_coil_loses_its_inductance_within_the_stroke() -> None:
     for seed in range(300):
         coil = draw_rig(np.random.default_rng(seed)).coil
