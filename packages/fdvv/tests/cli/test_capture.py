@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
-import pty
 import random
 import re
 import resource
@@ -24,13 +22,14 @@ from fdvv.bench.capture import TakeDone, TakeRequest, VelocityProgress
 from fdvv.bench.plan import COUNT_IN_s, Step
 from fdvv.bench.plan import DWELL_s as TOLD_DWELL_s
 from fdvv.bench.take_check import TakeCheck
-from fdvv.cli.bench.capture import CaptureLines, CaptureTable, beeps, frame, request_line
+from fdvv.cli.bench.capture import CaptureTable, beeps, frame
 from fdvv.cli.cue import BEATS, BEAT_s, DWELL_s, TONES_Hz, beeper, tone
 from fdvv.device.bench import SerialBench
 from fdvv.errors import InputError
 from fdvv.model.file import load_model
 from fdvv.recording.file import load_recording
 from fdvv.recording.types import Recording, Stage, Take
+from tests.cli._terminal import run_on_terminal
 from tests.support.campaign import campaign
 from tests.support.command_line import Run
 from tests.support.scripted_bench import PressedBoard
@@ -150,34 +149,11 @@ def test_a_file_of_another_button_or_seed_or_a_damaged_one_is_refused(fdvv: Run,
 
 
 def test_on_a_terminal_rows_and_bad_presses_are_shown(tmp_path: Path) -> None:
-    screen, terminal = pty.openpty()
-    command = [
-        *FDVV,
-        "capture",
-        FILE,
-        "--paces",
-        "100",
-        "--presses",
-        "8",
-        "--participant",
-        "clumsy",
-        "--seed",
-        "11",
-    ]
-    running = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=terminal, text=True)
-    os.close(terminal)
-    shown = b""
-    try:
-        while piece := os.read(screen, 4096):
-            shown += piece
-    except OSError:
-        pass  # the other end is closed
-    out, _ = running.communicate(timeout=30)
-    os.close(screen)
-    assert running.returncode == 0
+    clumsy = ("--paces", "100", "--presses", "8", "--participant", "clumsy", "--seed", "11")
+    out, shown = run_on_terminal("capture", FILE, *clumsy, folder=tmp_path)
     assert "100 mm/s     8   8" in out
-    assert b"median mm/s" in shown
-    assert b"; press" in shown
+    assert "median mm/s" in shown
+    assert "; press" in shown
 
 
 # -- the cue --
@@ -226,22 +202,6 @@ def test_on_a_terminal_the_bar_goes_down_and_up_and_the_last_press_stays_in_sigh
     assert "take 3, 2 of 62, 50 mm/s: too slow; press faster" in shown
     assert "50 mm/s     0  15      1" in shown
     assert "goes on" in shown
-
-
-def test_what_is_asked_says_pace_way_and_time() -> None:
-    assert request_line(ASK) == "3 of 62: press, 50 mm/s, 4.0 mm in 80 ms, down to the stop and let go"
-    again = TakeRequest(ASK.step, 3, 62, 4.0, "too slow")
-    assert request_line(again).startswith("3 of 62: press once more, 50 mm/s")
-    probe = TakeRequest(Step(Stage.PROBE, 0.5), 2, 62, 4.0)
-    assert request_line(probe).endswith(
-        "0.5 mm/s, 4.0 mm in 8 s, slowly, down to the stop and let go as slowly"
-    )
-
-
-def test_in_a_pipe_a_person_is_asked_line_by_line(capsys: pytest.CaptureFixture[str]) -> None:
-    view = CaptureLines(True, False, lambda _event: None)
-    view.cue(ASK)(1.6)
-    assert capsys.readouterr().err == request_line(ASK) + "\n"
 
 
 def test_a_player_is_given_a_sound_file_for_each_beep(tmp_path: Path) -> None:

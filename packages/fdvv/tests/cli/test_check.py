@@ -64,8 +64,3 @@ def test_json_holds_every_file_in_order(fdvv: Run, recording: Path) -> None:
     assert (first["file"], first["verdict"], first["kind"]) == ("a.recording.jsonl", "whole", "a recording")
     assert first["facts"]["streams"][0]["rate_Hz"] == pytest.approx(1000)
     assert (second["verdict"], second["problems"][0]["reason"]) == ("unusable", "No such file or directory")
-
-
-def test_no_file_at_all_is_refused(fdvv: Run) -> None:
-    ran = fdvv("check")
-    assert (ran.status, ran.err.count("\n")) == (2, 1)

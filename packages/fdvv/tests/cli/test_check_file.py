@@ -203,13 +203,6 @@ def test_what_is_no_file_of_fdvv_is_refused(tmp_path: Path, what: str) -> None:
         check_file(tmp_path / "a")
 
 
-def test_a_folder_of_none_and_a_file_that_is_gone_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"holds no session\.json"):
-        check_file(tmp_path)
-    with pytest.raises(InputError, match="No such file"):
-        check_file(tmp_path / "gone")
-
-
 @pytest.mark.parametrize("kind", MAKERS)
 @given(damages=st.lists(DAMAGES, min_size=1, max_size=3))
 @settings(

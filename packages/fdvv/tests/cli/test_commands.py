@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import pty
 import signal
 import subprocess
 import sys
@@ -16,6 +14,7 @@ import pytest
 
 from fdvv.cli.main import GROUPS, cli, command_helps
 from fdvv.model.file import load_model
+from tests.cli._terminal import run_on_terminal
 from tests.support.command_line import Run, tactile_csv
 
 HELPS = command_helps()
@@ -103,23 +102,11 @@ def test_a_full_disk_is_reported_in_one_line() -> None:
 
 
 def test_progress_is_shown_on_a_terminal_only_and_never_on_standard_output(folder: Path) -> None:
-    command = [*FDVV, "fit", str(folder), "--json"]
-    quiet = subprocess.run(command, capture_output=True, check=True)
+    fit = ("fit", str(folder), "--json")
+    quiet = subprocess.run([*FDVV, *fit], capture_output=True, check=True)
     assert b"fitting" not in quiet.stderr
-    ours, theirs = pty.openpty()
-    environment = {**os.environ, "TERM": "xterm"}
-    shown = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=theirs, env=environment)
-    os.close(theirs)
-    out = shown.communicate()[0]
-    output = b""
-    try:
-        while chunk := os.read(ours, 4096):
-            output += chunk
-    except OSError:
-        # Linux gives an error, not an end of file, once the other side has closed
-        pass
-    os.close(ours)
-    assert b"fitting" in output
+    out, shown = run_on_terminal(*fit)
+    assert "fitting" in shown
     assert {r["file"] for r in json.loads(out)["results"]} == {
         r["file"] for r in json.loads(quiet.stdout)["results"]
     }

@@ -107,13 +107,6 @@ def test_a_probe_says_that_a_table_was_made_for_another_rig(fdvv: Run, tmp_path:
     assert other.err.count("\n") == 1
 
 
-def test_a_rig_can_be_met_without_learning_on_it(fdvv: Run, tmp_path: Path) -> None:
-    ran = fdvv("compensate", "mx-clear", *SHORT, "--rounds", "0", "--save-rig", "new.rig.json", "--json")
-    assert ran.status == 0
-    assert ran.json["presses"] == 4
-    assert load_learned_rig(tmp_path / "new.rig.json").rig.presses == 4
-
-
 def test_a_session_on_a_rig_goes_on_under_the_name_the_rig_had_before(fdvv: Run) -> None:
     paper = ("compensate", "mx-clear", "--velocity", "100", "--method", "paper", "--presses", "2")
     before = fdvv(*paper, "--rounds", "1", "--rig", "voltage", "--session", "s", "--json")

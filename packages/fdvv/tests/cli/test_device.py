@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 from fdvv.device.remote import surface_image
 from fdvv.testing.conformance import plain_surface
-from tests.support.command_line import Ran
-
-Run = Callable[..., Ran]
+from tests.support.command_line import Run
 
 
 def test_the_kinds_of_device_are_listed(fdvv: Run) -> None:

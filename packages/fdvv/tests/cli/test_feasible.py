@@ -78,11 +78,3 @@ def test_without_a_known_rig_one_line_tells_how_to_get_it(fdvv: Run) -> None:
     assert len(ran.out.splitlines()) == 1
     assert "--rig-known" in ran.out
     assert "identify" in ran.out
-
-
-def test_a_rig_file_that_is_none_is_refused_in_one_line(fdvv: Run, tmp_path: Path) -> None:
-    wrong = tmp_path / "wrong.rig.json"
-    wrong.write_text("{}")
-    ran = fdvv("feasible", "mx-clear", "--rig-known", wrong)
-    assert ran.status == 2
-    assert "wrong.rig.json" in ran.err

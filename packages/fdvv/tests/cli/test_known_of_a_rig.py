@@ -19,18 +19,7 @@ def test_a_rig_is_identified_with_what_is_known_and_probed_with_its_cell(fdvv: R
     (tmp_path / "cell.toml").write_text(SENSOR)
     ran = fdvv(*LEARN, "--prior", "rig.toml", "--sensor", "cell.toml", "-o", "it.actuation.json")
     assert (ran.status, ran.out.splitlines()[0]) == (0, "mx-clear on twin (simulated), 4 presses")
-    probed = fdvv(
-        "probe",
-        "mx-clear",
-        "it.actuation.json",
-        "--sensor",
-        "cell.toml",
-        "--velocity",
-        "100",
-        "--presses",
-        "1",
-    )
-    assert probed.status == 0
+    assert fdvv("probe", "mx-clear", "it.actuation.json", "--sensor", "cell.toml", *SLOW).status == 0
 
 
 @pytest.mark.parametrize(

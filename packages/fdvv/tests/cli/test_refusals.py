@@ -27,9 +27,7 @@ def blue() -> dict[str, object]:
 def bad(tmp_path: Path) -> Path:
     """Fill the test's folder with files and folders that cannot be used."""
     tactile_csv(tmp_path / "good.csv")
-    pounds = (
-        (tmp_path / "good.csv").read_text().replace("force_cN", "force_lbf").replace("force_gf", "force_lbf")
-    )
+    pounds = (tmp_path / "good.csv").read_text().replace("force_cN", "force_lbf")
     (tmp_path / "pounds.csv").write_text(pounds)
     (tmp_path / "empty.csv").touch()
     (tmp_path / "empty").mkdir()

@@ -8,7 +8,7 @@ import pytest
 from rich.console import Console
 from rich.live import Live
 
-from fdvv.cli.rendering.session import LineView, TableView, press_line
+from fdvv.cli.rendering.session import LineView, TableView
 from fdvv.compensation.method import CurveOutcome
 from fdvv.model.curve import Stroke
 from fdvv.rendering.session_run import PressDone, PressRequest, VelocityProgress
@@ -17,43 +17,19 @@ ASK = PressRequest(100.0, 4.0, 3, 12)
 CURVES = tuple(CurveOutcome(stroke, 100.0, (9.0, 5.25), 2.5, 7.75, "") for stroke in Stroke)
 
 
-def event(done: int = 3, skipped: str = "", stage: str = "compensate") -> PressDone:
+def event(done: int = 3, stage: str = "compensate") -> PressDone:
     rows = VelocityProgress(50.0, 0, 6), VelocityProgress(100.0, 3, None, CURVES)
-    return PressDone(stage, 100.0, done, 12, None, skipped, 96.4, "moved it", lambda: rows)
+    return PressDone(stage, 100.0, done, 12, None, "", 96.4, "moved it", lambda: rows)
 
 
-def table(person: bool) -> tuple[TableView, Live, io.StringIO]:
+def shown(act: Callable[[TableView], None], person: bool = False, verbose: bool = True) -> str:
+    """Return the text that a table leaves on a terminal."""
     stream = io.StringIO()
     live = Live(console=Console(file=stream, force_terminal=True, width=120), auto_refresh=False)
     live.start()
-
-    def cue(stroke_s: float, draw: Callable[[str], None]) -> None:
-        draw(f"cue of {stroke_s * 1000:.0f} ms")
-
-    return TableView(person, live, cue), live, stream
-
-
-def plain(stream: io.StringIO) -> str:
+    act(TableView(person, live, lambda stroke_s, draw: draw(f"cue of {stroke_s * 1000:.0f} ms"), verbose))
+    live.stop()
     return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", stream.getvalue())
-
-
-def test_a_press_is_shown_by_what_it_achieved_and_changed_or_why_it_was_not_used() -> None:
-    assert press_line(event()) == "3 of 12, 100 mm/s: achieved 96 mm/s; moved it"
-    assert press_line(event(2, "press slower")) == "2 of 12, 100 mm/s: not used, press slower"
-
-
-def test_a_person_without_a_terminal_gets_a_line_before_and_after_each_press(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    view = LineView(person=True, quiet=True)
-    view.ask(ASK)
-    view.done(event())
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert err.splitlines() == [
-        "press 3 of 12: 100 mm/s, 4.0 mm in 40 ms, down to the stop and let go",
-        "3 of 12, 100 mm/s: achieved 96 mm/s; moved it",
-    ]
 
 
 def test_of_simulated_presses_the_last_is_shown_all_if_asked_and_none_when_json_is_printed(
@@ -69,10 +45,7 @@ def test_of_simulated_presses_the_last_is_shown_all_if_asked_and_none_when_json_
 
 
 def test_the_table_has_a_row_per_velocity_with_what_is_known() -> None:
-    view, live, stream = table(person=False)
-    view.done(event())
-    live.stop()
-    text = plain(stream)
+    text = shown(lambda view: view.done(event()))
     assert re.search(r"50 mm/s +0/6 +– +– +– +– +– +–", text)
     assert re.search(r"100 mm/s +3 +5\.2 +2\.5 +7\.8 +5\.2 +2\.5 +7\.8", text)
     assert "best mean" in text
@@ -80,38 +53,23 @@ def test_the_table_has_a_row_per_velocity_with_what_is_known() -> None:
 
 
 def test_one_line_of_progress_replaces_the_table_unless_details_are_asked_for() -> None:
-    _, live, stream = table(person=False)
-    view = TableView(False, live, verbose=False)
-    view.done(event())
-    live.stop()
-    assert "achieved 96 mm/s" in plain(stream)
-    assert "best mean" not in plain(stream)
+    text = shown(lambda view: view.done(event()), verbose=False)
+    assert "achieved 96 mm/s" in text
+    assert "best mean" not in text
 
 
 def test_the_means_of_a_probe_are_called_medians() -> None:
-    view, live, stream = table(person=False)
-    view.done(event(stage="probe"))
-    live.stop()
-    assert "median mean" in plain(stream)
+    assert "median mean" in shown(lambda view: view.done(event(stage="probe")))
 
 
 def test_a_person_sees_the_cue_below_the_table_and_then_when_to_press() -> None:
-    view, live, stream = table(person=True)
-    view.ask(ASK)
-    live.stop()
-    text = plain(stream)
+    text = shown(lambda view: view.ask(ASK), person=True)
     assert text.index("press 3 of 12: 100 mm/s") < text.index("cue of 40 ms") < text.index("press now")
 
 
 def test_a_simulated_press_has_no_cue() -> None:
-    view, live, stream = table(person=False)
-    view.ask(ASK)
-    live.stop()
-    assert "cue" not in plain(stream)
+    assert "cue" not in shown(lambda view: view.ask(ASK))
 
 
 def test_a_notice_stands_above_the_table() -> None:
-    view, live, stream = table(person=False)
-    view.notice("goes on [with] it")
-    live.stop()
-    assert "goes on [with] it" in plain(stream)
+    assert "goes on [with] it" in shown(lambda view: view.notice("goes on [with] it"))
