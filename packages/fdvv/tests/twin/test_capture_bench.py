@@ -18,6 +18,7 @@ from fdvv.twin.files import load_button
 from fdvv.twin.finger import Finger
 from fdvv.twin.pace import mean_speed_mm_s
 from fdvv.twin.rig import ForceSensor
+from fdvv.twin.simulate_button import ButtonTrace
 from fdvv.units import FloatArray
 
 NOTHING_WRONG: dict[str, Any] = {
@@ -57,6 +58,11 @@ def a_press(number: int = 1, velocity_mm_s: float = 100.0, **changes: Any) -> Si
     return a_bench(**changes).take(number, Stage.PRESS, velocity_mm_s)
 
 
+def trace_of(made: SimulatedTake) -> ButtonTrace:
+    assert made.truth.trace is not None
+    return made.truth.trace
+
+
 def stream(take: Take, name: str) -> Stream:
     return next(stream for stream in take.streams if stream.name == name)
 
@@ -78,8 +84,7 @@ def down_mm(made: SimulatedTake, name: str) -> FloatArray:
 
 def test_a_perfect_bench_returns_its_input() -> None:
     made = a_press()
-    trace = made.truth.trace
-    assert trace is not None
+    trace = trace_of(made)
     assert trace.sensed_cN is not None
     for name in ("left", "right"):
         true_mm = np.interp(in_press_s(made, name), trace.t_s, trace.displacement_mm)
@@ -114,8 +119,7 @@ def test_both_clocks_go_on_through_a_session_on_one_line() -> None:
     setup = ends[0].truth.setup
     assert 1e-5 < abs(setup.camera_ratio - 1) < 1e-3
     for made in ends:
-        trace = made.truth.trace
-        assert trace is not None
+        trace = trace_of(made)
         true_mm = np.interp(in_press_s(made, "left"), trace.t_s, trace.displacement_mm)
         assert np.allclose(down_mm(made, "left"), true_mm, atol=1e-9)
     frames = np.concatenate([stream(made.take, "left").t_s for made in ends]) - setup.phase_s
@@ -126,8 +130,7 @@ def test_the_light_blinks_before_the_cap_moves_and_every_blink_is_seen() -> None
     bench = a_bench(replace(PERFECT, exposure_s=3e-4))
     for number in range(1, 20):
         made = bench.take(number, Stage.PRESS, 200.0)
-        trace, setup = made.truth.trace, made.truth.setup
-        assert trace is not None
+        trace, setup = trace_of(made), made.truth.setup
         on, off = made.take.times_s("light on"), made.take.times_s("light off")
         assert on.size == off.size == 4
         assert len(set(np.round(np.diff(np.sort(np.concatenate([on, off]))), 4))) >= 5
@@ -146,8 +149,7 @@ def test_the_light_blinks_before_the_cap_moves_and_every_blink_is_seen() -> None
 @pytest.mark.parametrize("button", ["mx-clear", "hp-pr1101u"])
 def test_the_circuit_is_marked_where_the_sampled_board_first_sees_it_change(button: str) -> None:
     made = a_press(button=button)
-    trace = made.truth.trace
-    assert trace is not None
+    trace = trace_of(made)
     assert trace.closing_s is not None
     late_s = made.take.times_s("closed")[0] - made.truth.begin_s - trace.closing_s
     assert 0 <= late_s < 1.0001e-3
@@ -174,8 +176,7 @@ def test_rocking_parts_the_markers_and_their_mean_keeps_little_of_it() -> None:
 def test_a_bench_askew_sees_the_press_on_all_three_axes() -> None:
     made = a_press(rig=replace(PERFECT, askew_rad=0.05))
     moved = stream(made.take, "left").values - made.truth.setup.places_mm[0]
-    trace = made.truth.trace
-    assert trace is not None
+    trace = trace_of(made)
     assert np.allclose(
         np.linalg.norm(moved, axis=1),
         np.abs(np.interp(in_press_s(made, "left"), trace.t_s, trace.displacement_mm)),
@@ -197,8 +198,7 @@ def test_lost_frames_are_left_out_and_a_marker_that_was_not_found_is_nan() -> No
 
 def test_an_exposure_averages_the_motion() -> None:
     made = a_press(rig=replace(PERFECT, exposure_s=0.004))
-    trace, at_s = made.truth.trace, in_press_s(made, "left")
-    assert trace is not None
+    trace, at_s = trace_of(made), in_press_s(made, "left")
     middle_mm, start_mm = (np.interp(at_s + d, trace.t_s, trace.displacement_mm) for d in (0.002, 0.0))
     seen = down_mm(made, "left")
     assert np.abs(seen - middle_mm).max() < 0.3 * np.abs(seen - start_mm).max()
@@ -229,8 +229,7 @@ def test_converters_write_counts_whose_scale_and_zero_give_the_unit() -> None:
 def test_the_bench_at_rest_tells_the_force_sensor_s_zero() -> None:
     bench = a_bench(replace(PERFECT, force_zero_N=0.1))
     rest = bench.take(1, Stage.REST)
-    assert rest.truth.trace is not None
-    assert np.ptp(rest.truth.trace.displacement_mm) < 1e-3
+    assert np.ptp(trace_of(rest).displacement_mm) < 1e-3
     zero_cN = 100 * bench.setup.force_zero_N
     assert abs(zero_cN) > 1.0
     assert stream(rest.take, "force").values.mean() == pytest.approx(zero_cN, abs=0.3)
@@ -272,8 +271,7 @@ def test_every_take_shows_rest_before_and_after_the_press(lift_m: float) -> None
     finger = replace(Finger(), habit=replace(Finger().habit, lift_m=lift_m))
     bench = a_bench(participant=Participant(0.2, 0.5), finger=finger)
     for number in range(1, 13):
-        trace = bench.take(number, Stage.PRESS, (50.0, 200.0)[number % 2]).truth.trace
-        assert trace is not None
+        trace = trace_of(bench.take(number, Stage.PRESS, (50.0, 200.0)[number % 2]))
         away = trace.t_s[trace.displacement_mm > trace.displacement_mm[0] + 0.15]
         assert away[0] > 0.15
         assert trace.t_s[-1] - away[-1] > 0.08
@@ -314,17 +312,14 @@ def test_presses_go_wrong_as_often_as_the_participant_says() -> None:
 def test_an_incomplete_press_never_reaches_the_bottom(velocity_mm_s: float) -> None:
     bench = a_bench(participant=Participant(1.0, 0.0))
     for number in range(1, 9):
-        made = bench.take(number, Stage.PRESS, velocity_mm_s)
-        assert made.truth.trace is not None
-        deepest_mm = made.truth.trace.displacement_mm.max()
+        deepest_mm = trace_of(bench.take(number, Stage.PRESS, velocity_mm_s)).displacement_mm.max()
         assert 0.4 < deepest_mm <= 4.0 - 0.15
 
 
 def test_a_press_off_the_pace_is_far_off() -> None:
     speeds = []
     for seed in range(12):
-        trace = goes_wrong("pace", seed)[0].truth.trace
-        assert trace is not None
+        trace = trace_of(goes_wrong("pace", seed)[0])
         speeds.append(mean_speed_mm_s(trace.t_s, trace.displacement_mm, 4.0))
     assert all(speed < 75 or speed > 130 for speed in speeds)
     assert min(speeds) < 75
@@ -334,22 +329,19 @@ def test_a_press_off_the_pace_is_far_off() -> None:
 def test_a_double_tap_closes_the_circuit_twice() -> None:
     made = goes_wrong("double tap")[0]
     assert made.take.times_s("closed").size == 2
-    trace = made.truth.trace
-    assert trace is not None
+    trace = trace_of(made)
     peaks = trace.displacement_mm > 3.9
     assert np.sum(np.diff(peaks.astype(int)) == 1) >= 2
 
 
 def test_a_hesitating_finger_stops_on_its_way_and_goes_on() -> None:
-    wrong, right = goes_wrong("hesitation")
-    assert wrong.truth.trace is not None
-    assert right.truth.trace is not None
-    x, t = wrong.truth.trace.displacement_mm, wrong.truth.trace.t_s
+    made, right = goes_wrong("hesitation")
+    trace, stop_s = trace_of(made), made.truth.intent.amount
+    x, t = trace.displacement_mm, trace.t_s
     way = (x > 0.3) & (x < 3.8) & (t < t[np.argmax(x > 3.9)])
-    stopped_s = 1e-4 * np.sum(way & (np.abs(wrong.truth.trace.velocity_mm_s) < 10))
-    assert stopped_s > 0.5 * wrong.truth.intent.amount
+    assert 1e-4 * np.sum(way & (np.abs(trace.velocity_mm_s) < 10)) > 0.5 * stop_s
     assert x.max() > 3.95
-    assert t[-1] > right.truth.trace.t_s[-1] + 0.9 * wrong.truth.intent.amount
+    assert t[-1] > trace_of(right).t_s[-1] + 0.9 * stop_s
 
 
 def test_a_knocked_marker_jumps_once_and_only_it() -> None:

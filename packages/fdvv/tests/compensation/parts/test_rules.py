@@ -16,14 +16,57 @@ STILL = np.full(SOUND.place_mm.size, 0.01)
 NOISE = 0.002 * np.random.default_rng(1).standard_normal(STILL.size)
 
 
-def named(facts: PressFacts) -> str:
-    found = part_at_fault(facts)
-    return found.part if found else ""
-
-
-def felt(facts: PressFacts) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def felt(facts: PressFacts = SOUND) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     assert facts.force_cN is not None
     return np.asarray(facts.force_cN)
+
+
+def dead_from(row: int) -> PressFacts:
+    """Return a sound press whose force reads nothing from a row on."""
+    return replace(SOUND, force_cN=np.where(np.arange(STILL.size) < row, felt(), 0.0))
+
+
+def on_the_stop(commanded_cN: float) -> PressFacts:
+    """Return a press of a cap that lies on its stop and moves little."""
+    place_mm = TRAVEL_mm - 0.5 * SOUND.place_mm / TRAVEL_mm
+    return replace(SOUND, place_mm=place_mm, commanded_cN=STILL + commanded_cN)
+
+
+BLIND = replace(SOUND, force_cN=None)
+DEEP, TURNED = Scripted(depth_mm=4.6).facts(), Scripted(depth_mm=2.5).facts()
+NAMED = {
+    "a place above the top stop": (replace(SOUND, place_mm=-SOUND.place_mm), "position sensor"),
+    "a place without noise under a finger": (replace(SOUND, place_mm=STILL), "position sensor"),
+    "a place without noise that no finger pushes": (replace(SOUND, place_mm=STILL, force_cN=0.2 * NOISE), ""),
+    "a cap that bears a finger without a way": (replace(SOUND, place_mm=STILL + NOISE), "mover"),
+    "a cap on its stop that bears a finger": (
+        replace(SOUND, place_mm=TRAVEL_mm + NOISE, commanded_cN=STILL + 25.0),
+        "",
+    ),
+    "a reading that a stroke does not change": (dead_from(0), "force sensor"),
+    "a reading that stands still from before the deepest on": (dead_from(150), "force sensor"),
+    "a reading that stands still as the finger has left": (dead_from(300), ""),
+    "a finger that seems to pull": (Scripted(scale=-1.0).facts(), "force sensor"),
+    "a zero far below nothing": (Scripted(zero_cN=-25.0).facts(), "force sensor"),
+    "a stop too deep": (DEEP, "travel limiter"),
+    "a stop that yields under a finger and a coil": (
+        replace(DEEP, commanded_cN=DEEP.commanded_cN - 300.0),
+        "",
+    ),
+    "a person who turns early": (replace(TURNED, force_cN=np.minimum(felt(TURNED), 60.0)), ""),
+    "a cap that lies there under more than its weight": (on_the_stop(80.0), "coil"),
+    "a cap that lies there under little more than its weight": (on_the_stop(25.0), ""),
+    "a sound press without a force sensor": (BLIND, ""),
+    "a place above the top stop, without one": (replace(BLIND, place_mm=-SOUND.place_mm), "position sensor"),
+    "a place without noise, without one": (replace(BLIND, place_mm=STILL), "position sensor"),
+}
+
+
+@pytest.mark.parametrize("record", NAMED)
+def test_a_record_names_the_part_at_fault_or_nothing(record: str) -> None:
+    facts, part = NAMED[record]
+    found = part_at_fault(facts)
+    assert (found.part if found else "") == part
 
 
 @pytest.mark.parametrize("rule", SURE_RULES)
@@ -32,64 +75,21 @@ def test_a_sound_press_breaks_no_rule(rule: object) -> None:
     assert was_touched(SOUND)
 
 
-def test_a_place_above_the_top_stop_is_read_backwards() -> None:
-    assert named(replace(SOUND, place_mm=-SOUND.place_mm)) == "position sensor"
-
-
-def test_a_place_without_noise_under_a_finger_is_frozen_and_nobody_is_blamed() -> None:
-    frozen = replace(SOUND, place_mm=STILL)
-    assert named(frozen) == "position sensor"
-    assert "exactly 0.010 mm" in str(part_at_fault(frozen))
-
-
-def test_a_place_without_noise_that_no_finger_pushes_is_no_fault() -> None:
-    assert named(replace(SOUND, place_mm=STILL, force_cN=0.2 * NOISE)) == ""
-
-
-def test_a_cap_that_bears_a_finger_without_a_way_is_stuck() -> None:
-    assert named(replace(SOUND, place_mm=STILL + NOISE)) == "mover"
-
-
-def test_a_cap_on_its_stop_that_bears_a_finger_is_not_stuck() -> None:
-    heavy = replace(SOUND, place_mm=TRAVEL_mm + NOISE, commanded_cN=STILL + 25.0)
-    assert named(heavy) == ""
+def test_a_place_without_noise_is_reported_with_its_value() -> None:
+    assert "exactly 0.010 mm" in str(part_at_fault(replace(SOUND, place_mm=STILL)))
 
 
 def test_a_reading_that_a_stroke_does_not_change_is_dead() -> None:
-    found = part_at_fault(replace(SOUND, force_cN=np.zeros(STILL.size)))
+    found = part_at_fault(dead_from(0))
     assert found is not None
-    assert found.part == "force sensor"
     assert found.seen == "the force sensor reads 0.0 cN and nothing else while the motor pushes up to 65 cN"
 
 
-def test_a_reading_that_stands_still_from_before_the_deepest_on_is_dead() -> None:
-    force = felt(SOUND).copy()
-    force[150:] = 0.0
-    assert named(replace(SOUND, force_cN=force)) == "force sensor"
-
-
-def test_a_reading_that_stands_still_as_the_finger_has_left_is_no_fault() -> None:
-    force = felt(SOUND).copy()
-    force[300:] = 0.0
-    assert named(replace(SOUND, force_cN=force)) == ""
-
-
 def test_a_reading_that_stands_still_to_the_end_counts_where_the_board_says_that_something_is_wrong() -> None:
-    force = felt(SOUND).copy()
-    force[230:] = 0.0
-    facts = replace(SOUND, force_cN=force)
-    assert part_at_fault(facts, RULES) is None
-    found = part_at_fault(facts, SURE_RULES)
+    assert part_at_fault(dead_from(230), RULES) is None
+    found = part_at_fault(dead_from(230), SURE_RULES)
     assert found is not None
     assert found.part == "force sensor"
-
-
-def test_a_finger_that_seems_to_pull_is_felt_backwards() -> None:
-    assert named(Scripted(scale=-1.0).facts()) == "force sensor"
-
-
-def test_a_zero_far_below_nothing_is_the_force_sensors() -> None:
-    assert named(Scripted(zero_cN=-25.0).facts()) == "force sensor"
 
 
 def test_a_sensor_without_noise_is_silent() -> None:
@@ -99,31 +99,7 @@ def test_a_sensor_without_noise_is_silent() -> None:
 
 @pytest.mark.parametrize("depth_mm", [5.6, 2.5])
 def test_a_stop_far_from_where_it_was_asked_to_be_is_the_limiters(depth_mm: float) -> None:
-    facts = Scripted(depth_mm=depth_mm).facts()
-    assert named(facts) == "travel limiter"
-    assert f"{depth_mm:.1f} mm instead of 4.0" in str(part_at_fault(facts))
-
-
-def test_a_stop_that_yields_under_a_finger_and_a_coil_is_no_fault() -> None:
-    deep = Scripted(depth_mm=4.6).facts()
-    assert named(deep) == "travel limiter"
-    assert named(replace(deep, commanded_cN=deep.commanded_cN - 300.0)) == ""
-
-
-def test_a_person_who_turns_early_is_not_the_limiter() -> None:
-    turned = Scripted(depth_mm=2.5).facts()
-    force = np.minimum(felt(turned), 60.0)
-    assert named(replace(turned, force_cN=force)) == ""
-
-
-def test_a_cap_that_lies_there_under_more_than_its_weight_has_no_coil() -> None:
-    lying = replace(SOUND, place_mm=TRAVEL_mm - 0.5 * SOUND.place_mm / TRAVEL_mm, commanded_cN=STILL + 80.0)
-    assert named(lying) == "coil"
-    assert named(replace(lying, commanded_cN=STILL + 25.0)) == ""
-
-
-def test_without_a_force_sensor_only_places_are_judged() -> None:
-    blind = replace(SOUND, force_cN=None)
-    assert named(blind) == ""
-    assert named(replace(blind, place_mm=-SOUND.place_mm)) == "position sensor"
-    assert named(replace(blind, place_mm=STILL)) == "position sensor"
+    found = part_at_fault(Scripted(depth_mm=depth_mm).facts())
+    assert found is not None
+    assert found.part == "travel limiter"
+    assert f"{depth_mm:.1f} mm instead of 4.0" in str(found)
