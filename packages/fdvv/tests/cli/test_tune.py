@@ -16,11 +16,11 @@ from fdvv.model.file import load_model
 from fdvv.rendering.session_log import ANSWERS
 from fdvv.testing.conformance import plain_surface
 from fdvv.testing.scripted import ScriptedDevice
-from fdvv.vibration.tune import Preferred, Question
 from tests.support.command_line import Run
 
 SIMULATED = ("tune", "mx-clear", "--simulated-observer", "--velocity", "100")
 SHORT = (*SIMULATED, "--comparisons", "3")
+BY_PERSON = ("tune", "mx-clear", "--device", "serial:x", "--velocity", "100", "--json")
 
 
 class Rig(ScriptedDevice):
@@ -43,6 +43,12 @@ def person(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     monkeypatch.setattr("fdvv.rendering.session.open_device", lambda *_: Rig())
     monkeypatch.setattr("fdvv.cli.rendering.tune.click.prompt", prompt)
     return answers
+
+
+def answers_in(folder: str) -> list[dict[str, Any]]:
+    """Return the answers on file in a session."""
+    records = [json.loads(line)["record"] for line in Path(folder, ANSWERS).read_text().splitlines()]
+    return [record["answer"] for record in records if "answer" in record]
 
 
 def test_a_simulated_observer_tunes_a_model_and_every_word_says_simulated(fdvv: Run, tmp_path: Path) -> None:
@@ -91,9 +97,7 @@ def test_a_killed_tuning_loses_no_answer_and_ends_as_one_that_was_not(fdvv: Run,
 
 def test_a_person_compares_by_number_and_may_press_again(fdvv: Run, person: list[str]) -> None:
     person += ["r", "1", "2", "0"]
-    ran = fdvv(
-        "tune", "mx-clear", "--device", "serial:x", "--velocity", "100", "--comparisons", "3", "--json"
-    )
+    ran = fdvv(*BY_PERSON, "--comparisons", "3", "--session", "s")
     assert ran.status == 0, ran.err
     assert ran.json["observer"] == "person"
     asked = [line for line in ran.err.splitlines() if line.startswith("question")]
@@ -101,15 +105,15 @@ def test_a_person_compares_by_number_and_may_press_again(fdvv: Run, person: list
         f"question 1 of 3 at most, press {i}: 100 mm/s, down to the stop and let go" for i in (1, 2)
     ]
     assert len(asked) == 8
+    assert [given["answer"] for given in answers_in("s")] == ["first", "second", "neither"]
 
 
 def test_a_person_rates_from_1_to_7(fdvv: Run, person: list[str]) -> None:
     person += [str(1 + i % 7) for i in range(12)]
-    ran = fdvv(
-        "tune", "mx-clear", "--device", "serial:x", "--velocity", "100", "--rate", "--repeats", "2", "--json"
-    )
+    ran = fdvv(*BY_PERSON, "--rate", "--repeats", "2", "--session", "s")
     assert ran.status == 0, ran.err
     assert ran.json["answers"] == 12
+    assert [given["answer"] for given in answers_in("s")] == [1 + i % 7 for i in range(12)]
 
 
 def test_nothing_that_a_person_sees_tells_templates_apart(fdvv: Run, person: list[str]) -> None:
@@ -117,15 +121,10 @@ def test_nothing_that_a_person_sees_tells_templates_apart(fdvv: Run, person: lis
     shown = []
     for seed in ("1", "2"):
         person += ["0"] * 6
-        ran = fdvv("tune", "mx-clear", "--device", "serial:x", "--velocity", "100", "--comparisons", "6",
-                   "--seed", seed, "--session", seed, "--json")  # fmt: skip
-        shown.append(ran.err)
+        shown.append(fdvv(*BY_PERSON, "--comparisons", "6", "--seed", seed, "--session", seed).err)
     assert shown[0] == shown[1]
-    asked = [json.loads(line)["record"] for line in Path("1", ANSWERS).read_text().splitlines()]
-    other = [json.loads(line)["record"] for line in Path("2", ANSWERS).read_text().splitlines()]
-    assert [a.get("answer", {}).get("templates") for a in asked] != [
-        a.get("answer", {}).get("templates") for a in other
-    ]
+    asked, other = ([given["templates"] for given in answers_in(folder)] for folder in ("1", "2"))
+    assert asked != other
 
 
 def test_show_tells_how_far_a_tuning_is(fdvv: Run) -> None:
@@ -152,16 +151,3 @@ def test_what_cannot_be_done_is_refused_in_one_line(
     assert ran.status == 2
     assert message in ran.err
     assert ran.err.count("\n") == 1
-
-
-def test_an_answer_means_what_the_question_says(monkeypatch: pytest.MonkeyPatch) -> None:
-    from fdvv.cli.rendering import tune as _tune_view
-
-    view = _tune_view.TuneView(True, True)
-    pair, single = Question(0, (3, 1), 1, 9), Question(0, (3,), 1, 9)
-    meant = {"1": Preferred.FIRST, "2": Preferred.SECOND, "0": Preferred.NEITHER, "r": None}
-    for answer, wanted in meant.items():
-        monkeypatch.setattr(_tune_view, "_prompt", lambda *_, answer=answer: answer)
-        assert view.answer(pair) == wanted
-    monkeypatch.setattr(_tune_view, "_prompt", lambda *_: "6")
-    assert view.answer(single) == 6
