@@ -8,7 +8,6 @@ from scipy.integrate import solve_ivp
 
 from fdvv.compensation.rig_learning import FingerJoint, predicted_change
 from fdvv.compensation.stroke_samples import StrokeSample
-from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 
 GRID_mm = np.linspace(0.0, 4.0, 81)
@@ -88,9 +87,3 @@ def test_a_constant_excess_ends_at_what_the_springs_give(slope_cN_mm: float) -> 
     q, dv, da = (change[-1] for change in predicted_change(slow, target, GRID_mm, FINGER))
     assert q == pytest.approx(12.0 / (60.0 + slope_cN_mm), rel=1e-3)
     assert (dv, da) == pytest.approx((0.0, 0.0), abs=1e-3)
-
-
-@pytest.mark.parametrize("wrong", [{"mass_g": 0.0}, {"damping_N_s_m": -1.0}, {"stiffness_N_m": -1.0}])
-def test_a_finger_without_sense_is_refused(wrong: dict[str, float]) -> None:
-    with pytest.raises(ModelError, match="mass above 0"):
-        FingerJoint(**wrong)

@@ -54,11 +54,6 @@ def test_a_broken_file_is_refused_in_one_line(tmp_path: Path, change: dict[str, 
     assert str(caught.value).startswith(f"{path}: ")
 
 
-def test_a_missing_file_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="check the path"):
-        load_rig(tmp_path / "none.rig.json")
-
-
 def memory(seed: int = 0) -> LearnedRig:
     random = np.random.default_rng(seed)
     tables = random.normal(size=(2, 3, 81))

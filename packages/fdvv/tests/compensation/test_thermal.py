@@ -9,7 +9,6 @@ import pytest
 
 from fdvv.compensation.feasibility.limits import RigLimits
 from fdvv.compensation.feasibility.thermal import held_until_s, rise_K, thermal_dose
-from fdvv.errors import ModelError
 from fdvv.protocol.tables import Settings
 
 LIMITS = RigLimits.of_settings(Settings())
@@ -83,8 +82,3 @@ def test_a_duty_limit_bounds_the_command_like_a_force_limit() -> None:
     half = RigLimits.of_settings(replace(Settings(), duty_limit_q15=4096))
     assert half.force_limit_cN == pytest.approx(half.full_duty_cN / 8)
     assert RigLimits.of_settings(Settings()).force_limit_cN == 440.0
-
-
-def test_limits_that_cannot_be_are_refused() -> None:
-    with pytest.raises(ModelError, match="above 0"):
-        replace(LIMITS, tick_s=0.0)

@@ -36,8 +36,6 @@ from fdvv.protocol.tables import (
     RecordsRequest,
     Refusal,
     RefusedReply,
-    SelftestReply,
-    SelfTestResult,
     Settings,
     TelemetryRequest,
     VibrateRequest,
@@ -408,12 +406,6 @@ def test_silence_of_the_host_ends_rendering(known: Bench) -> None:
     assert known.port.outputs.duty_q15 == 0
     reply = ReadFaultReply.unpack(known.ask(Message.READ_FAULT).payload)
     assert reply.fault == Fault.HOST_LOST
-
-
-def test_the_selftest_names_verdicts(known: Bench) -> None:
-    reply = SelftestReply.unpack(known.ask(Message.SELFTEST, ticks=20).payload)
-    assert SelfTestResult.FAILED not in [SelfTestResult(v) for v in reply.verdicts]
-    assert reply.verdicts[0] == SelfTestResult.PASSED
 
 
 def test_numbers_out_of_range_are_refused(known: Bench) -> None:

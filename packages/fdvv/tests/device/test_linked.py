@@ -27,7 +27,7 @@ from fdvv.protocol.messages import request_frame
 from fdvv.protocol.tables import HASH, VERSION, Fault, HelloRequest, Message, Settings
 from fdvv.testing.conformance import ProgramConformance, plain_surface
 from tests.support.link_rigs import linked
-from tests.support.scripted_person import ScriptedPerson
+from tests.support.scripted_person import Meddle, ScriptedPerson
 
 AHEAD = {
     "predictor_q16": 6000,
@@ -81,24 +81,16 @@ def test_the_host_program_and_the_library_do_the_same_in_every_tick() -> None:
         assert one.sensed_mm.tobytes() == other.sensed_mm.tobytes()
 
 
-def low_supply(tick: int, inputs: Inputs) -> Inputs:
-    return inputs._replace(supply_mV=5000) if tick > 100 else inputs
+WRONG: dict[Fault, Meddle] = {
+    Fault.SUPPLY_LOW: lambda tick, inputs: inputs._replace(supply_mV=5000) if tick > 100 else inputs,
+    Fault.POSITION_LOW: lambda tick, inputs: inputs._replace(lowest=0) if tick > 100 else inputs,
+    Fault.LATE: lambda tick, inputs: inputs._replace(elapsed_ticks=9) if tick == 100 else inputs,
+}
 
 
-def broken_wire(tick: int, inputs: Inputs) -> Inputs:
-    return inputs._replace(lowest=0) if tick > 100 else inputs
-
-
-def missed(tick: int, inputs: Inputs) -> Inputs:
-    return inputs._replace(elapsed_ticks=9) if tick == 100 else inputs
-
-
-@pytest.mark.parametrize(
-    ("meddle", "fault"),
-    [(low_supply, Fault.SUPPLY_LOW), (broken_wire, Fault.POSITION_LOW), (missed, Fault.LATE)],
-)
-def test_what_goes_wrong_in_a_press_is_named_and_ends_force_at_once(meddle: object, fault: Fault) -> None:
-    person = ScriptedPerson(meddle=meddle)  # type: ignore[arg-type] # one of the three above
+@pytest.mark.parametrize("fault", WRONG)
+def test_what_goes_wrong_in_a_press_is_named_and_ends_force_at_once(fault: Fault) -> None:
+    person = ScriptedPerson(meddle=WRONG[fault])
     device = LinkedDevice(LibraryBoard(), person)
     device.upload(plain_surface(), 4.0)
     with pytest.raises(DeviceError, match=fault.name.lower()):

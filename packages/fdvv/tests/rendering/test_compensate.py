@@ -144,11 +144,6 @@ def test_rubbish_is_refused(tmp_path: Path, content: bytes) -> None:
         load_actuation(path)
 
 
-def test_a_missing_file_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="No such file"):
-        load_actuation(tmp_path / "none.actuation.json")
-
-
 def test_forty_presses_on_the_twin_cut_the_felt_error_threefold_on_fresh_presses() -> None:
     speeds = [50.0, 100.0, 150.0, 200.0]
     law = PaperLaw(rounds=1, presses_per_round=10)

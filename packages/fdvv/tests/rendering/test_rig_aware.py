@@ -27,7 +27,6 @@ from fdvv.rendering.session import Session
 from fdvv.rendering.session_log import PRESSES, PressLog
 from fdvv.rendering.session_run import Guide
 from fdvv.rendering.tuning import open_device
-from fdvv.testing.scripted import ScriptedDevice
 from fdvv.twin.finger import Finger
 from fdvv.twin.rig import Rig
 from tests.support.rig_truth import draw_fast_rig
@@ -242,10 +241,3 @@ def test_a_board_without_a_force_sensor_takes_a_memorys_tables_but_is_not_presse
             compensate(device, MODEL, TWO, RigAware(rounds=1, learned_rig=learned.memory))
     finally:
         device.close()  # type: ignore[attr-defined] # a board is one that closes
-
-
-def test_before_any_press_the_cap_is_held_up_whatever_the_method() -> None:
-    device = ScriptedDevice()
-    paper, aware = (uncompensated(device, MODEL, TWO, law) for law in (None, RigAware()))
-    np.testing.assert_array_equal(paper.press_cN, aware.press_cN)
-    np.testing.assert_array_equal(paper.release_cN, aware.release_cN)

@@ -322,26 +322,8 @@ def test_a_twin_that_goes_on_does_not_repeat_the_chance_it_had(tmp_path: Path) -
     fresh = first_pace(session.open_device("twin"))
     assert fresh == first_pace(TwinDevice(seed=5))
     with pytest.raises(KeyboardInterrupt):
-        probe(Stopping(session.open_device("twin"), 2), MODEL, SURFACE, SPEEDS, 4, session=session)
+        compensate(Hand({2: KeyboardInterrupt()}), MODEL, SPEEDS, LAW, session=session)
     assert first_pace(session.open_device("twin")) != fresh
-
-
-class Stopping:
-    """A device that is interrupted at its n-th press."""
-
-    def __init__(self, device: Any, at: int) -> None:
-        self._device, self._at = device, at
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._device, name)
-
-    def press(self, velocity_mm_s: float) -> Press:
-        self._at -= 1
-        if self._at == 0:
-            raise KeyboardInterrupt
-        press = self._device.press(velocity_mm_s)
-        assert isinstance(press, Press)
-        return press
 
 
 def test_the_standing_counts_presses_and_errors_per_velocity() -> None:

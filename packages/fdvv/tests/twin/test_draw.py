@@ -39,11 +39,6 @@ def test_a_draw_is_valid_and_every_uncertain_parameter_lies_in_its_range(
                 assert value == field.default
 
 
-def test_the_same_seed_draws_the_same_and_another_seed_another() -> None:
-    assert draw_rig(np.random.default_rng(3)) == draw_rig(np.random.default_rng(3))
-    assert draw_finger(np.random.default_rng(3)) != draw_finger(np.random.default_rng(4))
-
-
 def test_draws_are_spread_over_the_whole_range() -> None:
     random = np.random.default_rng(0)
     low, high = 255.0, 1255.0

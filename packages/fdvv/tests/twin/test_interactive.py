@@ -129,13 +129,6 @@ def test_the_same_leads_give_the_same_press_however_time_is_cut(tactile: ForceSu
         assert np.array_equal(*(getattr(ticks, column.name) for ticks in found)), column.name
 
 
-def test_another_seed_gives_another_press(tactile: ForceSurface) -> None:
-    one, other = (led(tactile, seed=seed) for seed in (1, 2))
-    for rig in (one, other):
-        rig.lead(4.0)
-    assert not np.array_equal(one.advance(300).force_cN, other.advance(300).force_cN)
-
-
 @pytest.mark.parametrize("numbers", [(np.nan, 0.0, 100.0), (1.0, np.inf, 100.0), (1.0, 0.0, 0.0)])
 def test_a_lead_that_is_no_number_is_refused(
     tactile: ForceSurface, numbers: tuple[float, float, float]
