@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.twin import TwinDevice
 from fdvv.model.file import load_builtin
-from fdvv.rendering.actuation_file import load_actuation, save_actuation
 from fdvv.rendering.compensate import CompensationResult, compensate
 from fdvv.rendering.known_rig import CHECKED_presses
 from fdvv.rendering.probe import probe
@@ -73,12 +71,3 @@ def test_another_rig_is_noticed_within_two_presses_with_what_differs_and_what_to
     assert line.startswith("warning: the rig is not as its file says: ")
     assert "friction rose" in line
     assert line.endswith("leave out its rig file to identify it anew")
-
-
-def test_the_file_of_a_table_keeps_the_rig_that_was_taken_for_granted(
-    rig: Rig, at_once: CompensationResult, tmp_path: Path
-) -> None:
-    save_actuation(at_once, tmp_path / "red.actuation.json")
-    again = load_actuation(tmp_path / "red.actuation.json")
-    assert again.known_rig == at_once.known_rig
-    assert judged(again, rougher(rig), 5) == judged(at_once, rougher(rig), 5)

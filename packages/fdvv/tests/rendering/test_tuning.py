@@ -179,10 +179,6 @@ def actuation(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_the_file_of_an_actuation_keeps_its_tuning(actuation: Path) -> None:
-    assert load_actuation(actuation).outcome.tuning == TUNING
-
-
 def test_a_file_from_before_tunings_has_none(actuation: Path, tmp_path: Path) -> None:
     found = json.loads(actuation.read_text())
     del found["tuning"]

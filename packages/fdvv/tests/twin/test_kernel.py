@@ -10,8 +10,7 @@ import pytest
 
 import fdvv._native
 from fdvv._native import library
-from fdvv._native.structures import fill, structure
-from fdvv.errors import BuildError
+from fdvv._native.structures import structure
 from fdvv.twin.button_kernel import BUTTON_COLUMNS, CELL_COLUMNS
 from fdvv.twin.rig_kernel import RIG_COLUMNS, TICK_COLUMNS
 
@@ -32,18 +31,6 @@ def test_a_structure_has_the_size_the_compiler_gave_it(function: str, names: tup
     getattr(library(), function)(*(ctypes.byref(size) for size in sizes))
     for size, name in zip(sizes, names, strict=True):
         assert name is None or size.value == ctypes.sizeof(structure(name))
-
-
-def test_a_structure_is_filled_by_the_names_of_all_its_fields() -> None:
-    times = dict.fromkeys(("start_m", "end_m", "onset_s", "press_s", "dwell_s", "release_s"), 0.5)
-    assert fill("fdvv_gesture", times).dwell_s == 0.5
-    with pytest.raises(TypeError, match=r"fdvv_gesture: wrong or missing fields \['dwel_s', 'dwell_s'\]"):
-        fill("fdvv_gesture", {**{name: 0.0 for name in times if name != "dwell_s"}, "dwel_s": 0.0})
-
-
-def test_a_structure_of_other_types_is_refused() -> None:
-    with pytest.raises(BuildError, match="fdvv_rig: 'double y"):
-        structure("fdvv_rig")
 
 
 @pytest.mark.parametrize(
