@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.compensation.tables import bin_force, bump_kept_ratio, grid_mm, smooth
-from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
 from fdvv.units import FloatArray
@@ -52,11 +51,6 @@ def test_bins_agree_with_a_slow_average(samples: list[tuple[int, float]]) -> Non
 def test_a_constant_force_stays_itself_wherever_it_was_visited(level: float, places: list[float]) -> None:
     found = bin_force(np.array(places), np.full(len(places), level), GRID)
     np.testing.assert_allclose(found[np.isfinite(found)], level)
-
-
-def test_columns_of_different_length_are_refused() -> None:
-    with pytest.raises(ModelError, match="one shape"):
-        bin_force(np.zeros(3), np.zeros(2), GRID)
 
 
 @given(st.floats(-30, 30), st.floats(-100, 100), st.floats(0.0, 0.5))

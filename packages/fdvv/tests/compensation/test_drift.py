@@ -10,7 +10,6 @@ import pytest
 from fdvv.compensation.identification.drift import detect_drift
 from fdvv.compensation.identification.identify import identify
 from fdvv.compensation.identification.rig_model import RigModel
-from fdvv.errors import FitError
 from tests.compensation._plant import Plant, TRAVEL_mm
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
@@ -66,8 +65,3 @@ def test_a_press_that_no_number_explains_is_strange(known: RigModel) -> None:
     assert press.sensed_cN is not None
     hum = 12.0 * np.sin(2 * np.pi * 21.0 * press.t_s)
     assert "unexplained" in detect_drift(known, replace(press, sensed_cN=press.sensed_cN + hum), TRAVEL_mm)
-
-
-def test_a_press_without_a_rig_gives_one_line(known: RigModel) -> None:
-    with pytest.raises(FitError, match="the press holds no commanded force"):
-        detect_drift(known, replace(RIG.press(100.0), commanded_cN=None))

@@ -9,7 +9,6 @@ import pytest
 
 from fdvv.compensation.identification.excitation import identification_surface
 from fdvv.compensation.tables import grid_mm
-from fdvv.errors import ModelError
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
 from fdvv.units import FloatArray
@@ -57,14 +56,6 @@ def test_every_second_speed_is_pressed_on_a_higher_level_and_the_next_turn_excha
     first, second = (identification_surface(flat, turn=turn).press_cN[:, 20] for turn in (0, 1))
     np.testing.assert_allclose(first - first[0], [0.0, 24.0, 0.0])
     np.testing.assert_allclose(second - second[1], [24.0, 0.0, 24.0])
-
-
-def test_no_limit_and_ripples_below_none_are_refused() -> None:
-    target = TARGETS["mx-red"]
-    with pytest.raises(ModelError, match="got -1"):
-        identification_surface(target, ripple_cN=-1.0)
-    with pytest.raises(ModelError, match="a limit above 0 cN"):
-        identification_surface(target, limit_cN=0.0)
 
 
 def test_a_weak_rig_gets_the_same_shape_with_less_of_everything() -> None:

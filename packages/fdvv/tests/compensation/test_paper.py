@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fdvv.compensation.identification.balance import Delays
 from fdvv.compensation.paper import PaperLaw
 from fdvv.compensation.tables import CurveState, GainSchedule, bump_kept_ratio, grid_mm
 from fdvv.errors import ModelError
@@ -164,10 +163,3 @@ def test_the_sentence_tells_what_smoothing_leaves_of_the_bump() -> None:
 def test_settings_that_make_no_sense_are_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(ModelError):
         PaperLaw(**wrong)
-
-
-def test_a_target_that_does_not_fit_its_grid_is_refused() -> None:
-    with pytest.raises(ModelError, match="pair up"):
-        PaperLaw().init(TARGET[:-1], GRID, LIMIT)
-    with pytest.raises(ModelError, match="limit"):
-        PaperLaw(delays=Delays()).init(TARGET, GRID, 0.0)

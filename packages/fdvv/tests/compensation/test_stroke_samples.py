@@ -9,10 +9,9 @@ import pytest
 
 from fdvv.compensation.identification.balance import Sensor
 from fdvv.compensation.stroke_samples import StrokeSample, stroke_samples
-from fdvv.errors import FitError
 from fdvv.model.press import Press
 from fdvv.units import FloatArray
-from tests.compensation._plant import FINE, Plant, TRAVEL_mm, keep_rows, known_of
+from tests.compensation._plant import FINE, Plant, TRAVEL_mm, known_of
 
 CLEAN = Plant()
 NOISY = Plant(position_noise_mm=0.003, force_noise_cN=0.3)
@@ -87,9 +86,3 @@ def test_half_of_the_play_is_taken_off_where_the_force_rises_or_falls() -> None:
         return float(np.mean(np.concatenate(found)))
 
     assert off_cN(3.0) < 0.5 * off_cN(0.0)
-
-
-def test_a_record_of_too_few_ticks_is_refused() -> None:
-    press, _ = made(CLEAN, 100.0)
-    with pytest.raises(FitError, match="30 ticks"):
-        stroke_samples(keep_rows(press, slice(0, 30)), TRAVEL_mm, known_of(CLEAN), SENSOR)

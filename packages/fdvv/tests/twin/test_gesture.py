@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fdvv.errors import ModelError
 from fdvv.model.surface import ForceSurface
 from fdvv.twin.finger import Finger
-from fdvv.twin.gesture import Gesture, plan, vary
+from fdvv.twin.gesture import plan, vary
 from fdvv.twin.image import image_of
 from fdvv.twin.noise import Effort, draw_noise, silence
 from fdvv.twin.pace import mean_speed_mm_s, solve_program_pace
@@ -85,8 +84,3 @@ def test_noise_of_the_demodulator_is_common_to_a_burst_and_that_of_the_converter
     noise = draw_noise(rig, Finger(), gesture, np.random.default_rng(0)).position_m
     assert noise.mean(axis=1).std() == pytest.approx(np.hypot(5e-6, 0.5 * 3.1e-6 / 5), rel=0.05)
     assert noise.std(axis=1, ddof=1).mean() == pytest.approx(0.5 * 12.7e-3 / 4096, rel=0.05)
-
-
-def test_a_gesture_without_a_duration_is_refused() -> None:
-    with pytest.raises(ModelError, match="durations above 0"):
-        Gesture(0.0, 0.004, 0.0, 0.0, 0.0, 0.1, 450.0, 4.5)
