@@ -352,14 +352,6 @@ def test_the_receipt_is_in_the_file_and_in_the_folder(tmp_path: Path) -> None:
         assert (curve["first_cN"], curve["last_cN"], curve["best_cN"]) == (errors[0], errors[-1], min(errors))
 
 
-def test_an_unfinished_session_has_a_receipt_of_how_far_it_is(tmp_path: Path) -> None:
-    with pytest.raises(KeyboardInterrupt):
-        learn(Hand({2: short, 5: KeyboardInterrupt()}), tmp_path / "s")
-    receipt = open_run_summary(tmp_path / "s")
-    assert receipt is not None
-    assert (receipt.used, len(receipt.not_used), receipt.curves) == (3, 1, [])
-
-
 def test_a_file_of_version_1_is_read_and_has_no_receipt(tmp_path: Path) -> None:
     path = tmp_path / "a.actuation.json"
     result = learn(Hand())

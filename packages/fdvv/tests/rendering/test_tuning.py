@@ -14,7 +14,7 @@ from fdvv.compensation.method import Trial, Tuning
 from fdvv.compensation.paper import PaperLaw
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.twin import SimulatedPerson, TwinDevice
+from fdvv.device.twin import SimulatedPerson
 from fdvv.errors import InputError
 from fdvv.model.file import load_builtin
 from fdvv.model.press import Press
@@ -198,11 +198,3 @@ def test_a_tuning_that_is_none_is_refused_in_one_line(
     with pytest.raises(InputError, match=reason) as caught:
         load_actuation(path)
     assert "\n" not in str(caught.value)
-
-
-def test_a_tuning_changes_what_the_twin_renders() -> None:
-    curves = [
-        probe(TwinDevice(seed=4), MODEL, SURFACE, [100.0], 3, tuning=tuning).curves[0].rendered_cN
-        for tuning in (Tuning(), replace(TUNING, paced=False))
-    ]
-    assert np.abs(curves[0] - curves[1]).max() > 5

@@ -144,14 +144,6 @@ def test_a_held_cap_pushes_with_the_table_less_its_weight(gravity_m_s2: float) -
     assert trace.force_cN[held] == pytest.approx(40 + 40 * x - weight_cN, abs=0.1)
 
 
-def test_a_table_that_carries_the_weight_holds_the_cap_up_and_zero_lets_it_fall() -> None:
-    weight_cN = 100 * 0.02 * 9.81
-    up = Bench.of(flat(weight_cN + 15)).run()
-    down = Bench.of(flat(0.0)).run()
-    assert up.displacement_mm[-1] == pytest.approx(0.0, abs=0.02)
-    assert down.displacement_mm[-1] == pytest.approx(4.0, abs=0.02)
-
-
 def test_the_energy_of_a_press_is_accounted_for(tactile: ForceSurface) -> None:
     gesture = plan(Finger(), 0.004, 0.06)
     trace = Bench.of(tactile, gesture).run()

@@ -81,13 +81,6 @@ def test_a_perfect_rendering_gives_nothing_to_notice() -> None:
     assert error.likeness == pytest.approx(1.0, abs=0.03)
 
 
-def test_a_model_without_a_vibration_asks_for_none() -> None:
-    silent = [made(None, 1)]
-    found = rendered_vibration(replace(MODEL, vibrations=()), Stroke.PRESS, 100.0, silent, [])
-    assert found.to_dict() == {"outcome": "not asked for"}
-    assert found.total_JND == 0
-
-
 def test_a_record_of_the_rigs_own_sensor_or_a_coarse_one_measures_no_vibration() -> None:
     press = made(None, 1)
     sensed = replace(press, sensed_mm=press.displacement_mm)
@@ -128,15 +121,6 @@ def test_on_the_twin_the_played_presses_are_the_silent_ones_again() -> None:
     assert -12 < error.level_dB < -3
     assert error.likeness is not None
     assert error.likeness > 0.7
-
-
-def test_force_is_judged_on_the_silent_presses_as_if_nothing_were_played() -> None:
-    plain = probe(TwinDevice(seed=4), MODEL, SURFACE, [100.0], 3)
-    played = probe(TwinDevice(seed=4), MODEL, SURFACE, [100.0], 3, playback=Playback(2))
-    for one, other in zip(plain.curves, played.curves, strict=True):
-        np.testing.assert_array_equal(one.rendered_cN, other.rendered_cN)
-    assert plain.presses == played.presses
-    assert plain.curves[0].vibration.to_dict()["outcome"] == "not played"
 
 
 def test_a_rig_without_an_exciter_says_what_its_cap_does_by_itself() -> None:
