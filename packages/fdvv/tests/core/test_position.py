@@ -30,14 +30,6 @@ def unchecked(settings: Settings) -> Settings:
     return replace(settings, reading_low=0, reading_high=max(1, min(65535, largest)))
 
 
-@pytest.mark.parametrize("ticks", [2, 3, 7, 25, 32])
-def test_a_sliding_mean_lags_by_half_its_ticks(ticks: int) -> None:
-    settings = replace(Settings(), sliding_ticks=ticks)
-    path_mm = 0.1 + 0.05 * np.arange(60)
-    found = Core(settings).run(inputs_at(settings, path_mm))["displacement_um16"] / 16000
-    assert found[ticks - 1 :] == pytest.approx(path_mm[ticks - 1 :] - 0.05 * (ticks - 1) / 2, abs=1e-4)
-
-
 @pytest.mark.parametrize("ticks", range(2, 33))
 def test_a_sliding_mean_is_exact(ticks: int) -> None:
     settings = replace(Settings(), sliding_ticks=ticks)

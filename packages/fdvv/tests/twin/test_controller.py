@@ -15,7 +15,6 @@ from fdvv.twin.gesture import plan
 from fdvv.twin.noise import draw_noise, silence
 from fdvv.twin.rig import Controller, Rig
 from fdvv.twin.rig_kernel import grid_of
-from fdvv.units import FloatArray
 from tests.support.table_press import simulate
 from tests.twin.conftest import FRICTIONLESS, PERFECT_POSITION, Bench, flat
 
@@ -28,18 +27,6 @@ def test_the_position_is_the_lagged_one_averaged_over_the_burst() -> None:
     settled = lag**2 * (1 - np.exp(-reads / lag))
     lagged_mm = 1000 * 9.81 * (reads**2 / 2 - lag * reads + settled)
     assert trace.sensed_mm[ticks] == pytest.approx(lagged_mm.mean(axis=1), abs=5e-4)
-
-
-def test_a_sliding_average_lags_by_half_its_window() -> None:
-    rig = Rig(controller=Controller(averaging="sliding"))
-    gesture = plan(Finger(), 0.004, 0.1)
-    surface = flat(60.0)
-    traces = [simulate(r, Finger(), gesture, surface, 4.0, silence(r, gesture), 100.0) for r in (Rig(), rig)]
-
-    def crossing(sensed: FloatArray) -> float:
-        return float(traces[0].t_s[np.argmax(sensed > 2.0)])
-
-    assert crossing(traces[1].sensed_mm) - crossing(traces[0].sensed_mm) == pytest.approx(0.012, abs=0.004)
 
 
 def test_sensed_values_lie_on_the_steps_of_their_converters(tactile: ForceSurface) -> None:

@@ -2,24 +2,12 @@
 
 from __future__ import annotations
 
-import zlib
-
 import numpy as np
 import pytest
 
 from fdvv.errors import ModelError
 from fdvv.model.surface import ForceSurface
-from fdvv.protocol.tables import (
-    IMAGE_BYTES,
-    NONE,
-    ImageHeader,
-    Slot,
-    State,
-    Stroke,
-    Surface,
-    Vibration,
-    Waveform,
-)
+from fdvv.protocol.tables import IMAGE_BYTES, ImageHeader, Slot, State, Surface, Waveform
 from fdvv.twin.image import image_of
 from fdvv.units import FloatArray
 
@@ -48,14 +36,6 @@ def test_a_table_that_fits_is_held_to_half_a_sixty_fourth_of_a_centinewton(tacti
     assert made.error_cN <= 1 / 128 + 1e-12
 
 
-def test_the_header_tells_the_travel_and_the_checksum_of_the_rest(tactile: ForceSurface) -> None:
-    image = image_of(tactile, 3.9).image
-    head = ImageHeader.unpack(image[: ImageHeader.length_bytes()])
-    assert head.travel_um16 == 62400
-    assert head.size_bytes == len(image)
-    assert head.crc32 == zlib.crc32(image[8:])
-
-
 def test_a_table_too_fine_for_a_device_is_sampled_to_fit_and_tells_its_error() -> None:
     made = image_of(fine(401, 0.01), 4.0)
     assert len(made.image) <= IMAGE_BYTES
@@ -74,27 +54,6 @@ def test_a_table_of_too_many_speeds_or_too_strong_is_refused() -> None:
     strong = np.full((1, 2), 501.0)
     with pytest.raises(ModelError, match="forces up to 500 cN"):
         image_of(ForceSurface(x, np.array([50.0]), strong, strong), 4.0)
-
-
-def test_vibrations_and_their_slots_lie_between_surfaces_and_forces(tactile: ForceSurface) -> None:
-    slot = Slot(
-        waveform=Waveform.DECAYING_SINE,
-        frequency_Hz16=3824,
-        duration_samples=256,
-        amplitude_counts=2000,
-        decay_q16=60000,
-        wave_at=0,
-        wave_samples=0,
-    )
-    event = Vibration(
-        at_um16=20000, slowest_mm_s16=0, fastest_mm_s16=65535, states=1, stroke=Stroke.PRESS, slot=0
-    )
-    image = image_of(tactile, 4.0, [event], [slot]).image
-    at = ImageHeader.length_bytes() + State.length_bytes() + 2 * Surface.length_bytes()
-    assert Vibration.unpack(image[at : at + Vibration.length_bytes()]) == event
-    at += Vibration.length_bytes()
-    assert Slot.unpack(image[at : at + Slot.length_bytes()]) == slot
-    assert held(image)[1] == pytest.approx(tactile.press_cN, abs=1 / 128)
 
 
 def test_each_slot_gets_its_own_samples_behind_the_forces(tactile: ForceSurface) -> None:
@@ -119,9 +78,3 @@ def test_each_slot_gets_its_own_samples_behind_the_forces(tactile: ForceSurface)
         assert samples.tolist() == list(wave)
         at += Slot.length_bytes()
     assert held(image)[1] == pytest.approx(tactile.press_cN, abs=1 / 128)
-
-
-def test_the_one_state_has_neither_key_nor_waveform(tactile: ForceSurface) -> None:
-    at = ImageHeader.length_bytes()
-    state = State.unpack(image_of(tactile, 4.0).image[at : at + State.length_bytes()])
-    assert (state.key, state.enter_slot, state.repeat_slot) == (0, NONE, NONE)
