@@ -30,10 +30,11 @@ from tests.support.held import swings_held
 from tests.support.rig_truth import draw_fast_rig, rig_truth
 
 SPEEDS = (50.0, 200.0)
+Drawn = tuple[Rig, Finger, RigModel]
 
 
 @pytest.fixture(scope="module")
-def drawn() -> tuple[Rig, Finger, RigModel]:
+def drawn() -> Drawn:
     rig, finger = draw_fast_rig(401, "voltage")
     return rig, finger, rig_truth(rig)
 
@@ -44,7 +45,7 @@ def model() -> FDVVModel:
 
 
 @pytest.fixture(scope="module")
-def report(drawn: tuple[Rig, Finger, RigModel], model: FDVVModel) -> FeasibilityReport:
+def report(drawn: Drawn, model: FDVVModel) -> FeasibilityReport:
     rig, _, known = drawn
     return feasibility(model, known, settings_of(rig), (200.0, 50.0))
 
@@ -86,9 +87,7 @@ def test_the_report_is_a_document_without_nan(report: FeasibilityReport) -> None
     assert read["curves"][0]["stability"]["margin"] > 1
 
 
-def test_a_weak_coil_is_named_by_its_limit_and_a_strong_one_is_not(
-    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
-) -> None:
+def test_a_weak_coil_is_named_by_its_limit_and_a_strong_one_is_not(drawn: Drawn, model: FDVVModel) -> None:
     rig, _, known = drawn
     weak = replace(settings_of(rig), force_limit_cN64=64 * 60)
     cut, whole = (feasibility(model, known, s, [50.0]).curves[0] for s in (weak, settings_of(rig)))
@@ -97,9 +96,7 @@ def test_a_weak_coil_is_named_by_its_limit_and_a_strong_one_is_not(
     assert not whole.reached.saturated.any()
 
 
-def test_a_button_without_a_release_is_judged_with_its_press_for_both(
-    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
-) -> None:
+def test_a_button_without_a_release_is_judged_with_its_press_for_both(drawn: Drawn, model: FDVVModel) -> None:
     rig, _, known = drawn
     single = fd_only(model)
     single = remove_curve(single, *next((c.stroke, c.velocity_mm_s) for c in single.of("release")))
@@ -109,9 +106,7 @@ def test_a_button_without_a_release_is_judged_with_its_press_for_both(
     assert release.stable.step_cN == 0.0
 
 
-def test_a_travel_beyond_the_device_is_refused_by_its_verdict(
-    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
-) -> None:
+def test_a_travel_beyond_the_device_is_refused_by_its_verdict(drawn: Drawn, model: FDVVModel) -> None:
     rig, _, known = drawn
     short = DeviceInfo("short", False, 440.0, 3.0, 2.5e-4)
     report = feasibility(model, known, settings_of(rig), [50.0], info=short)
@@ -119,9 +114,7 @@ def test_a_travel_beyond_the_device_is_refused_by_its_verdict(
     assert report.device_name == "short"
 
 
-def test_a_motion_that_is_known_takes_the_place_of_minimum_jerk(
-    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
-) -> None:
+def test_a_motion_that_is_known_takes_the_place_of_minimum_jerk(drawn: Drawn, model: FDVVModel) -> None:
     rig, _, known = drawn
     lasts_s = model.travel_mm / 200.0
     t = np.linspace(0.0, lasts_s, 800)
@@ -133,9 +126,7 @@ def test_a_motion_that_is_known_takes_the_place_of_minimum_jerk(
     np.testing.assert_allclose(press.command_cN, wanted, atol=0.05)
 
 
-def test_bad_speeds_and_a_model_without_a_press_are_refused(
-    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
-) -> None:
+def test_bad_speeds_and_a_model_without_a_press_are_refused(drawn: Drawn, model: FDVVModel) -> None:
     rig, _, known = drawn
     with pytest.raises(InputError, match="speeds cannot be"):
         feasibility(model, known, settings_of(rig), [])
@@ -143,9 +134,7 @@ def test_bad_speeds_and_a_model_without_a_press_are_refused(
         feasibility(replace(model, curves=model.of("release")), known, settings_of(rig), [50.0])
 
 
-def test_what_presses_measured_stands_beside_what_was_computed(
-    drawn: tuple[Rig, Finger, RigModel], model: FDVVModel
-) -> None:
+def test_what_presses_measured_stands_beside_what_was_computed(drawn: Drawn, model: FDVVModel) -> None:
     rig, finger, known = drawn
     device = TwinDevice(rig, finger, 3)
     found = probe(device, model, uncompensated(device, model, [50.0]), [50.0], 2)

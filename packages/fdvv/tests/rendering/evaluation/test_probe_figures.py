@@ -44,14 +44,6 @@ def test_the_band_around_the_target_is_one_jnd_and_bars_are_where_most_presses_a
     np.testing.assert_array_equal(marked, (curve.total_JND > 1).mean(axis=0) > 0.5)
 
 
-def test_a_perfect_rendering_has_no_bar(result: ProbeResult) -> None:
-    perfect = [
-        replace(c, rendered_cN=np.tile(c.target_cN, (3, 1)), vibration=NONE_ASKED) for c in result.curves
-    ]
-    axes = plot_rendering(rendered_curves({"rendered": perfect}, simulated=True))
-    assert [bars(ax) for ax in axes.flat] == [[], []]
-
-
 def test_vibration_is_drawn_as_it_was_asked_for_and_as_it_came(result: ProbeResult) -> None:
     axes = plot_vibrations(result.curves, simulated=True)
     assert axes.shape == (len(shown_vibrations(result.curves)), 2)
