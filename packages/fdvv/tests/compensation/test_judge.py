@@ -12,6 +12,7 @@ from fdvv.compensation.presses import AcceptanceLimits, judge_press
 from fdvv.errors import ModelError
 from fdvv.model.press import Press
 from fdvv.units import FloatArray
+from tests.support.other_rigs import minimum_jerk
 
 STEP_s = 0.0005
 
@@ -78,18 +79,10 @@ def test_a_finger_that_pauses_during_a_stroke_is_reported_with_place_and_time() 
     assert "ms; press without stopping" in judge_press(paused, 4.0).reason
 
 
-def minimum_jerk(part: FloatArray) -> FloatArray:
-    return np.asarray(part**3 * (10 - 15 * part + 6 * part**2))
-
-
 @given(st.floats(20, 300), st.floats(1.0, 6.0))
 def test_the_smoothest_press_there_is_has_no_pause(speed: float, travel: float) -> None:
     t = np.arange(0.0, 2 * travel / speed + 0.05, STEP_s / 2)
-    ends = (
-        minimum_jerk(np.clip(t * speed / travel, 0, 1)),
-        minimum_jerk(np.clip((t - travel / speed - 0.05) * speed / travel, 0, 1)),
-    )
-    x = travel * (ends[0] - ends[1])
+    x = travel * (minimum_jerk(t * speed / travel) - minimum_jerk((t - 0.05) * speed / travel - 1))
     reason = judge_press(Press(t, x, np.zeros(t.size), speed * 1.3), travel).reason
     assert "paused" not in reason
     assert "lifted" not in reason

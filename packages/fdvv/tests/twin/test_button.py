@@ -23,16 +23,13 @@ from fdvv.twin.simulate_button import (
     probe_button,
     simulate_button,
 )
-from fdvv.units import FloatArray
 from tests.support.drawn_button import draw_button
+from tests.support.other_rigs import minimum_jerk
+from tests.support.reference.cell_press import rms
 
 NAMES = button_names()
 SWITCHES = [name for name in NAMES if name.startswith("mx-")]
 DOMES = [name for name in NAMES if not name.startswith("mx-")]
-
-
-def rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def press(
@@ -178,13 +175,8 @@ def test_a_detour_of_the_referent_is_where_the_finger_goes() -> None:
     gesture = plan(finger, button.curve.travel_m, 0.1)
     noise = no_button_noise(gesture)
     t = np.asarray(1e-3 * (np.arange(noise.effort_ratio.size) - 20.0), dtype=np.float64)
-
-    def smooth(part: FloatArray) -> FloatArray:
-        s = np.clip(part, 0, 1)
-        return np.asarray(s**3 * (10 - 15 * s + 6 * s**2))
-
     up_s = gesture.onset_s + gesture.press_s + gesture.dwell_s
-    moves = smooth((t - gesture.onset_s) / 0.1) - smooth((t - up_s) / 0.1)
+    moves = minimum_jerk((t - gesture.onset_s) / 0.1) - minimum_jerk((t - up_s) / 0.1)
     still = replace(gesture, end_m=gesture.start_m)
     wanted = simulate_button(button, finger, gesture, noise)
     got = simulate_button(

@@ -14,15 +14,11 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture, plan
 from fdvv.twin.rig import ForceSensor
 from fdvv.twin.simulate_button import ButtonNoise, ButtonTrace, draw_button_noise, simulate_button
-from fdvv.units import FloatArray
 from tests.support.drawn_button import draw_button
 from tests.support.reference.button import reference_button
+from tests.support.reference.cell_press import rms
 
 Call = tuple[ButtonPhysics, Finger, Gesture, ButtonNoise, ForceSensor | None]
-
-
-def rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def a_plan(name: str, press_s: float, sensor: ForceSensor | None, seed: int = 1) -> Call:

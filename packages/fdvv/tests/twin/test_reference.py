@@ -16,7 +16,7 @@ from fdvv.twin.noise import draw_noise
 from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.rig import Controller, Rig
 from fdvv.twin.rig_moves import Coil, Mover
-from fdvv.units import FloatArray
+from tests.support.reference.cell_press import rms
 from tests.support.reference.reference import reference_simulate
 from tests.support.table_press import simulate
 
@@ -47,10 +47,6 @@ def compare(
     assert np.mean(np.abs(fast.sensed_mm - slow.sensed_mm) > 1e-9) < 0.02
     assert fast.commanded_cN == pytest.approx(slow.commanded_cN, abs=100 * step_mm)
     assert np.array_equal(fast.release, slow.release > 0.5)
-
-
-def rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 @pytest.mark.parametrize("speed", [pytest.param(50.0, marks=pytest.mark.slow), 200.0])

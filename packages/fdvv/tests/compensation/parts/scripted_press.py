@@ -9,6 +9,7 @@ import numpy as np
 from fdvv.compensation.parts.facts import PressFacts
 from fdvv.model.press import Press
 from fdvv.units import FloatArray
+from tests.support.other_rigs import minimum_jerk
 
 TICK_s, TRAVEL_mm = 1e-3, 4.0
 WEIGHT_cN, MASS_g, FRICTION_cN, DRAG_cN_s_mm = 15.0, 15.0, 4.0, 0.05
@@ -33,7 +34,8 @@ class Scripted:
         """Return place, command and force of every tick."""
         random = np.random.default_rng(self.seed)
         t = np.arange(round((2 * (REST_s + STROKE_s) + DWELL_s) / TICK_s), dtype=np.float64) * TICK_s
-        place = self.depth_mm * (_jerk(t - REST_s) - _jerk(t - REST_s - STROKE_s - DWELL_s))
+        begun = (t - REST_s) / STROKE_s
+        place = self.depth_mm * (minimum_jerk(begun) - minimum_jerk(begun - 1 - DWELL_s / STROKE_s))
         command = 50 + self.wave_cN * np.sin(2 * np.pi * place / 1.6)
         speed = np.gradient(place, TICK_s)
         inertia = MASS_g * np.gradient(speed, TICK_s) / 10_000
@@ -55,8 +57,3 @@ class Scripted:
         t = np.arange(place.size, dtype=np.float64) * TICK_s
         every = np.ones(t.size, dtype=np.bool_)
         return Press(t, place, force, 50.0, place, force, command, ~every, every)
-
-
-def _jerk(t_s: FloatArray) -> FloatArray:
-    s = np.clip(t_s / STROKE_s, 0, 1)
-    return s**3 * (10 - 15 * s + 6 * s**2)
