@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -96,7 +97,7 @@ def known_of(plant: Plant) -> RigModel:
     )
 
 
-def keep_rows(press: Press, rows: slice | npt.NDArray[np.intp]) -> Press:
+def keep_rows(press: Press, rows: slice | npt.NDArray[Any]) -> Press:
     """Return a press that has only these rows."""
     names = ("t_s", "displacement_mm", "force_cN", "sensed_mm", "sensed_cN", "commanded_cN")
     return replace(press, **{name: getattr(press, name)[rows] for name in names})
