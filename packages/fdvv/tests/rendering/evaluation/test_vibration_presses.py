@@ -23,7 +23,7 @@ from fdvv.rendering.evaluation.vibration_presses import (
     rendered_vibration,
     vibrating_image,
 )
-from fdvv.rendering.probe import probe
+from fdvv.rendering.probe import ProbeResult, probe
 from fdvv.rendering.session import Session
 from fdvv.testing.scripted import ScriptedDevice
 from fdvv.twin.files import load_rig
@@ -160,28 +160,24 @@ def test_a_vibration_that_the_board_cannot_play_is_refused() -> None:
         probe(TwinDevice(), replace(MODEL, vibrations=(loud,)), SURFACE, [100.0], 1, playback=Playback(1))
 
 
+def resumed(folder: Path, seed: int, playback: Playback | None = None) -> ProbeResult:
+    session = Session(folder / "probe", seed=4)
+    twin = TwinDevice(uno(), seed=seed)
+    return probe(twin, MODEL, SURFACE, [100.0], 2, session=session, playback=playback)
+
+
 def test_a_session_with_vibrating_presses_is_its_result_again_and_refuses_another_count(
     tmp_path: Path,
 ) -> None:
-    session = Session(tmp_path / "probe", seed=4)
-    first = probe(
-        TwinDevice(uno(), seed=4), MODEL, SURFACE, [100.0], 2, session=session, playback=Playback(2)
-    )
-    again = probe(
-        TwinDevice(uno(), seed=5), MODEL, SURFACE, [100.0], 2, session=session, playback=Playback(2)
-    )
-    assert again.to_dict() == first.to_dict()
+    first = resumed(tmp_path, 4, Playback(2))
+    assert resumed(tmp_path, 5, Playback(2)).to_dict() == first.to_dict()
     with pytest.raises(InputError, match="another session"):
-        probe(TwinDevice(uno(), seed=4), MODEL, SURFACE, [100.0], 2, session=session)
+        resumed(tmp_path, 4)
 
 
 def test_a_session_begun_without_vibrations_goes_on_without_them(tmp_path: Path) -> None:
-    session = Session(tmp_path / "probe", seed=4)
-    first = probe(TwinDevice(uno(), seed=4), MODEL, SURFACE, [100.0], 2, session=session)
-    again = probe(
-        TwinDevice(uno(), seed=5), MODEL, SURFACE, [100.0], 2, session=session, playback=Playback(2)
-    )
-    assert again.to_dict() == first.to_dict()
+    first = resumed(tmp_path, 4)
+    assert resumed(tmp_path, 5, Playback(2)).to_dict() == first.to_dict()
 
 
 @pytest.mark.parametrize("exciter", [None, KnownExciter(20.0, 600.0, 2.0)])
