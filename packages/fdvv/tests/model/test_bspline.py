@@ -71,17 +71,6 @@ def test_outside_the_knots_the_end_values_hold_with_derivative_zero(
     np.testing.assert_array_equal(_bspline.evaluate(t, c, k, x, derivative=1), 0.0)
 
 
-@pytest.mark.parametrize("k", range(2, 6))
-def test_the_derivative_is_the_slope_of_the_value(k: int) -> None:
-    t, step = _bspline.uniform_knots(0.0, 4.0, 15, k), 1e-6
-    c = np.random.default_rng(k).normal(50, 20, 15)
-    x = np.linspace(0.01, 3.99, 200)
-    low, high = (_bspline.evaluate(t, c, k, x + s) for s in (-step, step))
-    np.testing.assert_allclose(
-        _bspline.evaluate(t, c, k, x, derivative=1), (high - low) / (2 * step), rtol=0, atol=1e-4
-    )
-
-
 @pytest.mark.parametrize("k", range(1, 6))
 def test_control_points_on_a_line_at_their_abscissae_draw_that_line(k: int) -> None:
     t = _bspline.uniform_knots(0.0, 4.0, 9, k)
@@ -105,18 +94,11 @@ def test_cubic_interpolation_leaves_out_the_knots_next_to_the_ends() -> None:
 
 
 @pytest.mark.parametrize("k", range(1, 6))
-def test_least_squares_finds_the_spline_that_made_the_samples(k: int) -> None:
-    t = _bspline.uniform_knots(0.0, 4.0, 12, k)
-    c = np.random.default_rng(k).normal(50, 20, 12)
-    found = _bspline.least_squares(t, k, X_mm, _bspline.evaluate(t, c, k, X_mm))
-    np.testing.assert_allclose(found, c, rtol=0, atol=1e-8)
-
-
-def test_least_squares_leaves_a_residual_that_no_basis_function_can_take_up() -> None:
-    t = _bspline.uniform_knots(0.0, 4.0, 8, 3)
+def test_least_squares_leaves_a_residual_that_no_basis_function_can_take_up(k: int) -> None:
+    t = _bspline.uniform_knots(0.0, 4.0, 8, k)
     y = np.random.default_rng(0).normal(50, 20, X_mm.size)
-    residual = y - _bspline.evaluate(t, _bspline.least_squares(t, 3, X_mm, y), 3, X_mm)
-    np.testing.assert_allclose(_bspline.design_matrix(t, 3, X_mm).T @ residual, 0.0, atol=1e-9)
+    residual = y - _bspline.evaluate(t, _bspline.least_squares(t, k, X_mm, y), k, X_mm)
+    np.testing.assert_allclose(_bspline.design_matrix(t, k, X_mm).T @ residual, 0.0, atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -136,9 +118,3 @@ def test_least_squares_leaves_a_residual_that_no_basis_function_can_take_up() ->
 def test_numbers_that_are_no_clamped_spline_are_refused(t: list[float], n: int, k: int, said: str) -> None:
     with pytest.raises(ModelError, match=said):
         _bspline.check(np.array(t, dtype=np.float64), np.zeros(n), k)
-
-
-@settings(max_examples=60, deadline=None)
-@given(splines())
-def test_every_spline_the_tests_draw_is_accepted(spline: tuple[FloatArray, FloatArray, int]) -> None:
-    _bspline.check(*spline)

@@ -1,8 +1,8 @@
-import importlib.util
 from pathlib import Path
 
 import numpy as np
 import pytest
+from tools import make_builtin
 
 from fdvv.errors import InputError
 from fdvv.model.curve import Stroke
@@ -74,14 +74,8 @@ def test_below_the_second_node_the_spline_leaves_the_drawn_line_as_far_as_the_pr
 
 @pytest.mark.shared
 def test_the_shipped_file_is_what_its_tool_builds(clear: FDVVModel, shared_data: Path) -> None:
-    spec = importlib.util.spec_from_file_location("make_builtin", ROOT / "tools" / "make_builtin.py")
-    assert spec is not None
-    assert spec.loader is not None
-    tool = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(tool)
-    assert model_to_json(tool.build(shared_data / "paper-figure" / "fdvv_figure_nodes.csv")) == model_to_json(
-        clear
-    )
+    made = make_builtin.build(shared_data / "paper-figure" / "fdvv_figure_nodes.csv")
+    assert model_to_json(made) == model_to_json(clear)
 
 
 def test_every_published_curve_has_fifteen_control_points(clear: FDVVModel) -> None:

@@ -61,12 +61,6 @@ def test_a_curve_keeps_its_own_read_only_copy_of_what_it_is_given() -> None:
         line().control_points_cN[0] = 1.0
 
 
-def test_a_stroke_may_be_named_by_text_but_only_by_its_own() -> None:
-    assert line(stroke="release").stroke is Stroke.RELEASE
-    with pytest.raises(ValueError, match="pull"):
-        line(stroke="pull")
-
-
 def test_repeats_are_averaged_and_counted() -> None:
     x, force, count = measured([0, 1, 1, 1, 2], [5, 1, 2, 6, 7]).by_displacement()
     np.testing.assert_array_equal(x, [0, 1, 2])
@@ -91,23 +85,12 @@ def test_a_part_keeps_the_samples_on_its_borders() -> None:
     assert part.velocity_mm_s == 30.0
 
 
-def test_a_part_of_less_than_two_samples_is_refused() -> None:
-    with pytest.raises(ModelError, match="at least 2 samples, got 1"):
-        measured([0, 1, 2], [5, 6, 7]).between(0.5, 1.5)
-
-
 def test_a_line_has_the_force_and_stiffness_one_works_out_in_the_head() -> None:
     curve = line()
     np.testing.assert_allclose(curve.force_cN([-1, 0, 1, 4, 5]), [10, 10, 20, 50, 50])
     np.testing.assert_allclose(curve.stiffness_cN_mm([-1, 1, 5]), [0, 10, 0])
     assert (curve.start_mm, curve.end_mm) == (0.0, 4.0)
     np.testing.assert_array_equal(curve.control_points_mm, [0, 4])
-
-
-def test_a_curve_answers_in_the_shape_it_is_asked_in() -> None:
-    assert line().force_cN(1.0).shape == ()
-    assert line().force_cN(np.ones((2, 3))).shape == (2, 3)
-    assert line().stiffness_cN_mm(np.ones((0,))).shape == (0,)
 
 
 @settings(max_examples=50, deadline=None)

@@ -67,12 +67,6 @@ def test_two_curves_of_one_stroke_and_velocity_are_refused_by_the_names_of_both(
         merge(parts, "both")
 
 
-@pytest.mark.parametrize(("conflict", "end_cN"), [("first", 60.0), ("last", 70.0)])
-def test_a_conflict_is_resolved_as_requested(conflict: str, end_cN: float) -> None:
-    merged = merge([model("left", curve(60)), curve(70)], "both", conflict=conflict)
-    assert float(merged.force_cN(4.0, 50.0)) == end_cN
-
-
 def test_two_vibrations_of_one_stroke_are_a_conflict_too() -> None:
     parts = [
         model("left", curve(60), vibrations=(buzz(200.0),)),
@@ -119,11 +113,6 @@ def test_nothing_merges_into_nothing() -> None:
         merge([], "none", travel_mm=4.0)
 
 
-def test_a_curve_of_unknown_velocity_does_not_merge_with_others_of_its_stroke() -> None:
-    with pytest.raises(ModelError, match="unknown velocity must stand alone"):
-        merge([curve(60, velocity_mm_s=None), curve(70)], "both")
-
-
 def test_an_assigned_curve_replaces_the_one_at_its_place_and_leaves_the_rest() -> None:
     edited = assign(CLEAR, curve(75), "release", 100.0)
     assert float(edited.force_cN(4.0, 100.0, "release")) == 75.0
@@ -131,17 +120,6 @@ def test_an_assigned_curve_replaces_the_one_at_its_place_and_leaves_the_rest() -
     assert all(any(c is old for old in CLEAR.curves) for c in untouched)
     assert len(untouched) == 9
     assert edited.provenance.method.endswith("; release at 100 mm/s assigned from press at 50 mm/s")
-
-
-def test_an_assigned_curve_may_open_a_new_velocity() -> None:
-    assert assign(CLEAR, curve(75), "press", 300.0).velocities_mm_s("press")[-1] == 300.0
-
-
-def test_editing_returns_a_new_model_and_keeps_the_old() -> None:
-    before = load_builtin("mx-clear")
-    assign(CLEAR, curve(75), "press", 50.0, segment_mm=(1.0, 2.0))
-    remove_curve(CLEAR, "press", 50.0)
-    assert before == CLEAR
 
 
 def test_an_assigned_segment_is_the_new_curve_inside_and_the_old_one_outside_the_blend() -> None:
@@ -254,12 +232,6 @@ def test_a_segment_makes_a_curve_that_was_not_measured_and_leaves_the_others() -
     edited = assign(measured(), replace(curve(70), spread=OTHER), "press", 50.0, segment_mm=(1.0, 2.0))
     assert spreads(edited) == {("press", 50.0): None, ("release", 50.0): SPREAD}
     assert edited.travel_spread == PointSpread(0.01, 15)
-
-
-def test_a_copied_curve_was_not_measured_at_its_new_place() -> None:
-    edited = copy_curve(measured(), "press", 50.0, "press", 100.0)
-    assert spreads(edited)["press", 100.0] is None
-    assert spreads(edited)["press", 50.0] == SPREAD
 
 
 def test_removing_and_renaming_keep_what_was_measured_of_the_rest() -> None:

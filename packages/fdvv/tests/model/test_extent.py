@@ -28,11 +28,6 @@ def bench_stroke(
     return x, force + np.random.default_rng(seed).normal(0, noise_cN, x.size)
 
 
-def test_contact_is_the_last_sample_of_air() -> None:
-    x, force = bench_stroke()
-    assert find_contact_mm(MeasuredCurve(x, force, "press")) == pytest.approx(0.0, abs=0.006)  # type: ignore[arg-type]
-
-
 def test_contact_of_a_stroke_that_begins_loaded_is_its_first_sample() -> None:
     x, force = bench_stroke(air_mm=-0.5)
     assert find_contact_mm(MeasuredCurve(x, force, "press")) == x[0]  # type: ignore[arg-type]
@@ -42,11 +37,6 @@ def test_a_light_touch_in_the_air_is_not_the_contact() -> None:
     x, force = bench_stroke(air_mm=1.0)
     force[20:24] += 5.0
     assert find_contact_mm(MeasuredCurve(x, force, "press")) == pytest.approx(0.0, abs=0.006)  # type: ignore[arg-type]
-
-
-def test_bottom_out_is_where_the_stop_begins() -> None:
-    x, force = bench_stroke()
-    assert find_bottom_out_mm(MeasuredCurve(x, force, "press")) == pytest.approx(4.0, abs=0.021)  # type: ignore[arg-type]
 
 
 def test_a_stroke_that_never_meets_the_stop_has_no_bottom_out() -> None:

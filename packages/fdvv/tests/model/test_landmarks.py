@@ -88,12 +88,7 @@ def test_a_peak_is_above_the_knee(knee_mm: float, seed: int) -> None:
     stop[x > knee_mm + 0.1] -= 0.5 * stop[x > knee_mm + 0.1][0]  # a slip deep in the stop
     bump = rng.uniform(0, 30) * np.exp(-(((x - 0.4 * knee_mm) / 0.2) ** 2))
     force = np.where(x < 0, 0.0, np.minimum(500 * x, 35 + 5 * x)) + bump + stop
-    marks = landmarks(fit_parts(MeasuredCurve(x, force, Stroke.PRESS)))
+    part = active_part(MeasuredCurve(x, force, Stroke.PRESS))
+    marks = landmarks(FDVVModel("made", part.displacement_mm[-1], (fit_curve(part).curve,)))
     assert marks.bottom_out_mm <= knee_mm + 0.02
     assert marks.peak_mm is None or marks.peak_mm < marks.bottom_out_mm
-
-
-def fit_parts(press: MeasuredCurve) -> FDVVModel:
-    part = active_part(press)
-    fit = fit_curve(part)
-    return FDVVModel("made", part.displacement_mm[-1], (fit.curve,))

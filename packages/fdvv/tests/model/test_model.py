@@ -50,16 +50,6 @@ def test_what_is_no_model_is_refused(fields: dict[str, Any], said: str) -> None:
         model(**fields)
 
 
-def test_an_unknown_interpolation_is_refused() -> None:
-    with pytest.raises(ValueError, match="magic"):
-        model(interpolation="magic")
-
-
-def test_press_and_release_may_share_a_velocity() -> None:
-    both = model(curves=(flat(40, "release"), flat(60)), vibrations=(buzz(50.0), buzz(50.0, "release")))
-    assert [c.stroke for c in both.curves] == [Stroke.PRESS, Stroke.RELEASE]
-
-
 @settings(max_examples=40, deadline=None)
 @given(models())
 def test_the_order_in_which_curves_are_given_does_not_matter(drawn: FDVVModel) -> None:
@@ -77,12 +67,6 @@ def test_models_differ_by_a_single_number_or_by_the_provenance() -> None:
     assert CLEAR != "mx-clear"  # type: ignore[comparison-overlap]
 
 
-def test_only_the_name_changes_when_a_model_is_renamed() -> None:
-    renamed = CLEAR.renamed("other")
-    assert renamed.name == "other"
-    assert renamed.renamed("mx-clear") == CLEAR
-
-
 def test_the_vibration_nearest_in_velocity_is_taken() -> None:
     slow, fast = buzz(50.0), buzz(200.0)
     both = model(vibrations=(fast, slow))
@@ -93,8 +77,3 @@ def test_the_vibration_nearest_in_velocity_is_taken() -> None:
 
 def test_a_vibration_of_unknown_velocity_serves_every_speed() -> None:
     assert model(vibrations=(buzz(None),)).vibration("press", 300.0) == buzz(None)
-
-
-def test_a_model_knows_its_velocities_per_stroke() -> None:
-    assert CLEAR.velocities_mm_s("release") == (0.5, 50.0, 100.0, 150.0, 200.0)
-    assert model(curves=(flat(60, velocity_mm_s=None),)).velocities_mm_s("press") == ()

@@ -17,13 +17,6 @@ def press(**fields: Any) -> Press:
     return Press(**{**whole, **fields})
 
 
-def test_a_press_needs_no_rig() -> None:
-    bare = press()
-    assert bare.sensed_mm is None
-    assert bare.commanded_cN is None
-    assert not bare.simulated
-
-
 @pytest.mark.parametrize(
     "column", ["displacement_mm", "force_cN", "sensed_mm", "sensed_cN", "commanded_cN", "saturated"]
 )

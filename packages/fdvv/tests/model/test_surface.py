@@ -54,12 +54,6 @@ def test_a_surface_of_a_model_is_the_model_at_every_grid_point() -> None:
             assert table.table_cN(stroke)[i, j] == CLEAR.force_cN(*at)
 
 
-def test_the_grid_covers_the_travel_from_contact_to_stop() -> None:
-    table = ForceSurface.of_model(CLEAR, [100.0])
-    assert table.displacement_mm[0] == 0.0
-    assert table.displacement_mm[-1] == pytest.approx(4.0)
-
-
 def test_a_model_without_a_release_serves_both_strokes_with_its_press() -> None:
     half = FDVVModel("half", 4.0, CLEAR.of(Stroke.PRESS))
     table = ForceSurface.of_model(half, [50.0, 120.0])

@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fdvv.errors import ModelError
-from fdvv.model.curve import Stroke
 from fdvv.model.vibration import Mode, Vibration
 
 SNAP = Mode(239.0, 4.6, 130.7, 0.3)
@@ -35,20 +34,6 @@ def test_there_is_silence_before_the_onset_and_after_the_end() -> None:
     np.testing.assert_array_equal(vibration(SNAP).acceleration_m_s2(t), 0.0)
 
 
-def test_an_undamped_mode_repeats_after_its_period() -> None:
-    steady = vibration(Mode(100.0, 2.0, 0.0), duration_s=1.0)
-    t = np.linspace(0, 0.5, 77)
-    np.testing.assert_allclose(
-        steady.acceleration_m_s2(t), steady.acceleration_m_s2(t + 0.01), rtol=0, atol=1e-11
-    )
-    assert float(steady.acceleration_m_s2(0.0025)) == pytest.approx(2.0)
-
-
-def test_the_answer_has_the_shape_of_the_times() -> None:
-    assert vibration(SNAP).acceleration_m_s2(0.001).shape == ()
-    assert vibration(SNAP).acceleration_m_s2(np.zeros((3, 2))).shape == (3, 2)
-
-
 @pytest.mark.parametrize(
     "numbers",
     [(0, 1, 1), (-1, 1, 1), (np.nan, 1, 1), (1, np.inf, 1), (1, 1, -1), (1, 1, np.nan), (1, 1, 1, np.nan)],
@@ -75,10 +60,3 @@ def test_numbers_that_are_no_vibration_are_refused(fields: dict[str, Any], said:
 def test_a_vibration_without_a_mode_is_refused() -> None:
     with pytest.raises(ModelError, match="at least one mode"):
         vibration()
-
-
-def test_equal_vibrations_are_equal_whatever_sequence_held_their_modes() -> None:
-    listed = Vibration("press", None, 2.3, 0.016, [SNAP])  # type: ignore[arg-type]
-    assert listed == vibration(SNAP)
-    assert listed.stroke is Stroke.PRESS
-    assert hash(listed) == hash(vibration(SNAP))
