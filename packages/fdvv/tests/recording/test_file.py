@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -53,15 +52,6 @@ def test_adding_take_by_take_writes_the_same_bytes_as_saving_at_once(
             log.add(take_)
     RecordingLog(other, recording).close()
     assert other.read_bytes() == one.read_bytes()
-
-
-def test_raw_samples_keep_their_kind_and_their_gaps(tmp_path: Path) -> None:
-    found = load_recording(written(tmp_path / "a")).takes[0]
-    force, _, left, right = found.streams
-    assert [s.raw.dtype.str for s in (force, right)] == ["<i2", "<f4"]
-    assert left.raw.shape == (12, 3)
-    assert np.isnan(left.raw[1]).all()
-    np.testing.assert_array_equal(force.values, 0.05 * (take().streams[0].raw.astype(float) - 9))
 
 
 def test_sixty_presses_of_four_streams_load_in_well_under_a_second(tmp_path: Path) -> None:
@@ -133,12 +123,6 @@ def test_wherever_it_is_cut_the_whole_takes_before_are_there_and_it_goes_on(
     found = load_recording(path)
     assert contents(found.takes) == contents(tuple(take(n) for n in range(1, whole + 2)))
     assert found.warnings == ()
-
-
-def test_a_cut_take_is_reported_when_it_is_read(tmp_path: Path) -> None:
-    path = written(tmp_path / "a")
-    path.write_bytes(path.read_bytes()[:-1])
-    assert load_recording(path).warnings == ("the last record is not whole and is left out; takes kept: 2",)
 
 
 def test_a_calibration_is_mended_without_touching_a_sample(tmp_path: Path) -> None:
@@ -234,20 +218,6 @@ def test_a_file_without_a_whole_record_is_refused(tmp_path: Path, content: bytes
         load_recording(tmp_path / "a")
 
 
-def test_a_file_that_is_not_there_is_refused_in_one_line(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="No such file or directory"):
-        load_recording(tmp_path / "a")
-
-
-def test_a_damaged_byte_in_the_middle_is_refused_with_its_line(tmp_path: Path) -> None:
-    path = written(tmp_path / "a")
-    lines = path.read_bytes().split(b"\n")
-    lines[2] = lines[2].replace(b"light on", b"light off")
-    path.write_bytes(b"\n".join(lines))
-    with pytest.raises(InputError, match="line 3: the record is damaged"):
-        load_recording(path)
-
-
 def test_text_that_no_file_can_hold_is_refused_before_it_is_written(tmp_path: Path) -> None:
     with RecordingLog(tmp_path / "a", ABOUT) as log:
         before = (tmp_path / "a").read_bytes()
@@ -257,14 +227,3 @@ def test_text_that_no_file_can_hold_is_refused_before_it_is_written(tmp_path: Pa
         with pytest.raises(ModelError, match="take 1: a column cannot hold float16"):
             log.add(replace(take(), streams=(half,)))
         assert (tmp_path / "a").read_bytes() == before
-
-
-def test_a_line_is_plain_json(tmp_path: Path) -> None:
-    lines = [json.loads(line)["record"] for line in written(tmp_path / "a", 1).read_text().splitlines()]
-    assert [list(line) for line in lines] == [["head"], ["take"]]
-    assert lines[0]["head"] == head(
-        name="mx-clear",
-        licence="CC0",
-        person="A",
-        bench={**vars(ABOUT.bench)},
-    )

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fdvv.errors import InputError
-from fdvv.recording.file import load_recording, save_recording
 from fdvv.recording.read import read_log
 from fdvv.recording.types import Quantity, Recording
 
@@ -148,14 +146,3 @@ def test_long_stereo_of_one_microphone_is_read_once(shared_data: Path, name: str
     (stream,) = found.takes[0].streams
     assert "both channels are alike to 0.999" in found.warnings[0]
     assert 25 < stream.t_s[-1] < 98
-
-
-def test_what_was_read_comes_back_from_a_recording_to_the_bit(shared_data: Path, tmp_path: Path) -> None:
-    found = read_log(shared_data / MOTIVE / "ha5dzs" / "test_markers_enabled.csv")
-    save_recording(found, tmp_path / "a.recording.jsonl")
-    start_s = time.process_time()
-    again = load_recording(tmp_path / "a.recording.jsonl")
-    assert time.process_time() - start_s < 0.5
-    for one, other in zip(found.takes[0].streams, again.takes[0].streams, strict=True):
-        assert one.raw.tobytes() == other.raw.tobytes()
-        assert one.t_s.tobytes() == other.t_s.tobytes()
