@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
@@ -203,16 +201,6 @@ def test_states_follow_each_other_the_same_at_every_pace() -> None:
 def test_a_parameter_that_cannot_be_is_named(name: str, parameters: dict[str, float], place: str) -> None:
     with pytest.raises(InputError, match=place):
         make(name, None, **parameters)
-
-
-def test_parameters_change_only_what_they_name() -> None:
-    def changed(**parameters: float) -> list[tuple[Program, Program]]:
-        return list(pairwise([make("dwell-ticks"), make("dwell-ticks", None, **parameters)]))
-
-    ((before, after),) = changed(period_ms=100)
-    assert before.surfaces == after.surfaces
-    assert before.states[:2] == after.states[:2]
-    assert after.states[2].repeat_ms == 100
 
 
 @pytest.mark.parametrize("recipe", programs(), ids=lambda recipe: recipe.name)

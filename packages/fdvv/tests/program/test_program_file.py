@@ -109,11 +109,6 @@ def test_text_that_is_no_json_is_refused_by_line_and_column() -> None:
         program_from_json('{\n "format": "fdvv-program",\n oops}', "p")
 
 
-def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="No such file"):
-        load_program(tmp_path / "none.fdvv-program.json")
-
-
 def test_names_must_be_known_and_differ() -> None:
     up = State("up", "push", "push")
     push = flat("push", 40.0)
@@ -140,14 +135,6 @@ def test_conditions_read_like_sentences() -> None:
         "host event 3 → b",
         "turned to release → b",
     ]
-
-
-def test_a_surface_is_bilinear_and_holds_its_edges() -> None:
-    surface = Surface("s", (0.0, 2.0), ((0.0, 20.0), (10.0, 40.0)), (0.0, 100.0))
-    assert surface.force_at_cN(1.0) == 10.0
-    assert surface.force_at_cN(1.0, 50.0) == 17.5
-    assert surface.force_at_cN(9.0, 900.0) == 40.0
-    assert surface.force_at_cN(-1.0, 0.0) == 0.0
 
 
 @given(
