@@ -1,14 +1,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from fdvv.formats.force.average import average_by_velocity
-from fdvv.formats.force.read import read_force_file
 from fdvv.formats.force.types import Cycle, ForceFile
 from fdvv.model.curve import MeasuredCurve, Stroke
 
@@ -112,10 +109,3 @@ def test_the_order_of_the_cycles_does_not_choose_the_population() -> None:
             "0.01",
             "0.02",
         ]
-
-
-def test_a_shifted_chart_cycle_is_left_out(files: Any, tmp_path: Path) -> None:
-    text = files.haata(shifts=(0.0, 0.01, 0.01, 0.5))
-    (averaged,) = average_by_velocity(read_force_file(files.write(tmp_path, "a.csv", text)))
-    assert averaged.used == ("Cycle 1", "Cycle 2", "Cycle 3")
-    assert averaged.left_out[0][0] == "Cycle 4"

@@ -108,14 +108,12 @@ def test_timestamps_give_the_speed_of_the_stroke(files: Any, tmp_path: Path) -> 
         ("x (um)\tF (mN)", 1000.0, 10.0, "\t"),
         ("distance (m),force/g", 0.001, 1 / GRAM_FORCE_cN, ","),
         ("position in inches,force ozf", 1 / 25.4, 1 / (28.349523125 * GRAM_FORCE_cN), ","),
-        ("depth mm force gf", 1.0, 1 / GRAM_FORCE_cN, " "),
+        ("depth_mm force_gf", 1.0, 1 / GRAM_FORCE_cN, " "),
     ],
 )
 def test_units_in_the_header_are_converted(
     header: str, x_scale: float, force_scale: float, separator: str, files: Any, tmp_path: Path
 ) -> None:
-    if separator == " ":
-        header = "depth_mm force_gf"
     x, force = files.run()
     rows = [
         f"{a * x_scale!r}{separator}{b * force_scale!r}"

@@ -19,6 +19,12 @@ from tests.support.damage import DAMAGES, Damage
 pytestmark = pytest.mark.campaign
 
 
+def examples(usual: int) -> settings:
+    """Draw so many examples in a usual run."""
+    shared = [HealthCheck.function_scoped_fixture]
+    return settings(max_examples=pick(usual, 2000), deadline=None, suppress_health_check=shared)
+
+
 def check(path: Path) -> None:
     """Read a file: what comes out is valid, or one line says why nothing does."""
     refused = ""
@@ -41,11 +47,7 @@ def check(path: Path) -> None:
 
 @pytest.mark.parametrize("name", TEXTS)
 @given(damages=st.lists(DAMAGES, min_size=1, max_size=3))
-@settings(
-    max_examples=pick(60, 2000),
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture],
-)
+@examples(60)
 def test_a_mutilated_text_file_is_read_or_refused(
     name: str, files: Any, tmp_path: Path, damages: list[Damage]
 ) -> None:
@@ -57,11 +59,7 @@ def test_a_mutilated_text_file_is_read_or_refused(
 
 
 @given(damages=st.lists(DAMAGES, min_size=1, max_size=2), inside=st.booleans())
-@settings(
-    max_examples=pick(60, 2000),
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture],
-)
+@examples(60)
 def test_a_mutilated_spreadsheet_is_read_or_refused(
     files: Any, tmp_path: Path, damages: list[Damage], inside: bool
 ) -> None:
@@ -80,11 +78,7 @@ def test_a_mutilated_spreadsheet_is_read_or_refused(
 
 
 @given(data=st.binary(max_size=300))
-@settings(
-    max_examples=pick(150, 2000),
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture],
-)
+@examples(150)
 def test_any_bytes_at_all_are_read_or_refused(files: Any, tmp_path: Path, data: bytes) -> None:
     check(files.write(tmp_path, "a.csv", data))
 
@@ -100,11 +94,7 @@ CELL = st.one_of(st.floats(width=32).map(repr), st.sampled_from(["", "a", "1,5",
 
 
 @given(header=st.sampled_from(HEADERS), rows=st.lists(st.lists(CELL, max_size=5), max_size=40))
-@settings(
-    max_examples=pick(150, 2000),
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture],
-)
+@examples(150)
 def test_any_numbers_under_a_header_are_read_or_refused(
     files: Any, tmp_path: Path, header: str, rows: list[list[str]]
 ) -> None:

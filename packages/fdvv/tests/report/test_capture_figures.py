@@ -13,7 +13,6 @@ from fdvv.errors import ModelError
 from fdvv.preprocess.clock import ClockFit
 from fdvv.preprocess.takes import edge_bounds
 from fdvv.recording.types import Quantity
-from fdvv.report.svg import figure_svg
 from tests.support.captures import SHORT_STROKE, capture, recorded
 
 FAST = 10
@@ -132,8 +131,3 @@ def test_a_take_that_is_not_there_is_refused() -> None:
         plot_displacement(recorded().processed, 1)
     with pytest.raises(ModelError, match="no press was seen in take 2"):
         plot_force(capture(), recorded().processed, 2)
-
-
-def test_the_same_press_gives_the_same_bytes() -> None:
-    first, again = (figure_svg(plot_displacement(recorded().processed, FAST)) for _ in range(2))
-    assert first == again

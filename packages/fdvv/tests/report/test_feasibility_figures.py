@@ -8,7 +8,7 @@ from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
 from fdvv.rendering.figures import plot_feasibility
 from fdvv.report.records import FeasibleCurve, RenderedBand
-from fdvv.report.svg import figure_of, figure_svg
+from fdvv.report.svg import figure_of
 
 X_mm = np.linspace(0.0, 4.0, 81)
 CURVE = FeasibleCurve(
@@ -54,10 +54,6 @@ def test_the_cut_range_is_shaded_where_it_is() -> None:
     (shade,) = plot_feasibility([CURVE])[0, 0].collections
     places = shade.get_paths()[0].vertices[:, 0]
     assert (places.min(), places.max()) == pytest.approx((1.05, 1.45))
-
-
-def test_the_same_curves_give_the_same_svg() -> None:
-    assert figure_svg(plot_feasibility([CURVE])) == figure_svg(plot_feasibility([CURVE]))
 
 
 def test_a_grid_of_nothing_or_of_two_for_one_cell_is_refused() -> None:

@@ -38,7 +38,6 @@ def test_many_takes_are_counted_not_listed() -> None:
 @given(recording=recordings())
 def test_any_recording_can_be_shown(recording: Recording) -> None:
     shown = to_html(recording)
-    assert repr(recording).startswith("Recording(")
     assert shown.count("<table") == 1
     if recording.name.isprintable():
         ET.fromstring(shown.encode(errors="replace"))

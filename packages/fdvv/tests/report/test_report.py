@@ -115,13 +115,6 @@ def test_the_banner_stands_only_over_simulated_numbers(html: str) -> None:
     assert "Simulated" not in Page(render_html("t", "s", [])).text
 
 
-def test_a_report_is_made_for_narrow_dark_and_printed_pages(html: str) -> None:
-    assert 'name="viewport"' in html
-    assert "prefers-color-scheme: dark" in html
-    assert "@media print" in html
-    assert "background: #ffffff" in re.search(r"figure \{[^}]*\}", html).group()  # type: ignore[union-attr]
-
-
 def test_hostile_text_stays_text_wherever_it_is_put(model: FDVVModel) -> None:
     figure = figure_svg(plot_vibration(model.renamed(HOSTILE)), HOSTILE)
     table = Table((HOSTILE,), ((HOSTILE,),), HOSTILE)

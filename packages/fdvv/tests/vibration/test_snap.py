@@ -56,12 +56,6 @@ def test_a_snap_too_weak_is_refused_with_the_reason() -> None:
     assert "by chance" in found.reason
 
 
-def test_without_a_fall_of_force_there_is_nothing_to_look_for() -> None:
-    found = measure_vibration([made_press(0)[0]], 100.0, None)
-    assert isinstance(found, NotFound)
-    assert "force does not fall" in found.reason
-
-
 def test_a_microphone_of_unknown_scale_gives_no_amplitude_and_a_known_one_the_derivative() -> None:
     presses = [made_press(seed)[0] for seed in range(6)]
     found = measure_vibration(presses, 100.0, ENERGY, acceleration=False)
