@@ -14,8 +14,6 @@ from fdvv.bench.vibration import RecordedVibrations
 from fdvv.button.fit import FitSettings
 from fdvv.errors import InputError, ModelError
 from fdvv.model.curve import Stroke
-from fdvv.model.file import load_model, model_from_json, model_to_json, save_model
-from fdvv.model.landmarks import landmark_errors
 from fdvv.model.vibration import Mode, Vibration
 from fdvv.preprocess.process import Processed
 from fdvv.recording.file import RECORDING_SUFFIX, save_recording
@@ -29,12 +27,10 @@ def without(recording: Recording, *stages: Stage) -> Recording:
     return replace(recording, takes=tuple(replace(take, number=i) for i, take in enumerate(kept, 1)))
 
 
-def unpaced(recording: Recording) -> Recording:
-    """Forget what pace was asked for."""
-    takes = tuple(
-        replace(take, velocity_mm_s=None) if take.stage is Stage.PRESS else take for take in recording.takes
-    )
-    return replace(recording, takes=takes)
+def paced(recording: Recording, stage: Stage, velocity_mm_s: float | None) -> Recording:
+    """Say of the takes of a stage that another pace was asked for, or none."""
+    takes = (replace(t, velocity_mm_s=velocity_mm_s) if t.stage is stage else t for t in recording.takes)
+    return replace(recording, takes=tuple(takes))
 
 
 def test_every_pace_and_the_probe_become_curves_of_both_strokes() -> None:
@@ -84,20 +80,6 @@ def test_each_spline_holds_to_the_averaged_curve_behind_it() -> None:
     assert tuple(fit.curve for fit in found.fits) == found.model.curves
 
 
-def test_the_model_comes_back_from_its_file_with_its_spreads(tmp_path: Path) -> None:
-    model = recorded().model
-    assert model_from_json(model_to_json(model)) == model
-    save_model(model, tmp_path / "m.fdvv.json")
-    assert load_model(tmp_path / "m.fdvv.json") == model
-
-
-def test_the_landmarks_of_a_pace_have_standard_errors() -> None:
-    errors = landmark_errors(recorded().model, 150.0)
-    assert {"peak_cN", "valley_cN", "bottom_out_cN", "actuation_mm", "travel_mm"} <= set(errors)
-    assert errors["peak_cN"].presses == 6
-    assert 0 < errors["peak_cN"].error < 3
-
-
 def test_provenance_names_steps_presses_reasons_and_assumptions() -> None:
     provenance = recorded().model.provenance
     assert "11 of 12 presses averaged" in provenance.method
@@ -127,9 +109,9 @@ def test_the_report_tells_every_press_with_its_reason() -> None:
 
 
 def test_presses_without_a_pace_are_one_curve_at_the_speed_they_had() -> None:
-    recording = without(unpaced(capture()), Stage.PROBE)
-    paced = [t.number for t in recording.takes if t.stage is Stage.PRESS][:5]
-    slow = replace(recording, takes=recording.takes[: paced[-1]])
+    recording = without(paced(capture(), Stage.PRESS, None), Stage.PROBE)
+    fifth = [t.number for t in recording.takes if t.stage is Stage.PRESS][4]
+    slow = replace(recording, takes=recording.takes[:fifth])
     model = model_of_recording(slow).model
     (press,) = model.of(Stroke.PRESS)
     assert press.velocity_mm_s == pytest.approx(52.9, abs=0.1)
@@ -138,10 +120,7 @@ def test_presses_without_a_pace_are_one_curve_at_the_speed_they_had() -> None:
 
 
 def test_a_probe_of_unknown_speed_gives_the_zero_and_a_warning_but_no_curve() -> None:
-    takes = tuple(
-        replace(take, velocity_mm_s=None) if take.stage is Stage.PROBE else take for take in capture().takes
-    )
-    found = model_of_recording(replace(capture(), takes=takes))
+    found = model_of_recording(paced(capture(), Stage.PROBE, None))
     assert found.model.velocities_mm_s("press") == (50.0, 150.0)
     assert any("speed of the slow probe is unknown" in warning for warning in found.warnings)
     assert found.processed.zero_mm == pytest.approx(recorded().processed.zero_mm)

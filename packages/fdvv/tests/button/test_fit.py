@@ -11,7 +11,7 @@ import pytest
 from fdvv.button.fit import FitSettings, fit_file
 from fdvv.errors import InputError
 from fdvv.model.curve import Stroke
-from fdvv.model.file import load_builtin, model_from_json, model_to_json, save_model
+from fdvv.model.file import load_builtin, save_model
 from fdvv.model.fit import FitMethod
 from tests.support.buttons import (
     CLOSES_mm,
@@ -107,11 +107,6 @@ def test_the_settings_are_what_was_done_and_what_the_model_tells(cycle: Path) ->
     method = found.model.provenance.method
     assert all(word in method for word in ("uniform", "22 control points", "sigma 0.05 mm"))
     assert "cycle.csv" in found.model.provenance.source
-
-
-def test_a_model_of_a_fit_survives_its_file(cycle: Path) -> None:
-    model = fit_file(cycle).model
-    assert model_from_json(model_to_json(model)) == model
 
 
 def test_the_report_is_plain_json(cycle: Path) -> None:

@@ -13,7 +13,6 @@ from fdvv.io.files import (
     make_private,
     open_plain,
     read_limited,
-    sync_folder,
     write_atomic,
 )
 
@@ -113,9 +112,3 @@ def test_a_small_file_is_read_and_a_larger_or_absent_one_refused_by_name(tmp_pat
         read_limited(path, 999_999, "pass another")
     with pytest.raises(InputError, match="No such file"):
         read_limited(tmp_path / "gone", 10, "pass another")
-
-
-def test_only_a_folder_that_is_there_can_be_forced_to_disk(tmp_path: Path) -> None:
-    sync_folder(tmp_path)
-    with pytest.raises(FileNotFoundError):
-        sync_folder(tmp_path / "none")

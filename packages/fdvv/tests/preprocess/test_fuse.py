@@ -42,36 +42,37 @@ def press(random: np.random.Generator, speed: float = 1.0) -> tuple[Seen, FloatA
     return seen, np.interp(t_s, truth_t, truth_x)
 
 
-def error_mm(known: bool, seed: int = 1) -> float:
+def presses(seed: int) -> list[tuple[Seen, FloatArray]]:
     random = np.random.default_rng(seed)
-    made = [press(random, random.uniform(0.9, 1.1)) for _ in range(15)]
-    curve = table_curve(PLACES_mm, button_cN(PLACES_mm)) if known else unknown_curve
-    settings = Fusion(MOVING_g) if known else Fusion(MOVING_g, pieces=25, unknown_N=1e3)
+    return [press(random, random.uniform(0.9, 1.1)) for _ in range(15)]
+
+
+KNOWN, UNKNOWN = Fusion(MOVING_g), Fusion(MOVING_g, pieces=25, unknown_N=1e3)
+
+
+def error_mm(settings: Fusion) -> float:
+    """Return the error of paths by a button that is known, or found with the paths."""
+    made = presses(1)
+    curve = unknown_curve if settings is UNKNOWN else table_curve(PLACES_mm, button_cN(PLACES_mm))
     paths, _ = fuse([seen for seen, _ in made], curve, settings)
     misses = [p.displacement_mm - x for p, (_, x) in zip(paths, made, strict=True)]
     return float(np.sqrt(np.mean(np.concatenate(misses) ** 2)))
 
 
-def line_error_mm(seed: int = 1) -> float:
-    random = np.random.default_rng(seed)
-    made = [press(random, random.uniform(0.9, 1.1)) for _ in range(15)]
-    return float(np.sqrt(np.mean(np.concatenate([seen.guess_mm - x for seen, x in made]) ** 2)))
+def line_error_mm() -> float:
+    return float(np.sqrt(np.mean(np.concatenate([seen.guess_mm - x for seen, x in presses(1)]) ** 2)))
 
 
 def test_a_known_button_halves_the_error_of_lines_between_frames() -> None:
-    assert error_mm(known=True) < 0.5 * line_error_mm()
-    assert error_mm(known=True) < 0.025
+    assert error_mm(KNOWN) < min(0.025, 0.5 * line_error_mm())
 
 
 def test_an_unknown_button_is_found_with_the_paths() -> None:
-    assert error_mm(known=False) < line_error_mm()
+    assert error_mm(UNKNOWN) < line_error_mm()
 
 
 def test_the_button_comes_back_as_a_curve() -> None:
-    random = np.random.default_rng(2)
-    made = [press(random, random.uniform(0.9, 1.1)) for _ in range(15)]
-
-    _, curve = fuse([seen for seen, _ in made], unknown_curve, Fusion(MOVING_g, pieces=25, unknown_N=1e3))
+    _, curve = fuse([seen for seen, _ in presses(2)], unknown_curve, UNKNOWN)
 
     x = np.linspace(0.3, 3.5, 60)
     force_cN, stiffness_cN_mm = curve(x)
@@ -80,14 +81,7 @@ def test_the_button_comes_back_as_a_curve() -> None:
 
 
 def test_a_wrong_mass_costs_little() -> None:
-    random = np.random.default_rng(1)
-    made = [press(random, random.uniform(0.9, 1.1)) for _ in range(15)]
-    known = table_curve(PLACES_mm, button_cN(PLACES_mm))
-
-    paths, _ = fuse([seen for seen, _ in made], known, Fusion(1.4 * MOVING_g))
-
-    misses = [p.displacement_mm - x for p, (_, x) in zip(paths, made, strict=True)]
-    assert np.sqrt(np.mean(np.concatenate(misses) ** 2)) < 0.03
+    assert error_mm(Fusion(1.4 * MOVING_g)) < 0.03
 
 
 def test_a_stroke_without_frames_is_refused() -> None:

@@ -12,7 +12,7 @@ from fdvv.model.bump import find_bump
 from fdvv.model.curve import Stroke
 from fdvv.preprocess.process import Processed, Settings, process
 from fdvv.preprocess.reject import Reason
-from fdvv.recording.types import Quantity, Recording, Stage
+from fdvv.recording.types import Quantity, Stage
 from fdvv.testing.captured import PERFECT_RIG, PERFECT_SENSOR, CapturedSession, captured_session, top_mm
 from fdvv.twin.capture.participant import PARTICIPANTS
 from fdvv.twin.finger import Finger, PressVariability
@@ -157,34 +157,23 @@ def test_the_wrong_mass_of_the_cap_hardly_matters(session: CapturedSession, proc
         assert np.sqrt(np.mean(change**2)) < 1.0
 
 
-def only(recording: Recording, keep: frozenset[Quantity]) -> Recording:
-    takes = [replace(t, streams=tuple(s for s in t.streams if s.quantity in keep)) for t in recording.takes]
-    return replace(recording, takes=tuple(takes))
-
-
 @pytest.mark.parametrize(
     ("keep", "reason"),
     [
-        (frozenset({Quantity.MARKER, Quantity.LIGHT}), "no take with presses and a force stream"),
-        (frozenset({Quantity.FORCE, Quantity.LIGHT}), "no stream that shows displacement"),
-        (frozenset({Quantity.FORCE, Quantity.MARKER}), "no stream shows the light"),
+        ({Quantity.MARKER, Quantity.LIGHT}, "no take with presses and a force stream"),
+        ({Quantity.FORCE, Quantity.LIGHT}, "no stream that shows displacement"),
+        ({Quantity.FORCE, Quantity.MARKER}, "no stream shows the light"),
     ],
 )
-def test_what_is_missing_is_reported(
-    session: CapturedSession, keep: frozenset[Quantity], reason: str
-) -> None:
-    presses = replace(
-        session.recording,
-        takes=tuple(
-            replace(t, number=i)
-            for i, t in enumerate(
-                (t for t in session.recording.takes if t.stage is Stage.PRESS and t.number < 12), 1
-            )
-        ),
-    )
+def test_what_is_missing_is_reported(session: CapturedSession, keep: set[Quantity], reason: str) -> None:
+    presses = [t for t in session.recording.takes if t.stage is Stage.PRESS and t.number < 12]
+    takes = [
+        replace(t, number=i, streams=tuple(s for s in t.streams if s.quantity in keep))
+        for i, t in enumerate(presses, 1)
+    ]
 
     with pytest.raises(ModelError, match=reason):
-        process(only(presses, keep))
+        process(replace(session.recording, takes=tuple(takes)))
 
 
 def test_too_few_presses_are_reported(session: CapturedSession) -> None:
