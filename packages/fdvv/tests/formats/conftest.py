@@ -7,12 +7,10 @@ import json
 import zipfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-import pytest
 
 from fdvv.units import GRAM_FORCE_cN
 
@@ -228,9 +226,3 @@ def write(folder: Path, name: str, content: str | bytes) -> Path:
     path = folder / name
     path.write_bytes(content.encode() if isinstance(content, str) else content)
     return path
-
-
-@pytest.fixture(scope="session")
-def files() -> SimpleNamespace:
-    """Every maker of files above, by its name."""
-    return SimpleNamespace(**{name: value for name, value in globals().items() if not name.startswith("__")})

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -10,19 +9,19 @@ import pytest
 from fdvv.errors import InputError
 from fdvv.formats.force.read import find_force_files, read_force_file
 from fdvv.units import GRAM_FORCE_cN
-from tests.formats.conftest import TEXTS
+from tests.formats import conftest as files
 
 
-@pytest.mark.parametrize("name", TEXTS)
-def test_a_file_of_each_format_is_known_by_its_content(name: str, files: Any, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", files.TEXTS)
+def test_a_file_of_each_format_is_known_by_its_content(name: str, tmp_path: Path) -> None:
     text = files.TEXTS[name].text
     suffix = ".downstroke.csv" if name == "stroke-pair" else ".txt"
     file = read_force_file(files.write(tmp_path, f"anything{suffix}", text()))
     assert file.format == name
 
 
-@pytest.mark.parametrize("name", [name for name in TEXTS if name not in ("stroke-pair", "tester-json")])
-def test_both_strokes_come_out_as_they_were_measured(name: str, files: Any, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", [name for name in files.TEXTS if name not in ("stroke-pair", "tester-json")])
+def test_both_strokes_come_out_as_they_were_measured(name: str, tmp_path: Path) -> None:
     filename, text, scale_cN = files.TEXTS[name]
     cycle = read_force_file(files.write(tmp_path, filename, text())).cycles[0]
     x, force = files.stroke()
@@ -35,10 +34,8 @@ def test_both_strokes_come_out_as_they_were_measured(name: str, files: Any, tmp_
     np.testing.assert_allclose(cycle.release.force_cN, lighter, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", [name for name in TEXTS if name not in ("stroke-pair", "tester-json")])
-def test_blank_lines_at_the_top_count_in_the_line_numbers_of_warnings(
-    name: str, files: Any, tmp_path: Path
-) -> None:
+@pytest.mark.parametrize("name", [name for name in files.TEXTS if name not in ("stroke-pair", "tester-json")])
+def test_blank_lines_at_the_top_count_in_the_line_numbers_of_warnings(name: str, tmp_path: Path) -> None:
     filename, text, _ = files.TEXTS[name]
     lines = text().splitlines()
     lines[49] = re.sub("[^,]+", "--", lines[49])
@@ -48,14 +45,14 @@ def test_blank_lines_at_the_top_count_in_the_line_numbers_of_warnings(
         assert warnings[0].startswith(f"line {50 + blank}, column ")
 
 
-def test_blank_lines_at_the_top_count_in_the_line_numbers_of_refusals(files: Any, tmp_path: Path) -> None:
+def test_blank_lines_at_the_top_count_in_the_line_numbers_of_refusals(tmp_path: Path) -> None:
     for name, text, line in (("a.json", '{"down_x": [1,\n}', 5), ("b.csv", '"Press 1, x","Press 1, y"\n', 5)):
         with pytest.raises(InputError, match=f"line {line}"):
             read_force_file(files.write(tmp_path, name, "\n\n\n" + text))
 
 
 @pytest.mark.parametrize("layout", ["A", "B", "C"])
-def test_each_layout_of_spreadsheet_gives_the_same_run(layout: str, files: Any, tmp_path: Path) -> None:
+def test_each_layout_of_spreadsheet_gives_the_same_run(layout: str, tmp_path: Path) -> None:
     file = read_force_file(files.write(tmp_path, "Oak.ods", files.ods(files.raw_rows(layout))))
     (cycle,) = file.cycles
     x, force = files.stroke()
@@ -65,7 +62,7 @@ def test_each_layout_of_spreadsheet_gives_the_same_run(layout: str, files: Any, 
     assert (cycle.actuation_mm, cycle.reset_mm) == ((None, None) if layout == "C" else (1.5, 1.4))
 
 
-def test_either_half_of_a_stroke_pair_brings_the_other(files: Any, tmp_path: Path) -> None:
+def test_either_half_of_a_stroke_pair_brings_the_other(tmp_path: Path) -> None:
     down = files.write(tmp_path, "Oak.downstroke.csv", files.downstroke())
     up = files.write(tmp_path, "Oak.upstroke.csv", files.upstroke())
     assert find_force_files(tmp_path) == [down]
@@ -77,13 +74,13 @@ def test_either_half_of_a_stroke_pair_brings_the_other(files: Any, tmp_path: Pat
         assert file.cycles[0].press.force_cN[-1] > file.cycles[0].release.force_cN[-1]
 
 
-def test_a_lone_half_says_that_the_other_is_missing(files: Any, tmp_path: Path) -> None:
+def test_a_lone_half_says_that_the_other_is_missing(tmp_path: Path) -> None:
     file = read_force_file(files.write(tmp_path, "Oak.upstroke.csv", files.upstroke()))
     assert file.cycles[0].press is None
     assert file.warnings == ("Oak.downstroke.csv is not there; the file holds the release only",)
 
 
-def test_a_published_table_gives_one_cycle_per_velocity(files: Any, tmp_path: Path) -> None:
+def test_a_published_table_gives_one_cycle_per_velocity(tmp_path: Path) -> None:
     press = files.write(tmp_path, "fig_press.csv", files.velocities())
     files.write(tmp_path, "fig_release.csv", files.velocities())
     file = read_force_file(press)
@@ -94,7 +91,7 @@ def test_a_published_table_gives_one_cycle_per_velocity(files: Any, tmp_path: Pa
     np.testing.assert_allclose(file.cycles[1].press.force_cN, np.round(force * 1.1, 3), atol=1e-12)
 
 
-def test_timestamps_give_the_speed_of_the_stroke(files: Any, tmp_path: Path) -> None:
+def test_timestamps_give_the_speed_of_the_stroke(tmp_path: Path) -> None:
     file = read_force_file(files.write(tmp_path, "log.csv", files.buddyog()))
     assert file.cycles[0].press is not None
     assert file.cycles[0].press.velocity_mm_s == pytest.approx(0.02 / 0.136, rel=0.01)
@@ -112,7 +109,7 @@ def test_timestamps_give_the_speed_of_the_stroke(files: Any, tmp_path: Path) -> 
     ],
 )
 def test_units_in_the_header_are_converted(
-    header: str, x_scale: float, force_scale: float, separator: str, files: Any, tmp_path: Path
+    header: str, x_scale: float, force_scale: float, separator: str, tmp_path: Path
 ) -> None:
     x, force = files.run()
     rows = [
@@ -127,7 +124,7 @@ def test_units_in_the_header_are_converted(
     assert file.warnings == ()
 
 
-def test_a_decimal_comma_is_read_where_semicolons_separate(files: Any, tmp_path: Path) -> None:
+def test_a_decimal_comma_is_read_where_semicolons_separate(tmp_path: Path) -> None:
     x, force = files.run()
     rows = [f"{a};{b}".replace(".", ",") for a, b in zip(x.tolist(), force.tolist(), strict=True)]
     file = read_force_file(files.write(tmp_path, "p.csv", "\r\n".join(["Weg x (mm);Force (cN)", *rows])))
@@ -135,7 +132,7 @@ def test_a_decimal_comma_is_read_where_semicolons_separate(files: Any, tmp_path:
     np.testing.assert_allclose(file.cycles[0].press.force_cN, files.stroke()[1])
 
 
-def test_a_length_without_unit_is_guessed_aloud_and_a_force_never(files: Any, tmp_path: Path) -> None:
+def test_a_length_without_unit_is_guessed_aloud_and_a_force_never(tmp_path: Path) -> None:
     x, force = files.run()
     rows = "\n".join(f"{a},{b}" for a, b in zip(1000 * x, force, strict=True))
     file = read_force_file(files.write(tmp_path, "a.csv", "travel,force_cN\n" + rows))
@@ -144,7 +141,7 @@ def test_a_length_without_unit_is_guessed_aloud_and_a_force_never(files: Any, tm
         read_force_file(files.write(tmp_path, "b.csv", "travel_mm,force\n" + rows))
 
 
-def test_a_run_of_three_presses_gives_three_cycles(files: Any, tmp_path: Path) -> None:
+def test_a_run_of_three_presses_gives_three_cycles(tmp_path: Path) -> None:
     x, force = files.run()
     rows = [f"{a},{b}" for a, b in zip(np.tile(x, 3), np.tile(force, 3), strict=True)]
     file = read_force_file(files.write(tmp_path, "p.csv", "\n".join(["x_mm,force_cN", *rows])))
@@ -155,13 +152,13 @@ def test_a_run_of_three_presses_gives_three_cycles(files: Any, tmp_path: Path) -
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
-def test_marked_encodings_read_the_same(encoding: str, files: Any, tmp_path: Path) -> None:
+def test_marked_encodings_read_the_same(encoding: str, tmp_path: Path) -> None:
     path = files.write(tmp_path, "oak.csv", files.tidy().replace("Oak", "Öak").encode(encoding))
     file = read_force_file(path)
     assert (file.name, file.warnings) == ("Öak", ())
 
 
-def test_latin_1_is_read_with_a_warning(files: Any, tmp_path: Path) -> None:
+def test_latin_1_is_read_with_a_warning(tmp_path: Path) -> None:
     file = read_force_file(
         files.write(tmp_path, "oak.csv", files.tidy().replace("Oak", "Öak").encode("latin-1"))
     )
@@ -169,7 +166,7 @@ def test_latin_1_is_read_with_a_warning(files: Any, tmp_path: Path) -> None:
     assert "not UTF-8" in file.warnings[0]
 
 
-def test_candidates_leave_out_readmes_hidden_and_other_files(files: Any, tmp_path: Path) -> None:
+def test_candidates_leave_out_readmes_hidden_and_other_files(tmp_path: Path) -> None:
     for name in ("b.csv", "a.ods", "README.txt", "LICENSE-CC.txt", ".hidden.csv", "c.png", "d.JSON"):
         files.write(tmp_path / "sub", name, "x")
     found = [path.name for path in find_force_files(tmp_path)]

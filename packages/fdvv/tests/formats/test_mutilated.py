@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -12,7 +11,7 @@ from hypothesis import strategies as st
 from fdvv.errors import InputError
 from fdvv.formats.force.average import average_by_velocity
 from fdvv.formats.force.read import read_force_file
-from tests.formats.conftest import TEXTS
+from tests.formats import conftest as files
 from tests.support.campaign import pick
 from tests.support.damage import DAMAGES, Damage
 
@@ -45,12 +44,10 @@ def check(path: Path) -> None:
     assert sum(len(mean.used) + len(mean.left_out) for mean in means) == len(file.cycles)
 
 
-@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize("name", files.TEXTS)
 @given(damages=st.lists(DAMAGES, min_size=1, max_size=3))
 @examples(60)
-def test_a_mutilated_text_file_is_read_or_refused(
-    name: str, files: Any, tmp_path: Path, damages: list[Damage]
-) -> None:
+def test_a_mutilated_text_file_is_read_or_refused(name: str, tmp_path: Path, damages: list[Damage]) -> None:
     filename, text, _ = files.TEXTS[name]
     data = text().encode()
     for damage in damages:
@@ -61,7 +58,7 @@ def test_a_mutilated_text_file_is_read_or_refused(
 @given(damages=st.lists(DAMAGES, min_size=1, max_size=2), inside=st.booleans())
 @examples(60)
 def test_a_mutilated_spreadsheet_is_read_or_refused(
-    files: Any, tmp_path: Path, damages: list[Damage], inside: bool
+    tmp_path: Path, damages: list[Damage], inside: bool
 ) -> None:
     rows = "".join(
         "<table:table-row>" + "".join(files._cell(value) for value in row) + "</table:table-row>\n"
@@ -79,7 +76,7 @@ def test_a_mutilated_spreadsheet_is_read_or_refused(
 
 @given(data=st.binary(max_size=300))
 @examples(150)
-def test_any_bytes_at_all_are_read_or_refused(files: Any, tmp_path: Path, data: bytes) -> None:
+def test_any_bytes_at_all_are_read_or_refused(tmp_path: Path, data: bytes) -> None:
     check(files.write(tmp_path, "a.csv", data))
 
 
@@ -96,7 +93,7 @@ CELL = st.one_of(st.floats(width=32).map(repr), st.sampled_from(["", "a", "1,5",
 @given(header=st.sampled_from(HEADERS), rows=st.lists(st.lists(CELL, max_size=5), max_size=40))
 @examples(150)
 def test_any_numbers_under_a_header_are_read_or_refused(
-    files: Any, tmp_path: Path, header: str, rows: list[list[str]]
+    tmp_path: Path, header: str, rows: list[list[str]]
 ) -> None:
     check(files.write(tmp_path, "a.csv", "\n".join([header, *(",".join(row) for row in rows)])))
 

@@ -12,9 +12,10 @@ from fdvv.formats.force import read as reading
 from fdvv.formats.force.read import read_force_file
 from fdvv.formats.force.types import ForceFile
 from fdvv.model.curve import MeasuredCurve
+from tests.formats import conftest as files
 
 
-def read(files: Any, folder: Path, x: Any, force: Any) -> ForceFile:
+def read(folder: Path, x: Any, force: Any) -> ForceFile:
     rows = [f"{a!r},{b!r}" for a, b in zip(np.asarray(x).tolist(), np.asarray(force).tolist(), strict=True)]
     return read_force_file(files.write(folder, "p.csv", "\n".join(["x_mm,force_cN", *rows])))
 
@@ -33,18 +34,18 @@ def fine_run() -> tuple[Any, Any]:
     return np.concatenate((x, x[::-1])), np.concatenate((force, np.maximum(force[::-1] - 4.0, 0.0)))
 
 
-def test_the_drop_of_a_click_bar_is_left_alone(files: Any, tmp_path: Path) -> None:
+def test_the_drop_of_a_click_bar_is_left_alone(tmp_path: Path) -> None:
     x, force = fine_run()
-    file = read(files, tmp_path, x, force)
+    file = read(tmp_path, x, force)
     assert file.warnings == ()
     assert np.diff(press(file).force_cN).min() == pytest.approx(-29.8, abs=0.2)
     assert press(file).displacement_mm.size == 701
 
 
-def test_a_spike_is_left_out_and_reported(files: Any, tmp_path: Path) -> None:
+def test_a_spike_is_left_out_and_reported(tmp_path: Path) -> None:
     x, force = fine_run()
     force[400:402] = -200.0
-    file = read(files, tmp_path, x, force)
+    file = read(tmp_path, x, force)
     (warning,) = file.warnings
     assert (
         "press of run from 2.000 to 2.005 mm: the force leaps to -200.0 cN and back; 2 samples were"
@@ -54,34 +55,34 @@ def test_a_spike_is_left_out_and_reported(files: Any, tmp_path: Path) -> None:
     assert press(file).displacement_mm.size == 699
 
 
-def test_a_probe_that_sticks_is_distinguished_from_a_click(files: Any, tmp_path: Path) -> None:
+def test_a_probe_that_sticks_is_distinguished_from_a_click(tmp_path: Path) -> None:
     x, force = fine_run()
     climb = slice(120, 160)  # 0.6 to 0.8 mm, 500 cN/mm
     force[climb] += 500.0 * (x[climb] - x[119])
-    file = read(files, tmp_path, x, force)
+    file = read(tmp_path, x, force)
     (warning,) = file.warnings
     assert "the probe stuck, the force climbs to 144.0 cN" in warning
     assert press(file).force_cN[(x[:701] < 0.9)[: press(file).force_cN.size]].max() < 50.0
 
 
-def test_a_stiff_tact_switch_keeps_its_snap(files: Any, tmp_path: Path) -> None:
+def test_a_stiff_tact_switch_keeps_its_snap(tmp_path: Path) -> None:
     x = np.round(np.arange(0.0, 0.5, 0.005), 4)
     force = np.where(x < 0.03, 0.0, np.where(x < 0.25, 700.0 * (x - 0.03), 90.0 + 900.0 * (x - 0.25)))
     both = np.concatenate((x, x[::-1])), np.concatenate((force, force[::-1] * 0.9))
-    assert read(files, tmp_path, *both).warnings == ()
+    assert read(tmp_path, *both).warnings == ()
 
 
-def test_a_lost_tare_at_the_end_is_cut_off(files: Any, tmp_path: Path) -> None:
+def test_a_lost_tare_at_the_end_is_cut_off(tmp_path: Path) -> None:
     x, force = files.run()
     x = np.concatenate((x, np.full(30, -0.1)))
     force = np.concatenate((force, np.full(30, -16.0)))
-    file = read(files, tmp_path, x, force)
+    file = read(tmp_path, x, force)
     assert file.warnings == (
         "release of run, ends at -16.0 cN in the air, the tare was lost; 30 samples were left out",
     )
 
 
-def test_text_cells_are_left_out_with_their_place_and_number(files: Any, tmp_path: Path) -> None:
+def test_text_cells_are_left_out_with_their_place_and_number(tmp_path: Path) -> None:
     lines = files.tidy().split("\n")
     lines[10] = "--,0.2,0,Oak"
     lines[20] = "nan,0.4,0,Oak"
@@ -89,7 +90,7 @@ def test_text_cells_are_left_out_with_their_place_and_number(files: Any, tmp_pat
     assert file.warnings == ("line 11, column 1: '--' is no usable number; 2 such rows of 302 were left out",)
 
 
-def test_text_in_a_spreadsheet_is_left_out_too(files: Any, tmp_path: Path) -> None:
+def test_text_in_a_spreadsheet_is_left_out_too(tmp_path: Path) -> None:
     rows = files.raw_rows("A")
     rows[7][2] = "no data"
     file = read_force_file(files.write(tmp_path, "a.ods", files.ods(rows)))
@@ -98,46 +99,44 @@ def test_text_in_a_spreadsheet_is_left_out_too(files: Any, tmp_path: Path) -> No
     )
 
 
-def test_a_stage_that_wavers_keeps_every_sample_where_it_was(files: Any, tmp_path: Path) -> None:
+def test_a_stage_that_wavers_keeps_every_sample_where_it_was(tmp_path: Path) -> None:
     x, force = files.run()
     x[60:64] -= 0.06
-    file = read(files, tmp_path, x, force)
+    file = read(tmp_path, x, force)
     # 60 um against the stage, 20 um of which it would have advanced
     assert "wavers back by up to 0.040 mm" in file.warnings[0]
     pairs = set(zip(press(file).displacement_mm.tolist(), press(file).force_cN.tolist(), strict=True))
     assert pairs == set(zip(np.round(x[:151], 9).tolist(), force[:151].tolist(), strict=True))
 
 
-def test_a_missing_stretch_is_reported_and_not_made_up(files: Any, tmp_path: Path) -> None:
+def test_a_missing_stretch_is_reported_and_not_made_up(tmp_path: Path) -> None:
     x, force = files.run()
     keep = ~((x > 1.0) & (x < 1.9) & (np.arange(x.size) < 151))
-    file = read(files, tmp_path, x[keep], force[keep])
+    file = read(tmp_path, x[keep], force[keep])
     assert "press of run: displacement jumps by 0.90 mm, from 1.00 to 1.90 mm" in file.warnings[0]
     assert press(file).displacement_mm.size == int(keep[:151].sum())
 
 
-def test_a_stray_position_is_left_out(files: Any, tmp_path: Path) -> None:
+def test_a_stray_position_is_left_out(tmp_path: Path) -> None:
     x, force = files.run()
     x[50] = 40.0
-    file = read(files, tmp_path, x, force)
+    file = read(tmp_path, x, force)
     assert "run, sample 51: displacement jumps to 40.000 mm and back; 1 sample was left out" in file.warnings
     assert press(file).displacement_mm.max() == 3.0
 
 
-def test_axes_that_point_the_other_way_are_turned(files: Any, tmp_path: Path) -> None:
+def test_axes_that_point_the_other_way_are_turned(tmp_path: Path) -> None:
     x, force = files.run()
-    height = read(files, tmp_path, 10.0 - x, force)
+    height = read(tmp_path, 10.0 - x, force)
     assert "displacement counts outwards" in height.warnings[0]
     np.testing.assert_allclose(press(height).displacement_mm, files.stroke()[0] - 10.0)
-    pull = read(files, tmp_path, x, -force)
+    pull = read(tmp_path, x, -force)
     assert "counts a push as negative" in pull.warnings[0]
     np.testing.assert_allclose(press(pull).force_cN, files.stroke()[1])
 
 
 @pytest.mark.parametrize(("edges", "message"), [(7, "the contact chatters, 7 edges"), (0, "never closed")])
-def test_a_contact_without_one_edge_gives_no_point(
-    edges: int, message: str, files: Any, tmp_path: Path
-) -> None:
+def test_a_contact_without_one_edge_gives_no_point(edges: int, message: str, tmp_path: Path) -> None:
     x, force = files.run()
     contact = np.zeros(x.size, dtype=int)
     for i in range(edges):
@@ -148,7 +147,7 @@ def test_a_contact_without_one_edge_gives_no_point(
     assert any(message in warning for warning in file.warnings)
 
 
-def test_a_copied_release_is_anchored_at_its_release_point(files: Any, tmp_path: Path) -> None:
+def test_a_copied_release_is_anchored_at_its_release_point(tmp_path: Path) -> None:
     file = read_force_file(files.write(tmp_path, "a.json", files.tester_json()))
     release = file.cycles[0].release
     assert release is not None
@@ -158,14 +157,14 @@ def test_a_copied_release_is_anchored_at_its_release_point(files: Any, tmp_path:
     assert "anchored at the release point (sample 81 at 1.38 mm)" in file.warnings[0]
 
 
-def test_a_copied_release_without_its_point_is_refused_aloud(files: Any, tmp_path: Path) -> None:
+def test_a_copied_release_without_its_point_is_refused_aloud(tmp_path: Path) -> None:
     text = files.tester_json().replace("releasePoint", "elsewhere")
     file = read_force_file(files.write(tmp_path, "a.json", text))
     assert file.cycles[0].release is None
     assert "the release was refused" in file.warnings[0]
 
 
-def test_a_slipped_position_counter_is_put_back(files: Any, tmp_path: Path) -> None:
+def test_a_slipped_position_counter_is_put_back(tmp_path: Path) -> None:
     text = files.haata(shifts=(0.0, 0.0, 0.0, 0.0)).split("\r\n")
     for i in range(1, len(text) - 1):
         cells = text[i].split(",")
@@ -199,9 +198,7 @@ def test_a_slipped_position_counter_is_put_back(files: Any, tmp_path: Path) -> N
         (b"0.0000,1.0000\n0.0050,2.0000\n", "two columns without a header"),
     ],
 )
-def test_what_cannot_be_read_is_refused_in_one_line(
-    content: bytes, reason: str, files: Any, tmp_path: Path
-) -> None:
+def test_what_cannot_be_read_is_refused_in_one_line(content: bytes, reason: str, tmp_path: Path) -> None:
     path = files.write(tmp_path, "a.csv", content)
     with pytest.raises(InputError, match=reason) as caught:
         read_force_file(path)
@@ -215,13 +212,13 @@ def test_a_missing_file_a_folder_and_an_impossible_path_are_refused(tmp_path: Pa
             read_force_file(path)
 
 
-def test_a_huge_file_is_not_even_opened(files: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_huge_file_is_not_even_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reading, "LARGEST_FILE", 1000)
     with pytest.raises(InputError, match="at most"):
         read_force_file(files.write(tmp_path, "a.csv", files.tidy()))
 
 
-def test_zip_bombs_are_refused_before_they_unfold(files: Any, tmp_path: Path) -> None:
+def test_zip_bombs_are_refused_before_they_unfold(tmp_path: Path) -> None:
     cell = (
         '<table:table-cell table:number-columns-repeated="9000" office:value-type="float" office:value="1"/>'
     )
