@@ -31,9 +31,12 @@ def session(
     return made, processed, recorded_vibrations(made.recording, processed)
 
 
-def without(recording: Recording, quantity: Quantity) -> Recording:
+def without(recording: Recording, quantity: Quantity, pace_mm_s: float | None = None) -> Recording:
+    """Leave out what shows a quantity, at one pace or at all."""
     takes = tuple(
         replace(take, streams=tuple(s for s in take.streams if s.quantity is not quantity))
+        if pace_mm_s in (None, take.velocity_mm_s)
+        else take
         for take in recording.takes
     )
     return replace(recording, takes=takes)
@@ -108,15 +111,7 @@ def test_a_law_over_speed_has_its_exponent_and_fills_a_missing_pace_only_if_aske
     (law,) = [s for s in recorded.scalings if s.stroke is Stroke.PRESS]
     assert law.report()["exponent_error"] is not None
     assert law.scaling.exponent > 0
-    # an accelerometer that heard nothing at one pace
-    deaf = {t.number for t in made.recording.takes if t.velocity_mm_s == 100.0}
-    takes = tuple(
-        replace(t, streams=tuple(s for s in t.streams if s.quantity is not Quantity.ACCELERATION))
-        if t.number in deaf
-        else t
-        for t in made.recording.takes
-    )
-    recording = replace(made.recording, takes=takes)
+    recording = without(made.recording, Quantity.ACCELERATION, 100.0)
     left = recorded_vibrations(recording, processed)
     assert [v.velocity_mm_s for v in pressed(left)] == [50.0, 200.0]
     assert any("--extrapolate-vibration" in line for line in left.warnings)

@@ -46,9 +46,12 @@ def test_a_stroke_that_never_meets_the_stop_has_no_bottom_out() -> None:
     assert active_part(short).displacement_mm[-1] == short.displacement_mm[-1]
 
 
-def test_a_click_in_the_middle_is_not_the_stop() -> None:
+@pytest.mark.parametrize(("from_mm", "to_mm", "added_cN"), [(1.5, 1.7, 30.0), (3.8, np.inf, 10.0)])
+def test_a_click_in_the_middle_and_a_step_well_before_the_stop_are_not_the_stop(
+    from_mm: float, to_mm: float, added_cN: float
+) -> None:
     x, force = bench_stroke()
-    force[(x > 1.5) & (x < 1.7)] += 30.0
+    force[(x > from_mm) & (x < to_mm)] += added_cN
     assert find_bottom_out_mm(MeasuredCurve(x, force, "press")) == pytest.approx(4.0, abs=0.021)  # type: ignore[arg-type]
 
 
@@ -89,12 +92,6 @@ def test_a_gap_in_the_stop_does_not_move_the_knee(
     found = [find_bottom_out_mm(MeasuredCurve(x, f, Stroke.PRESS)) for f in (whole, slipped)]
     assert found[0] == pytest.approx(4.0, abs=0.021)
     assert found[1] == pytest.approx(found[0], abs=0.02)
-
-
-def test_a_step_well_before_the_stop_is_not_part_of_it() -> None:
-    x, force = bench_stroke()
-    force[x > 3.8] += 10.0
-    assert find_bottom_out_mm(MeasuredCurve(x, force, Stroke.PRESS)) == pytest.approx(4.0, abs=0.021)
 
 
 @given(at=st.integers(2, 55), samples=st.integers(1, 8), spike_cN=st.floats(10.0, 1000.0))

@@ -119,6 +119,16 @@ def drop(*path: str | int) -> Callable[[dict[str, Any]], object]:
     return change
 
 
+def refusal(text: str | bytes) -> str:
+    """Return the line with which a text is refused, without the name of its file."""
+    with pytest.raises(InputError) as caught:
+        model_from_json(text, "bad.fdvv.json")
+    message = str(caught.value)
+    assert "\n" not in message
+    assert len(message) < 300
+    return message.removeprefix("bad.fdvv.json: ")
+
+
 @pytest.mark.parametrize(
     ("change", "place", "said"),
     [
@@ -151,13 +161,9 @@ def drop(*path: str | int) -> Callable[[dict[str, Any]], object]:
 def test_a_file_that_is_no_model_is_refused_in_one_line_with_the_place(
     change: Callable[[dict[str, Any]], object], place: str, said: str
 ) -> None:
-    with pytest.raises(InputError) as caught:
-        model_from_json(edited(change), "bad.fdvv.json")
-    message = str(caught.value)
-    assert message.startswith(f"bad.fdvv.json: {place}")
+    message = refusal(edited(change))
+    assert message.startswith(place)
     assert said in message
-    assert "\n" not in message
-    assert len(message) < 300
 
 
 @pytest.mark.parametrize(
@@ -181,12 +187,7 @@ def test_a_file_that_is_no_model_is_refused_in_one_line_with_the_place(
     ],
 )
 def test_a_text_that_is_no_json_is_refused_in_one_line_with_the_place(text: str | bytes, place: str) -> None:
-    with pytest.raises(InputError) as caught:
-        model_from_json(text, "bad.fdvv.json")
-    message = str(caught.value)
-    assert message.startswith(f"bad.fdvv.json: {place}")
-    assert "\n" not in message
-    assert len(message) < 300
+    assert refusal(text).startswith(place)
 
 
 @pytest.mark.parametrize(
@@ -215,12 +216,9 @@ def test_a_text_that_is_no_json_is_refused_in_one_line_with_the_place(text: str 
 def test_a_spread_that_is_none_is_refused_in_one_line_with_the_place(
     change: Callable[[dict[str, Any]], object], place: str, said: str
 ) -> None:
-    with pytest.raises(InputError) as caught:
-        model_from_json(edited(change, SPREAD), "bad.fdvv.json")
-    message = str(caught.value)
-    assert message.startswith(f"bad.fdvv.json: {place}: ")
+    message = refusal(edited(change, SPREAD))
+    assert message.startswith(f"{place}: ")
     assert said in message
-    assert "\n" not in message
 
 
 def test_a_file_has_the_version_that_it_takes() -> None:

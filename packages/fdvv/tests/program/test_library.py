@@ -10,7 +10,7 @@ from fdvv.model.file import builtin_names, load_builtin
 from fdvv.program.button import ranges
 from fdvv.program.check import check_program
 from fdvv.program.compile import compile_program
-from fdvv.program.library import Recipe, load_shipped, make, programs
+from fdvv.program.library import Recipe, make, programs
 from fdvv.program.program import Program
 from fdvv.program.surface import RETURNING_cN, of_model
 from tests.support.program.scripted_press import TICKS_PER_S, path, press
@@ -18,13 +18,6 @@ from tests.support.program.scripted_press import TICKS_PER_S, path, press
 NAMES = [p.name for p in programs()]
 TICK_mm = 50 / TICKS_PER_S
 """How far a cap at 50 mm/s goes in a tick."""
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_shipped_program_is_accepted_and_is_that_of_its_file(name: str) -> None:
-    program = make(name)
-    assert check_program(program).findings == ()
-    assert load_shipped(name) == program
 
 
 TOO_MUCH: dict[tuple[str, str], dict[str, float]] = {

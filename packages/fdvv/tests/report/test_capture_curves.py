@@ -14,12 +14,9 @@ from fdvv.model.curve import Stroke
 from fdvv.preprocess.paper import AS_PRINTED, PaperRecipe, paper_average
 from fdvv.preprocess.reject import Reason
 from tests.support.captures import SHORT_STROKE, recorded
+from tests.support.gallery import Gallery
 
-
-def texts(figure: Any) -> str:
-    from matplotlib.text import Text
-
-    return "\n".join(text.get_text() for text in figure.findobj(Text))
+texts = Gallery.texts
 
 
 def line(ax: Any, label: str) -> Any:

@@ -14,15 +14,12 @@ from fdvv.preprocess.clock import ClockFit
 from fdvv.preprocess.takes import edge_bounds
 from fdvv.recording.types import Quantity
 from tests.support.captures import SHORT_STROKE, capture, recorded
+from tests.support.gallery import Gallery
+
+texts = Gallery.texts
 
 FAST = 10
 """A take at 150 mm/s."""
-
-
-def texts(figure: Any) -> str:
-    from matplotlib.text import Text
-
-    return "\n".join(text.get_text() for text in figure.findobj(Text))
 
 
 def line(ax: Any, label: str) -> Any:
