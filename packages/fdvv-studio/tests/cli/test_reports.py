@@ -91,12 +91,6 @@ def test_show_tells_the_spread_of_a_measured_button(fdvv: Run, captured: Path) -
     assert f"{fast['achieved_mm_s']:.1f} ± {fast['achieved_spread_mm_s']:.1f}" in ran.out
 
 
-def test_show_tells_of_no_spread_where_there_is_none(fdvv: Run) -> None:
-    out = fdvv("show", "mx-clear").out
-    assert "±" not in out
-    assert "presses" not in out
-
-
 def test_compare_tells_standard_errors_and_what_they_are(fdvv: Run, captured: Path) -> None:
     ran = fdvv("compare", "mx-red", captured, "--velocity", "150")
     error = fdvv("compare", "mx-red", captured, "--velocity", "150", "--json").json["buttons"][1][

@@ -137,12 +137,6 @@ def test_the_background_tells_and_stops(tmp_path: Path, bench: Path) -> None:
     index.close()
 
 
-def test_without_folders_nothing_is_written(tmp_path: Path) -> None:
-    stand = indexed(tmp_path).status
-    assert stand.ended
-    assert not (tmp_path / "project").exists()
-
-
 @pytest.fixture
 def reader() -> Iterator[RowReader]:
     reader = RowReader()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import signal
 import subprocess
@@ -13,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.errors import BuildError, InputError, WorkerError
+from fdvv.errors import BuildError, InputError
 from fdvv.model.file import load_builtin, save_model
 from fdvv.parallel.open import open_executor
 from fdvv_studio.library.build import (
@@ -27,7 +26,7 @@ from fdvv_studio.library.build import (
 from fdvv_studio.library.catalog import Catalog, source_files
 from fdvv_studio.library.figures import row_of_file, row_of_model
 from fdvv_studio.library.index import CatalogIndex
-from fdvv_studio.library.library import Library, library_query, write_hits
+from fdvv_studio.library.library import Library, library_query
 from fdvv_studio.library.row import NUMBERS as SHELF_NUMBERS
 from fdvv_studio.library.search import SearchQuery
 from fdvv_studio.library.table import COLUMNS as LIBRARY_COLUMNS
@@ -203,15 +202,6 @@ def test_the_nearest_is_the_one_that_differs_least(library: Library, source: Pat
     assert len(library.find(SearchQuery())[0]) == len(library.rows) == 5
 
 
-def test_hits_are_written_as_csv_with_their_units(library: Library, tmp_path: Path) -> None:
-    write_hits(tmp_path / "hits.csv", library.like("mx-clear"))
-    with (tmp_path / "hits.csv").open() as stream:
-        lines = list(csv.DictReader(stream))
-    assert len(lines) == 5
-    assert float(lines[0]["travel_mm"]) == pytest.approx(4.0, abs=0.1)
-    assert {"place", "distance_JND", "force_JND", "peak_cN"} <= lines[0].keys()
-
-
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -313,12 +303,6 @@ def test_whoever_builds_it_the_library_is_the_same(
         build_library([source], tmp_path / "library", executor)
     assert (tmp_path / "library" / BUTTONS).read_bytes() == (library.folder / BUTTONS).read_bytes()
     assert read_manifest(tmp_path / "library") == library.manifest
-
-
-@pytest.mark.slow
-def test_a_worker_that_fails_is_reported(source: Path, tmp_path: Path) -> None:
-    with open_executor(processes=1) as executor, pytest.raises(WorkerError, match="is not there on"):
-        build_library([source], tmp_path / "library", executor, work=LibraryWork((tmp_path / "gone",)))
 
 
 @pytest.mark.shared

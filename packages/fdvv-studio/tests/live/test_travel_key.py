@@ -8,16 +8,6 @@ import pytest
 from fdvv_studio.live.travel_key import TravelKey
 
 
-def test_the_key_goes_down_between_the_readings_around_its_actuation() -> None:
-    key = TravelKey(1.5, 1.2)
-    assert [key.read(t, x) for t, x in ((0.0, 0.0), (0.01, 1.0), (0.02, 3.0), (0.03, 4.0))] == [
-        None,
-        None,
-        pytest.approx(0.0125),
-        None,
-    ]
-
-
 def test_it_can_again_once_it_was_above_the_reset() -> None:
     key = TravelKey(1.5, 1.2)
     places = (2.0, 1.3, 1.6, 1.2, 1.4, 1.5, 0.0, 2.0)

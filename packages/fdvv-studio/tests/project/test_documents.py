@@ -56,11 +56,6 @@ def reopened(drafts: DocumentStore) -> DocumentStore:
     return DocumentStore(drafts.project)
 
 
-def test_a_new_project_has_no_buttons_and_no_folders(drafts: DocumentStore) -> None:
-    assert drafts.list() == []
-    assert not drafts.project.exists()
-
-
 def test_a_created_button_is_a_model_file_under_its_name(drafts: DocumentStore) -> None:
     assert drafts.create("My button", CLEAR) == "My button"
     assert on_file(drafts, "My button") == CLEAR.renamed("My button")
@@ -107,15 +102,6 @@ def test_edits_that_join_are_one_step(drafts: DocumentStore) -> None:
     assert len(drafts.open("a").history.steps) == 1
     drafts.change("a", 2, UndoMade("u", 1))
     assert drafts.open("a").history.record == drafts.open("a").history.opening
-
-
-def test_a_change_on_another_revision_is_refused_with_the_newest_state(drafts: DocumentStore) -> None:
-    drafts.create("a", CLEAR)
-    mine, theirs = (made(drafts, "a", {"travel_mm": mm}) for mm in (3.5, 3.6))
-    assert drafts.change("a", 0, mine) == ChangeSaved(1)
-    answer = drafts.change("a", 0, theirs)
-    assert answer == ChangeConflict(drafts.open("a"))
-    assert on_file(drafts, "a").travel_mm == 3.5
 
 
 def test_a_change_that_is_sent_again_is_not_made_twice(drafts: DocumentStore) -> None:

@@ -99,10 +99,6 @@ def test_the_studio_tells_its_version_and_no_path(client: TestClient, own_studio
     assert answer == {"version": __version__, "project": own_studio.project.name, "sources": []}
 
 
-def test_a_call_answers(client: TestClient) -> None:
-    assert client.post("/api/test.twice", json={"number": 4}).json() == {"twice": 8}
-
-
 @pytest.mark.parametrize(
     "body", [b"", b"{", b"[]", b"null", b'{"number": "x"}', b'{"other": 1}', b"\xff\xfe", b"[" * 100_000]
 )

@@ -104,17 +104,12 @@ def learned() -> CompensationResult:
     return compensate(TwinDevice(load_rig("recommended")), model, [100.0], RigAware(rounds=0))
 
 
-def with_cell_off_by(monkeypatch: pytest.MonkeyPatch, offset_N: float) -> None:
-    """Connect a simulated rig whose load cell reads this much too high."""
-    rig = load_rig("recommended")
-    off = replace(rig, load_cell=replace(rig.load_cell, offset_N=offset_N))
-    monkeypatch.setattr("fdvv_studio.studio.device_session.load_rig", lambda _name: off)
-
-
 def test_a_loop_that_its_cell_opened_stays_open_until_the_cell_is_sound(
     studio: Studio, learned: CompensationResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with_cell_off_by(monkeypatch, -0.5)
+    rig = load_rig("recommended")
+    off = replace(rig, load_cell=replace(rig.load_cell, offset_N=-0.5))
+    monkeypatch.setattr("fdvv_studio.studio.device_session.load_rig", lambda _name: off)
     session = studio.part(DeviceSession)
     part.connect.function(studio, DeviceConnect("host"))
     session.upload(CLEAR, load_builtin("mx-clear"), learned)

@@ -16,7 +16,6 @@ from fdvv.model.file import MODEL_SUFFIX, builtin_names, load_builtin, save_mode
 from fdvv.model.jnd_file import FILE_NAME as JNDS_FILE
 from fdvv.model.jnd_file import save_jnds
 from fdvv_studio.library.row import NUMBERS as SHELF_NUMBERS
-from fdvv_studio.studio.api.library_buttons import sampled_strokes
 from fdvv_studio.studio.server import address_of, create_app
 from fdvv_studio.studio.studio import Studio
 from tests.studio.conftest import LIVE, ORIGIN, TOKEN
@@ -171,16 +170,6 @@ def test_a_rescan_finds_what_came_and_went_and_notifies_the_page(client: TestCli
         (bench / "Later.csv").unlink()
         rescanned(before["rows"])
         assert ask(client, "search", text="later")["total"] == 0
-
-
-@pytest.mark.parametrize("name", builtin_names())
-def test_samples_lie_on_the_curves(name: str) -> None:
-    model = load_builtin(name)
-    for sampled, curve in zip(sampled_strokes(model), model.curves, strict=True):
-        x = sampled.start_mm + sampled.step_mm * np.arange(len(sampled.force_cN))
-        np.testing.assert_allclose(sampled.force_cN, curve.force_cN(x), atol=6e-4)
-        assert x[-1] == pytest.approx(curve.end_mm)
-        assert sampled.step_mm <= 0.0101
 
 
 def test_distances_count_in_the_projects_own_jnds_while_its_file_is_there(

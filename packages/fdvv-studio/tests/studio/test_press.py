@@ -128,12 +128,10 @@ def test_forces_are_listed_at_speeds_close_enough_to_interpolate(
 def test_documents_that_are_not_kept_yet_can_be_pressed(start: Callable[..., None]) -> None:
     model = msgspec.json.decode(model_to_json(load_builtin("mx-brown")))
     program = msgspec.json.decode(program_to_json(load_shipped("rapid-trigger")))
-    for what, name in (({"model": model}, "mx-brown"), ({"code": program}, "rapid-trigger")):
-        start(lambda _page, ready, name=name: _is(ready["name"], name), **what)
-
-
-def _is(found: object, wanted: object) -> None:
-    assert found == wanted
+    names: list[str] = []
+    for what in ({"model": model}, {"code": program}):
+        start(lambda _page, ready: names.append(ready["name"]), **what)
+    assert names == ["mx-brown", "rapid-trigger"]
 
 
 @pytest.mark.parametrize(

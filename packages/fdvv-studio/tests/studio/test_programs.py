@@ -200,7 +200,8 @@ def test_a_broken_file_in_the_project_is_listed_and_opens_with_one_line(
 ) -> None:
     folder: Path = own_studio.project / "programs"
     folder.mkdir(parents=True)
-    (folder / "bad.fdvv-program.json").write_text("{")
-    (own,) = [row for row in ask(client, "list")["programs"] if row["id"] == "own:bad"]
-    assert own["problem"]
+    for name in ("bad", ".half"):
+        (folder / f"{name}.fdvv-program.json").write_text("{")
+    (own,) = [row for row in ask(client, "list")["programs"] if row["id"].startswith("own:")]
+    assert (own["id"], bool(own["problem"])) == ("own:bad", True)
     ask(client, "open", 422, program="own:bad")
