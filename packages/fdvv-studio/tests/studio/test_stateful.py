@@ -42,16 +42,10 @@ SELDOM = {
 """Calls that take long, or that end what others need: how often they are asked, beside once."""
 
 
-SCORED = {
-    **{
-        "title": "scored",
-        "engine": "random",
-        "space": "FDV",
-        "preference": False,
-        "simulated": True,
-        "level": "easy",
-    },
-    **{"also": [], "start": "builtin:mx-clear", "rig": None, "seed": 1, "budget": 20, "task_presses": 2},
+SCORED: dict[str, object] = {
+    **{"title": "scored", "engine": "random", "space": "FDV", "preference": False, "simulated": True},
+    **{"level": "easy", "also": [], "start": "builtin:mx-clear", "rig": None, "seed": 1, "budget": 20},
+    "task_presses": 2,
 }
 PROBE = {
     "type": "probe",

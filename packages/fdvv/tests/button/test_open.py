@@ -45,11 +45,6 @@ def test_a_button_is_a_builtin_a_model_file_or_a_measurement(tmp_path: Path, mea
     assert open_button(str(measured)) == fit_file(measured).model
 
 
-def test_a_model_is_known_by_its_inside_where_its_name_does_not_say(tmp_path: Path) -> None:
-    model = line_model("line", 40)
-    assert open_button(str(saved(tmp_path / "line.json", model))) == model
-
-
 @pytest.mark.parametrize("spec", ["", "mx-blu", "gone.csv", "."])
 def test_what_names_no_button_is_refused_with_those_there_are(spec: str) -> None:
     with pytest.raises(InputError, match="mx-black, mx-blue"):

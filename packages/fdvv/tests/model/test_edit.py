@@ -122,17 +122,6 @@ def test_an_assigned_curve_replaces_the_one_at_its_place_and_leaves_the_rest() -
     assert edited.provenance.method.endswith("; release at 100 mm/s assigned from press at 50 mm/s")
 
 
-def test_an_assigned_segment_is_the_new_curve_inside_and_the_old_one_outside_the_blend() -> None:
-    press, release = (CLEAR.of(s)[2] for s in Stroke)
-    edited = assign(CLEAR, press, "release", 100.0, segment_mm=(1.2, 2.6), blend_mm=0.2)
-    force = edited.force_cN(X_mm, 100.0, "release")
-    inside = (X_mm >= 1.2) & (X_mm <= 2.6)
-    outside = (X_mm <= 1.0) | (X_mm >= 2.8)
-    np.testing.assert_allclose(force[inside], press.force_cN(X_mm)[inside], rtol=0, atol=1e-9)
-    np.testing.assert_allclose(force[outside], release.force_cN(X_mm)[outside], rtol=0, atol=1e-9)
-    assert "release at 100 mm/s from 1.2 to 2.6 mm assigned" in edited.provenance.method
-
-
 def test_a_segment_needs_a_curve_to_go_into() -> None:
     with pytest.raises(ModelError, match=r"has no press curve at 75 mm/s; it has press at 0.5 mm/s"):
         assign(CLEAR, curve(75), "press", 75.0, segment_mm=(1.0, 2.0))

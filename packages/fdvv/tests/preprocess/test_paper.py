@@ -77,17 +77,9 @@ def even_press(speed_mm_s: float, force: float, take: int = 1) -> Judged:
     t_s = np.arange(0.0, 8.4 / speed_mm_s + 0.3, 1e-3)
     way_s = 4.0 / speed_mm_s
     path_mm = np.interp(t_s, [0.1, 0.1 + way_s, 0.2 + way_s, 0.2 + 2 * way_s], [0.0, 4.0, 4.0, 0.0])
-    frames = slice(None, None, 4)
-    press = RawPress(
-        take,
-        1,
-        speed_mm_s,
-        t_s,
-        force * 10 * path_mm,
-        t_s[frames],
-        path_mm[frames],
-        np.full(t_s.size, np.nan)[frames],
-    )
+    frame_s, frame_mm = t_s[::4], path_mm[::4]
+    apart_mm = np.full(frame_s.size, np.nan)
+    press = RawPress(take, 1, speed_mm_s, t_s, force * 10 * path_mm, frame_s, frame_mm, apart_mm)
     spans = Spans(0.1, 0.1 + way_s, 0.2 + way_s, 0.2 + 2 * way_s, 4.0)
     return Judged(press, spans, speed_mm_s)
 

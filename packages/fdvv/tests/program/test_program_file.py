@@ -63,6 +63,10 @@ def edited(change: Callable[[dict[str, Any]], object]) -> str:
     return json.dumps(record)
 
 
+def when(**condition: float) -> Callable[[dict[str, Any]], object]:
+    return lambda p: p["states"][1]["transitions"][0].update(when=condition)
+
+
 @pytest.mark.parametrize(
     ("change", "place", "reason"),
     [
@@ -74,21 +78,9 @@ def edited(change: Callable[[dict[str, Any]], object]) -> str:
         (lambda p: p["states"][1].update(key=900), "$.states[1].key", "255"),
         (lambda p: p["states"][0].update(velocity="guessed"), "$.states[0].velocity", "continuous"),
         (lambda p: p["states"][0].update(press="thin air"), "$", "thin air"),
-        (
-            lambda p: p["states"][1]["transitions"][0].update(when={"always": 3}),
-            "$.states[1].transitions[0]",
-            "always takes true",
-        ),
-        (
-            lambda p: p["states"][1]["transitions"][0].update(when={"after_ms": 0.5}),
-            "$.states[1].transitions[0]",
-            "whole number",
-        ),
-        (
-            lambda p: p["states"][1]["transitions"][0].update(when={"deeper_mm": 1}),
-            "$.states[1].transitions[0].when",
-            "deeper_than_mm",
-        ),
+        (when(always=3), "$.states[1].transitions[0]", "always takes true"),
+        (when(after_ms=0.5), "$.states[1].transitions[0]", "whole number"),
+        (when(deeper_mm=1), "$.states[1].transitions[0].when", "deeper_than_mm"),
         (lambda p: p["surfaces"][0]["displacement_mm"].reverse(), "$.surfaces[0]", "rising"),
         (lambda p: p["surfaces"][0].pop("velocity_mm_s"), "$.surfaces[0]", "missing required field"),
         (lambda p: p["surfaces"][1]["force_cN"][0].pop(), "$.surfaces[1]", "one force per displacement"),

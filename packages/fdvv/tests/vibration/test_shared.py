@@ -171,8 +171,3 @@ def test_the_energy_of_a_straight_fall_is_the_triangle() -> None:
     assert energy.energy_mJ == pytest.approx(0.1, rel=0.03)
     assert energy.drop_cN == pytest.approx(20, abs=1)
     assert energy.window_mm == pytest.approx((1.75, 3.25), abs=0.05)
-
-
-def test_a_linear_switch_sets_nothing_free() -> None:
-    x = np.linspace(0, 4, 801)
-    assert snap_energy(x, 40 + 10 * x + 0.5 * np.sin(20 * x)) is None
