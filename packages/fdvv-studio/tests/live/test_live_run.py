@@ -57,11 +57,11 @@ class Seen:
 
 
 def start_run(
-    seen: Seen, silent_s: float = 60.0, rest_after_s: float = math.inf, subject: PressSubject | None = None
-) -> LiveRun:
-    press = LivePress(subject or model_subject(load_builtin("mx-clear")))
+    silent_s: float = 60.0, rest_after_s: float = math.inf, subject: PressSubject | None = None
+) -> tuple[Seen, LiveRun]:
+    press, seen = LivePress(subject or model_subject(load_builtin("mx-clear"))), Seen()
     show, line = seen.show, seen.add_line
-    return LiveRun(press, show, line, line, silent_s=silent_s, rest_after_s=rest_after_s)
+    return seen, LiveRun(press, show, line, line, silent_s=silent_s, rest_after_s=rest_after_s)
 
 
 def test_time_that_cannot_be_kept_up_with_is_dropped_and_counted() -> None:
@@ -74,8 +74,8 @@ def test_time_that_cannot_be_kept_up_with_is_dropped_and_counted() -> None:
 
 
 def test_a_run_goes_on_at_real_pace_and_tells_back_what_led_it() -> None:
-    seen, start = Seen(), time.monotonic()
-    run = start_run(seen)
+    start = time.monotonic()
+    seen, run = start_run()
     run.ask(lambda press: press.lead(8.0), 17)
     seen.wait_for(lambda: LiveEventKind.ACTUATION in seen.kinds)
     run.ask(LivePress.lift, 18)
@@ -93,14 +93,14 @@ def test_a_run_goes_on_at_real_pace_and_tells_back_what_led_it() -> None:
 
 @pytest.mark.clock
 def test_simulated_time_and_what_a_frame_adds_make_the_time_of_the_clock() -> None:
-    seen, asked = Seen(), [0.0]
+    asked = [0.0]
 
     def late(press: LivePress) -> None:
         asked[0] = press.time_s
         time.sleep(0.3)  # three times what is made up for: 0.2 s are dropped
         press.lead(8.0)
 
-    run = start_run(seen)
+    seen, run = start_run()
     seen.wait_for(lambda: seen.frames)
     began_s = time.monotonic()
     run.ask(late)
@@ -118,8 +118,7 @@ def test_simulated_time_and_what_a_frame_adds_make_the_time_of_the_clock() -> No
 
 @pytest.mark.clock
 def test_a_page_that_says_nothing_is_not_simulated_for_and_its_finger_is_lifted() -> None:
-    seen = Seen()
-    run = start_run(seen, silent_s=0.2)
+    seen, run = start_run(silent_s=0.2)
     run.ask(lambda press: press.lead(8.0))
     seen.wait_for(lambda: LiveEventKind.ACTUATION in seen.kinds)
     last_s = seen.frames[-1].columns.t_s[-1]
@@ -137,8 +136,7 @@ def test_a_page_that_says_nothing_is_not_simulated_for_and_its_finger_is_lifted(
 
 
 def test_a_pause_lasts_until_the_page_is_seen_again() -> None:
-    seen = Seen()
-    run = start_run(seen)
+    seen, run = start_run()
     seen.wait_for(lambda: seen.frames)
     run.pause()
     run.here()
@@ -151,8 +149,7 @@ def test_an_impossible_request_is_reported_and_the_rest_goes_on() -> None:
     def impossible(_press: LivePress) -> None:
         raise DeviceError("it cannot be done")
 
-    seen = Seen()
-    run = start_run(seen)
+    seen, run = start_run()
     run.ask(impossible)
     seen.wait_for(lambda: seen.lines)
     count = len(seen.frames)
@@ -163,8 +160,8 @@ def test_an_impossible_request_is_reported_and_the_rest_goes_on() -> None:
 
 @pytest.mark.clock
 def test_where_nothing_goes_on_time_stops_until_something_is_asked() -> None:
-    seen, began_s = Seen(), time.monotonic()
-    run = start_run(seen, rest_after_s=0.2)
+    began_s = time.monotonic()
+    seen, run = start_run(rest_after_s=0.2)
     run.ask(lambda press: press.lead(-0.3))  # above the cap
     seen.wait_for(lambda: seen.frames)
     last_s = seen.wait_until_still()
@@ -186,8 +183,7 @@ def test_where_nothing_goes_on_time_stops_until_something_is_asked() -> None:
 
 
 def test_a_finger_that_holds_the_cap_is_simulated_on() -> None:
-    seen = Seen()
-    run = start_run(seen, rest_after_s=0.2)
+    seen, run = start_run(rest_after_s=0.2)
     run.ask(lambda press: press.lead(8.0))
     seen.wait_for(lambda: LiveEventKind.ACTUATION in seen.kinds)
     held_s = seen.frames[-1].columns.t_s[-1]
@@ -197,8 +193,7 @@ def test_a_finger_that_holds_the_cap_is_simulated_on() -> None:
 
 @pytest.mark.clock
 def test_a_trace_is_replayed_to_its_end_and_then_time_stops() -> None:
-    seen = Seen()
-    run = start_run(seen, rest_after_s=0.2)
+    seen, run = start_run(rest_after_s=0.2)
     time_s = np.linspace(0.0, 1.6, 161)
     late = PressTrace("late", "", time_s, np.where(time_s > 1.2, 3.0, 0.0))
     run.ask(lambda press: press.replay(late))
@@ -209,8 +204,7 @@ def test_a_trace_is_replayed_to_its_end_and_then_time_stops() -> None:
 
 @pytest.mark.clock
 def test_a_rest_that_a_hidden_page_ends_lifts_the_finger() -> None:
-    seen = Seen()
-    run = start_run(seen, rest_after_s=0.2)
+    seen, run = start_run(rest_after_s=0.2)
     run.ask(lambda press: press.lead(-0.3))
     seen.wait_for(lambda: seen.frames)
     last_s = seen.wait_until_still()
@@ -223,8 +217,7 @@ def test_a_rest_that_a_hidden_page_ends_lifts_the_finger() -> None:
 
 
 def test_a_program_that_acts_by_time_alone_never_rests() -> None:
-    seen = Seen()
-    run = start_run(seen, rest_after_s=0.2, subject=program_subject(load_shipped("returning-later")))
+    seen, run = start_run(rest_after_s=0.2, subject=program_subject(load_shipped("returning-later")))
     seen.wait_for(lambda: seen.frames and seen.frames[-1].columns.t_s[-1] > 0.8)
     run.close()
 
@@ -245,8 +238,7 @@ def test_a_coil_that_cools_is_simulated_until_the_whole_force_is_back() -> None:
 
 @pytest.mark.clock
 def test_a_press_that_nobody_has_touched_rests_sooner() -> None:
-    seen = Seen()
-    run = start_run(seen, rest_after_s=3600.0)
+    seen, run = start_run(rest_after_s=3600.0)
     seen.wait_for(lambda: seen.frames)
     seen.wait_until_still()
     run.here()

@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from fdvv.formats.force.types import ForceFile
+from fdvv.model.curve import MeasuredCurve
 from fdvv.units import GRAM_FORCE_cN
 
 Array = npt.NDArray[np.float64]
@@ -226,3 +228,10 @@ def write(folder: Path, name: str, content: str | bytes) -> Path:
     path = folder / name
     path.write_bytes(content.encode() if isinstance(content, str) else content)
     return path
+
+
+def press(file: ForceFile, cycle: int = 0) -> MeasuredCurve:
+    """Return the press of a cycle, which there must be."""
+    found = file.cycles[cycle].press
+    assert found is not None
+    return found

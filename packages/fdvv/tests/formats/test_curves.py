@@ -15,6 +15,7 @@ from fdvv.formats.force.read import read_force_file
 from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.file import builtin_names, load_builtin
 from fdvv.model.model import FDVVModel
+from tests.formats import conftest as files
 
 WRITERS: dict[str, tuple[Callable[[FDVVModel], Exported], str]] = {
     "plain-csv": (curves_csv, ".csv"),
@@ -78,8 +79,7 @@ def test_the_plain_table_keeps_stroke_and_velocity_in_its_names(tmp_path: Path) 
 def test_a_bench_layout_takes_the_curve_nearest_in_velocity(tmp_path: Path) -> None:
     model = load_builtin("rubber-dome")
     bluepylons_csv(model, 140).save(tmp_path / "a.csv")
-    press = read_force_file(tmp_path / "a.csv").cycles[0].press
-    assert press is not None
+    press = files.press(read_force_file(tmp_path / "a.csv"))
     wanted = next(c for c in model.of("press") if c.velocity_mm_s == 150)
     np.testing.assert_allclose(press.force_cN, wanted.force_cN(press.displacement_mm), atol=1e-9)
 

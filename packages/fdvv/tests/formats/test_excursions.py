@@ -10,7 +10,6 @@ import pytest
 from fdvv.formats.force.average import average_by_velocity
 from fdvv.formats.force.read import read_force_file
 from fdvv.formats.force.types import ForceFile
-from fdvv.model.curve import MeasuredCurve
 from fdvv.units import FloatArray
 from tests.formats import conftest as files
 
@@ -37,15 +36,9 @@ def leap(at_mm: float, height_cN: float = 40.0) -> FloatArray:
     return force
 
 
-def press(file: ForceFile, cycle: int = 0) -> MeasuredCurve:
-    curve = file.cycles[cycle].press
-    assert curve is not None
-    return curve
-
-
 def test_a_leap_that_recurs_in_another_cycle_stays(tmp_path: Path) -> None:
     file = read(tmp_path, leap(2.0), leap(2.05), force_of(DOWN_mm))
-    assert press(file).force_cN.size == press(file, 1).force_cN.size == DOWN_mm.size
+    assert files.press(file).force_cN.size == files.press(file, 1).force_cN.size == DOWN_mm.size
     (warning,) = file.warnings
     assert "alike in several cycles; it was kept" in warning
 
@@ -53,7 +46,7 @@ def test_a_leap_that_recurs_in_another_cycle_stays(tmp_path: Path) -> None:
 @pytest.mark.parametrize("second", [leap(3.0), leap(2.0, -40.0), force_of(DOWN_mm)])
 def test_a_leap_elsewhere_or_the_other_way_is_no_repeat(second: FloatArray, tmp_path: Path) -> None:
     file = read(tmp_path, leap(2.0), second)
-    assert press(file).force_cN.max() == pytest.approx(force_of(DOWN_mm).max())
+    assert files.press(file).force_cN.max() == pytest.approx(force_of(DOWN_mm).max())
     assert any(
         "press of cycle 1 from 1.995 to 2.005 mm: the force leaps to 85.0 cN" in w for w in file.warnings
     )
@@ -63,7 +56,7 @@ def test_a_slip_amid_the_climb_of_a_stop_stays(tmp_path: Path) -> None:
     force = force_of(DOWN_mm)
     force[np.abs(DOWN_mm - 4.07) < 0.008] -= 30.0
     file = read(tmp_path, force)
-    assert press(file).force_cN.size == DOWN_mm.size
+    assert files.press(file).force_cN.size == DOWN_mm.size
     assert file.warnings == ()
 
 

@@ -11,19 +11,12 @@ from fdvv.errors import InputError
 from fdvv.formats.force import read as reading
 from fdvv.formats.force.read import read_force_file
 from fdvv.formats.force.types import ForceFile
-from fdvv.model.curve import MeasuredCurve
 from tests.formats import conftest as files
 
 
 def read(folder: Path, x: Any, force: Any) -> ForceFile:
     rows = [f"{a!r},{b!r}" for a, b in zip(np.asarray(x).tolist(), np.asarray(force).tolist(), strict=True)]
     return read_force_file(files.write(folder, "p.csv", "\n".join(["x_mm,force_cN", *rows])))
-
-
-def press(file: ForceFile) -> MeasuredCurve:
-    curve = file.cycles[0].press
-    assert curve is not None
-    return curve
 
 
 def fine_run() -> tuple[Any, Any]:
@@ -38,8 +31,8 @@ def test_the_drop_of_a_click_bar_is_left_alone(tmp_path: Path) -> None:
     x, force = fine_run()
     file = read(tmp_path, x, force)
     assert file.warnings == ()
-    assert np.diff(press(file).force_cN).min() == pytest.approx(-29.8, abs=0.2)
-    assert press(file).displacement_mm.size == 701
+    assert np.diff(files.press(file).force_cN).min() == pytest.approx(-29.8, abs=0.2)
+    assert files.press(file).displacement_mm.size == 701
 
 
 def test_a_spike_is_left_out_and_reported(tmp_path: Path) -> None:
@@ -51,8 +44,8 @@ def test_a_spike_is_left_out_and_reported(tmp_path: Path) -> None:
         "press of run from 2.000 to 2.005 mm: the force leaps to -200.0 cN and back; 2 samples were"
         in warning
     )
-    assert press(file).force_cN.min() == 0.0
-    assert press(file).displacement_mm.size == 699
+    assert files.press(file).force_cN.min() == 0.0
+    assert files.press(file).displacement_mm.size == 699
 
 
 def test_a_probe_that_sticks_is_distinguished_from_a_click(tmp_path: Path) -> None:
@@ -62,7 +55,7 @@ def test_a_probe_that_sticks_is_distinguished_from_a_click(tmp_path: Path) -> No
     file = read(tmp_path, x, force)
     (warning,) = file.warnings
     assert "the probe stuck, the force climbs to 144.0 cN" in warning
-    assert press(file).force_cN[(x[:701] < 0.9)[: press(file).force_cN.size]].max() < 50.0
+    assert files.press(file).force_cN[(x[:701] < 0.9)[: files.press(file).force_cN.size]].max() < 50.0
 
 
 def test_a_stiff_tact_switch_keeps_its_snap(tmp_path: Path) -> None:
@@ -105,7 +98,8 @@ def test_a_stage_that_wavers_keeps_every_sample_where_it_was(tmp_path: Path) -> 
     file = read(tmp_path, x, force)
     # 60 um against the stage, 20 um of which it would have advanced
     assert "wavers back by up to 0.040 mm" in file.warnings[0]
-    pairs = set(zip(press(file).displacement_mm.tolist(), press(file).force_cN.tolist(), strict=True))
+    kept = files.press(file)
+    pairs = set(zip(kept.displacement_mm.tolist(), kept.force_cN.tolist(), strict=True))
     assert pairs == set(zip(np.round(x[:151], 9).tolist(), force[:151].tolist(), strict=True))
 
 
@@ -114,7 +108,7 @@ def test_a_missing_stretch_is_reported_and_not_made_up(tmp_path: Path) -> None:
     keep = ~((x > 1.0) & (x < 1.9) & (np.arange(x.size) < 151))
     file = read(tmp_path, x[keep], force[keep])
     assert "press of run: displacement jumps by 0.90 mm, from 1.00 to 1.90 mm" in file.warnings[0]
-    assert press(file).displacement_mm.size == int(keep[:151].sum())
+    assert files.press(file).displacement_mm.size == int(keep[:151].sum())
 
 
 def test_a_stray_position_is_left_out(tmp_path: Path) -> None:
@@ -122,17 +116,17 @@ def test_a_stray_position_is_left_out(tmp_path: Path) -> None:
     x[50] = 40.0
     file = read(tmp_path, x, force)
     assert "run, sample 51: displacement jumps to 40.000 mm and back; 1 sample was left out" in file.warnings
-    assert press(file).displacement_mm.max() == 3.0
+    assert files.press(file).displacement_mm.max() == 3.0
 
 
 def test_axes_that_point_the_other_way_are_turned(tmp_path: Path) -> None:
     x, force = files.run()
     height = read(tmp_path, 10.0 - x, force)
     assert "displacement counts outwards" in height.warnings[0]
-    np.testing.assert_allclose(press(height).displacement_mm, files.stroke()[0] - 10.0)
+    np.testing.assert_allclose(files.press(height).displacement_mm, files.stroke()[0] - 10.0)
     pull = read(tmp_path, x, -force)
     assert "counts a push as negative" in pull.warnings[0]
-    np.testing.assert_allclose(press(pull).force_cN, files.stroke()[1])
+    np.testing.assert_allclose(files.press(pull).force_cN, files.stroke()[1])
 
 
 @pytest.mark.parametrize(("edges", "message"), [(7, "the contact chatters, 7 edges"), (0, "never closed")])
@@ -178,8 +172,7 @@ def test_a_slipped_position_counter_is_put_back(tmp_path: Path) -> None:
     warnings = [warning for warning in file.warnings if "slipped" in warning]
     assert len(warnings) == 1
     assert warnings[0].startswith("Press 2: the position counter slipped by 2.00 mm")
-    assert file.cycles[1].press is not None
-    assert file.cycles[1].press.displacement_mm[5] == pytest.approx(0.12, abs=1e-9)
+    assert files.press(file, 1).displacement_mm[5] == pytest.approx(0.12, abs=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from fdvv.errors import InputError
 from fdvv.formats.force.average import average_by_velocity
 from fdvv.formats.force.read import find_force_files, read_force_file
 from fdvv.model.bump import find_contact_mm
+from tests.formats import conftest as files
 
 pytestmark = pytest.mark.shared
 
@@ -97,8 +98,7 @@ def test_each_known_defect_is_reported(path: str, message: str, shared_data: Pat
 def test_click_bars_keep_their_drop_between_two_samples(name: str, shared_data: Path) -> None:
     path = shared_data / TG / f"Kailh Box {name}__Kailh Box {name} Raw Data CSV.csv"
     file = read_force_file(path)
-    assert file.cycles[0].press is not None
-    assert np.diff(file.cycles[0].press.force_cN).min() < -28.0
+    assert np.diff(files.press(file).force_cN).min() < -28.0
     assert not any("leaps" in warning or "stuck" in warning for warning in file.warnings)
 
 
@@ -120,12 +120,11 @@ def test_the_two_publications_of_one_measurement_agree(shared_data: Path) -> Non
 
 
 def test_the_spreadsheet_and_its_parsed_table_are_the_same_measurement(shared_data: Path) -> None:
-    sheet = read_force_file(shared_data / "bluepylons/Cherry-MX-Red.ods").cycles[0]
-    table = read_force_file(shared_data / "bluepylons-parsed/Cherry-MX-Red.csv").cycles[0]
-    assert (sheet.actuation_mm, sheet.reset_mm) == (table.actuation_mm, table.reset_mm) == (1.805, 1.76)
-    assert sheet.press is not None
-    assert table.press is not None
-    np.testing.assert_allclose(sheet.press.force_cN, table.press.force_cN)
+    names = ("bluepylons/Cherry-MX-Red.ods", "bluepylons-parsed/Cherry-MX-Red.csv")
+    sheet, table = (read_force_file(shared_data / name) for name in names)
+    for file in (sheet, table):
+        assert (file.cycles[0].actuation_mm, file.cycles[0].reset_mm) == (1.805, 1.76)
+    np.testing.assert_allclose(files.press(sheet).force_cN, files.press(table).force_cN)
 
 
 @pytest.mark.parametrize(
@@ -172,8 +171,7 @@ def test_the_published_figure_gives_ten_curves(shared_data: Path) -> None:
     file = read_force_file(shared_data / "paper-figure/fdvv_figure_press.csv")
     assert [c.press and c.press.velocity_mm_s for c in file.cycles] == [0.5, 50.0, 100.0, 150.0, 200.0]
     assert all(c.release is not None and c.release.force_cN.size == 81 for c in file.cycles)
-    assert file.cycles[0].press is not None
-    assert file.cycles[0].press.force_cN[:2].tolist() == [2.952, 9.713]
+    assert files.press(file).force_cN[:2].tolist() == [2.952, 9.713]
     assert len(average_by_velocity(file)) == 5
     assert file.warnings == ()
 

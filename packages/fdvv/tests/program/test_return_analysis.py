@@ -9,7 +9,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from fdvv.protocol.tables import Mode, Settings
 
 from fdvv.firmware.core import Core, RecordArray
 from fdvv.program.check import check_program
@@ -18,6 +17,7 @@ from fdvv.program.condition import Condition, Transition, When
 from fdvv.program.library import make, programs
 from fdvv.program.program import Program, State
 from fdvv.program.surface import Limits, flat, line
+from fdvv.protocol.tables import Mode, Settings
 from tests.support.campaign import campaign
 from tests.support.inputs import inputs_at
 from tests.support.program.random_images import random_program
