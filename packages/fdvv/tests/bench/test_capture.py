@@ -16,7 +16,7 @@ from fdvv.bench.plan import Outcome, Step, capture_duration_s, capture_steps, se
 from fdvv.bench.settings import CaptureSettings
 from fdvv.bench.take_check import TakeCheck, quick_look
 from fdvv.device.bench import BenchInfo, CaptureDevice, Cue, open_bench
-from fdvv.errors import DeviceError, InputError
+from fdvv.errors import DeviceError
 from fdvv.recording.file import load_recording
 from fdvv.recording.types import Bench, Quantity, Recording, Stage, Stream, Take
 from fdvv.twin.capture.bench import CaptureBench
@@ -257,32 +257,12 @@ def test_a_session_that_was_stopped_anywhere_goes_on_to_the_same_recording(
         assert at == 1 or "goes on" in notices[0]
 
 
-def test_a_finished_session_asks_for_nothing_more(tmp_path: Path) -> None:
-    path, notices = tmp_path / "a", list[str]()
-    bench = open_bench("twin", "mx-clear")
-    first = capture_session(bench, path, "mx-clear", SMALL)
-    size = path.stat().st_size
-    never = Fails(bench, len(first.recording.takes) + 1, AssertionError())
-    again = capture_session(never, path, "mx-clear", SMALL, CaptureGuide(notice=notices.append))
-    assert path.stat().st_size == size
-    assert again.velocities == first.velocities
-    assert "is finished" in notices[0]
-
-
 def test_a_larger_plan_goes_on_with_what_is_missing(tmp_path: Path) -> None:
     path = tmp_path / "a"
     capture_session(open_bench("twin", "mx-clear", "steady"), path, "mx-clear", SMALL)
     more = SMALL.replace(paces_mm_s=(50.0, 100.0, 200.0), presses=4)
     found = capture_session(open_bench("twin", "mx-clear", "steady"), path, "mx-clear", more)
     assert [(p.good + p.missed, p.wanted) for p in found.velocities] == [(4, 4)] * 3
-
-
-def test_a_recording_of_something_else_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "a"
-    capture_session(open_bench("twin", "mx-clear"), path, "mx-clear", SMALL)
-    for spec, name in ((("mx-clear", "typical", 1), "mx-clear"), (("mx-brown", "typical", 0), "mx-brown")):
-        with pytest.raises(InputError, match="is another recording"):
-            capture_session(open_bench("twin", *spec), path, name, SMALL)
 
 
 def test_the_cue_tells_contact_and_bottom_in_the_time_of_the_stroke(tmp_path: Path) -> None:

@@ -175,12 +175,6 @@ def test_a_recording_without_presses_is_refused(tmp_path: Path) -> None:
     assert "\n" not in str(caught.value)
 
 
-def test_a_file_gives_the_model_that_the_recording_gives(tmp_path: Path) -> None:
-    path = tmp_path / f"a{RECORDING_SUFFIX}"
-    save_recording(capture(), path)
-    assert process_recording(path).model == recorded().model
-
-
 @pytest.mark.slow
 def test_sixty_presses_of_four_streams_are_a_model_in_five_seconds() -> None:
     recording = capture(((Stage.REST, None, 1), *((Stage.PRESS, v, 15) for v in (50.0, 100.0, 150.0, 200.0))))

@@ -60,13 +60,6 @@ def test_the_order_in_which_curves_are_given_does_not_matter(drawn: FDVVModel) -
     assert list(speeds) == sorted(speeds)
 
 
-def test_models_differ_by_a_single_number_or_by_the_provenance() -> None:
-    assert load_builtin("mx-clear") == CLEAR
-    assert replace(CLEAR, actuation_mm=2.0000001) != CLEAR
-    assert replace(CLEAR, provenance=replace(CLEAR.provenance, source="elsewhere")) != CLEAR
-    assert CLEAR != "mx-clear"  # type: ignore[comparison-overlap]
-
-
 def test_the_vibration_nearest_in_velocity_is_taken() -> None:
     slow, fast = buzz(50.0), buzz(200.0)
     both = model(vibrations=(fast, slow))
