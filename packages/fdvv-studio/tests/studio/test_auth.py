@@ -104,11 +104,6 @@ def test_every_answer_keeps_the_page_to_itself(client: TestClient) -> None:
         assert answer.headers["x-content-type-options"] == "nosniff"
 
 
-def test_the_live_connection_is_there_for_the_page(client: TestClient) -> None:
-    with client.websocket_connect(LIVE):
-        pass
-
-
 @pytest.mark.parametrize("origin", ["http://evil.example", None])
 def test_the_live_connection_is_refused_to_others(client: TestClient, origin: str | None) -> None:
     del client.headers["origin"]

@@ -102,15 +102,12 @@ def of_record(**changed: Any) -> Mutate:
 HOSTILE: list[tuple[Mutate, str]] = [
     (of_order(device="rig:rig.py:X"), "device: there is no 'rig:rig.py:X' in the studio"),
     (of_order(device="replay:/etc/passwd"), "device: there is no"),
-    (of_order(device="emulated:rig.py"), "device: there is no"),
-    (of_order(device="moteus:rig.toml"), "device: there is no"),
     (of_order(device="serial:"), "device: there is no"),
     (of_order(device="twin\n"), "device: there is no"),
     (of_order(device=""), "device: there is no"),
     (of_order(device=["twin"]), "$.order.device"),
     (of_order(name="../../../escaped"), "name: cannot be '../../../escaped'"),
     (of_order(name="/tmp/escaped"), "name: cannot be"),
-    (of_order(name="a\\b"), "name: cannot be"),
     (of_order(name="a\0b"), "name: cannot be"),
     (of_order(name="a" * 100_000), "name: cannot be"),
     (of_order(name=None), "$.order.name"),
@@ -119,10 +116,8 @@ HOSTILE: list[tuple[Mutate, str]] = [
     (of_order(actuation="../measured/x"), "none of this name"),
     (of_order(rig="../../secret"), "there is no '../../secret'"),
     (of_settings(seed=10**40), "$.order.settings"),
-    (of_settings(seed=-1), "$.order.settings.seed"),
     (of_settings(seed=True), "$.order.settings.seed"),
     (of_settings(presses=10**9), "$.order.settings.presses"),
-    (of_settings(presses="1"), "$.order.settings.presses"),
     (of_settings(velocities_mm_s=[100.0] * 50_000), "$.order.settings.velocities_mm_s"),
     (of_settings(velocities_mm_s=[50.0, 50.0]), "velocities_mm_s must differ"),
     (of_settings(velocities_mm_s=[1e300]), "$.order.settings.velocities_mm_s"),
@@ -154,7 +149,7 @@ def test_what_could_not_be_ordered_is_no_more_resumed(
 
 
 @pytest.mark.parametrize("order", [learning(), tuning(), CaptureOrder("x")], ids=lambda o: type(o).__name__)
-@pytest.mark.parametrize(("change", "said"), [HOSTILE[0], HOSTILE[8]], ids=["device", "name"])
+@pytest.mark.parametrize(("change", "said"), [HOSTILE[0], HOSTILE[6]], ids=["device", "name"])
 def test_no_kind_of_work_is_an_exception(
     order: Order, change: Mutate, said: str, tmp_path: Path, started: list[Path]
 ) -> None:

@@ -67,10 +67,3 @@ def test_a_touch_in_the_air_is_reported_and_moves_nothing(tmp_path: Path) -> Non
     assert "press of cycle 1 at -0.300 mm: the force touches 13.0 cN in the air" in file.warnings[0]
     (mean,) = average_by_velocity(file)
     assert len(mean.used) == 3
-
-
-@pytest.mark.shared
-@pytest.mark.parametrize("name", ["Cherry MX Clear", "Cherry MX Black"])
-def test_real_cycles_agree_although_one_has_a_spike_in_the_air(name: str, shared_data: Path) -> None:
-    file = read_force_file(shared_data / f"haata/{name}.csv")
-    assert len(average_by_velocity(file)[0].used) == 4

@@ -65,13 +65,6 @@ def test_the_force_is_continuous_where_one_pair_of_curves_hands_over_to_the_next
     assert np.ptp(around, axis=1).max() < 1e-7
 
 
-@pytest.mark.parametrize("speed", SPEEDS_mm_s[1:-1])
-def test_pchip_damping_has_no_step_at_a_measured_velocity(speed: float) -> None:
-    model = with_method(Interpolation.PCHIP)
-    around = model.damping_cN_s_mm(X_mm[:, np.newaxis], [speed - 1e-7, speed, speed + 1e-7])
-    assert np.ptp(around, axis=1).max() < 1e-6
-
-
 def test_linear_goes_half_way_half_way() -> None:
     model = flat_model({50.0: 40.0, 100.0: 60.0, 200.0: 80.0}, Interpolation.LINEAR)
     np.testing.assert_allclose(model.force_cN(1.0, [75.0, 125.0]), [50.0, 65.0])

@@ -53,11 +53,6 @@ def test_a_rigid_body_and_its_markers_in_metres(shared_data: Path) -> None:
     )
 
 
-def test_an_export_without_a_marker_is_refused_with_the_reason(shared_data: Path) -> None:
-    with pytest.raises(InputError, match="line 7: it holds frames and times but no marker"):
-        read_log(shared_data / MOTIVE / "ha5dzs" / "test_default.csv")
-
-
 def test_piano_logs_are_counts_at_the_rate_of_their_name(shared_data: Path) -> None:
     files = sorted((shared_data / "piano-action-position").rglob("*.txt"))
     assert files
@@ -97,16 +92,6 @@ def test_every_sample_of_every_forcepeaks_log_finds_its_tap(shared_data: Path) -
     # 100 ms of samples 1.024 ms apart are 97.66 on average, so that the board's rate is 976.6 Hz, not 1 kHz
     assert set(whole) == {97, 98}
     assert np.mean(whole) == pytest.approx(100 / 1.024, abs=0.05)
-
-
-def test_logs_without_force_say_so(shared_data: Path) -> None:
-    folder = shared_data / "forcepeaks-tapping"
-    found = read_log(folder / "SS02-2023_10_17-10.35.50-block0-trial1-raw.dat")
-    assert found.takes[0].streams == ()
-    assert "the log holds no force" in found.warnings[0]
-    found = read_log(folder / "SS02-2023_10_17-10.35.50-block0-trial7-raw.dat")
-    assert (found.takes[0].streams, len(found.takes[0].marks)) == ((), 26)
-    assert "no tap came after the sixth beat" in found.warnings[-1]
 
 
 def test_the_experiments_lists_are_refused(shared_data: Path) -> None:
