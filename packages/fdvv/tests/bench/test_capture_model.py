@@ -9,15 +9,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fdvv.bench.model import capture_report, model_of_recording, process_recording
+from fdvv.bench.model import (
+    assumptions_of,
+    capture_report,
+    method_of,
+    model_of_recording,
+    process_recording,
+    source_of,
+    used_and_left_out,
+)
 from fdvv.bench.vibration import RecordedVibrations
 from fdvv.button.fit import FitSettings
 from fdvv.errors import InputError, ModelError
 from fdvv.model.curve import Stroke
 from fdvv.model.vibration import Mode, Vibration
-from fdvv.preprocess.process import Processed
+from fdvv.preprocess.clock import ClockFit
+from fdvv.preprocess.process import Processed, Settings
+from fdvv.preprocess.reject import Reason
 from fdvv.recording.file import RECORDING_SUFFIX, save_recording
-from fdvv.recording.types import Recording, Stage
+from fdvv.recording.types import Bench, Recording, Source, Stage
 from tests.support.captures import SHORT_STROKE, capture, recorded
 
 
@@ -185,3 +195,28 @@ def test_sixty_presses_of_four_streams_are_a_model_in_five_seconds() -> None:
         model_of_recording(recording)
         spent.append(time.process_time() - start_s)
     assert min(spent) < 5.0
+
+
+def test_takes_that_are_left_out_are_grouped_by_reason_and_many_are_counted() -> None:
+    judged = tuple(
+        replace(one, reason=Reason.OFF_PACE if i < 8 else Reason.TWO if i == 8 else None)
+        for i, one in enumerate(recorded().processed.judged)
+    )
+    said = used_and_left_out(replace(recorded().processed, judged=judged))
+    assert said.startswith("3 of 12 presses averaged")
+    assert "far off the pace of the others (takes 4, 5, 6, 7, 8, 9 and 2 more)" in said
+    assert "two presses where one was asked for (take 12)" in said
+
+
+def test_nothing_is_said_of_what_was_not_done() -> None:
+    plain = replace(recorded().processed, clock=ClockFit(0.0), probe=None)
+    said = method_of(replace(capture(), bench=Bench()), plain)
+    assert not any(word in said for word in ("clock", "filter", "play", "probe"))
+    assumptions = assumptions_of(replace(capture(), bench=Bench()), Settings(cap_g=2.5))
+    assert len(assumptions) == 2
+    assert "2.5 g" in assumptions[0]
+
+
+def test_the_source_names_takes_files_and_who_pressed() -> None:
+    recording = replace(capture(), sources=(Source("a.csv", "0" * 64, "motive"),), person="participant B")
+    assert source_of(recording) == "15 takes of mx-clear; participant B; a.csv (motive)"
