@@ -110,7 +110,7 @@ def test_pandas_reads_the_file_and_its_curves(library: Library) -> None:
     assert x[-1] >= buttons.iloc[0].travel_mm - 0.05
 
 
-def test_nothing_is_read_again_that_did_not_change(source: Path, tmp_path: Path) -> None:
+def test_nothing_is_read_again_that_did_not_change(tmp_path: Path) -> None:
     folder = tmp_path / "switches"
     write_folder(folder, NAMES)
     library, log = tmp_path / "library", tmp_path / "log"
@@ -187,7 +187,7 @@ def test_words_and_conditions_are_found_together(library: Library) -> None:
     assert peaks == sorted((p for p in peaks if p), reverse=True)
 
 
-def test_the_nearest_is_the_one_that_differs_least(library: Library, source: Path, tmp_path: Path) -> None:
+def test_the_nearest_is_the_one_that_differs_least(library: Library, tmp_path: Path) -> None:
     near = write_cycle(tmp_path / "asked.csv", added_cN=1.0, seed=5)
     for by in ("all", "curve"):
         assert [h.row.name for h in library.like(str(near), by, 2)] == ["light red", "dark red"]

@@ -11,8 +11,8 @@ from fdvv.errors import ModelError
 from fdvv_studio.live.tick_bins import TickBinner, TickPiece
 
 
-def piece(t_s: np.ndarray, seed: int = 0) -> TickPiece:
-    random = np.random.default_rng(seed)
+def piece(t_s: np.ndarray) -> TickPiece:
+    random = np.random.default_rng(0)
     place_mm, force_cN, commanded_cN = random.normal(size=(3, t_s.size))
     state, cut = random.integers(0, 4, t_s.size), random.random(t_s.size) < 0.1
     return TickPiece(t_s, place_mm, force_cN, commanded_cN, state, cut, ~cut)

@@ -28,11 +28,10 @@ def drafts(tmp_path: Path) -> Iterator[DocumentStore]:
 
 
 def edit(
-    drafts: DocumentStore, name: str, change: dict[str, object], change_id: str = "", joins: bool = False
+    drafts: DocumentStore, name: str, change: dict[str, object], joins: bool = False
 ) -> ChangeSaved | ChangeConflict:
     """Edit the newest revision of a button."""
-    state = drafts.open(name)
-    return drafts.change(name, state.revision, made(drafts, name, change, change_id, joins))
+    return drafts.change(name, drafts.open(name).revision, made(drafts, name, change, joins=joins))
 
 
 def made(

@@ -30,9 +30,9 @@ def long_learning(**changed: Any) -> CompensateOrder:
     return learning({"method": "paper", "rounds": 2, "presses": PRESSES // 2}, **changed)
 
 
-def tuning(settings: dict[str, Any] | None = None, **changed: Any) -> TuneOrder:
+def tuning(**changed: Any) -> TuneOrder:
     """A short tuning."""
-    short = TuneSettings(**{"velocities_mm_s": (100.0,), "comparisons": 2, **(settings or {})})
+    short = TuneSettings(velocities_mm_s=(100.0,), comparisons=2)
     about = {"button": "builtin:mx-clear", "name": "clear tuned", "settings": short}
     return TuneOrder(**{**about, **changed})
 

@@ -36,7 +36,7 @@ def copied(client: TestClient, name: str | None = "mine") -> str:
     return button
 
 
-def travel(client: TestClient, button: str, travel_mm: float, change_id: str) -> dict[str, Any]:
+def travel(button: str, travel_mm: float, change_id: str) -> dict[str, Any]:
     """Make the edit that a page would send for another travel."""
     record = record_of(CLEAR.renamed(button.removeprefix("own:")))
     patch = msgspec.to_builtins(patch_between(record, {**record, "travel_mm": travel_mm}))
@@ -48,7 +48,7 @@ def test_a_built_in_button_opens_to_be_seen_and_is_copied_to_be_edited(client: T
     found = ask(client, "open", button="builtin:mx-clear")
     assert (found["editable"], found["revision"], found["steps"]) == (False, 0, [])
     assert found["opening"] == record_of(CLEAR)
-    change = travel(client, "mx-clear", 3.5, "a")
+    change = travel("mx-clear", 3.5, "a")
     line = refused(client, "change", button="builtin:mx-clear", revision=0, change=change)
     assert line == "builtin:mx-clear: only your own buttons can be edited; copy it first"
     assert copied(client, None) == "own:mx-clear 2"
@@ -58,7 +58,7 @@ def test_a_built_in_button_opens_to_be_seen_and_is_copied_to_be_edited(client: T
 
 def test_an_edit_is_kept_undone_and_done_again(client: TestClient, own_studio: Studio) -> None:
     button = copied(client)
-    change = travel(client, button, 3.5, "a")
+    change = travel(button, 3.5, "a")
     answer = ask(client, "change", button=button, revision=0, change=change)
     assert answer == {"revision": 1, "conflict": None}
     path = own_studio.project / "buttons" / "mine.fdvv.json"
@@ -76,7 +76,7 @@ def test_an_edit_is_kept_undone_and_done_again(client: TestClient, own_studio: S
 
 def test_a_change_on_an_old_revision_is_answered_with_the_newest_state(client: TestClient) -> None:
     button = copied(client)
-    one, two = travel(client, button, 3.5, "one"), travel(client, button, 3.6, "two")
+    one, two = travel(button, 3.5, "one"), travel(button, 3.6, "two")
     ask(client, "change", button=button, revision=0, change=one)
     answer = ask(client, "change", button=button, revision=0, change=two)
     assert answer["conflict"] == ask(client, "open", button=button)
@@ -118,7 +118,7 @@ def test_buttons_are_listed_renamed_and_deleted(client: TestClient, own_studio: 
 
 def test_a_copy_of_an_own_button_is_its_newest_state(client: TestClient) -> None:
     button = copied(client)
-    ask(client, "change", button=button, revision=0, change=travel(client, button, 3.5, "a"))
+    ask(client, "change", button=button, revision=0, change=travel(button, 3.5, "a"))
     other = ask(client, "copy", button=button, name="other")["button"]
     found = ask(client, "open", button=other)
     assert (found["opening"]["travel_mm"], found["steps"]) == (3.5, [])
@@ -129,7 +129,7 @@ def test_other_pages_hear_of_every_change(client: TestClient) -> None:
     with client.websocket_connect(LIVE) as live:
         live.send_json({"channel": "documents", "body": {"type": "watch"}})
         assert live.receive_json()["body"] == {"type": "watching"}
-        change = travel(client, button, 3.5, "a")
+        change = travel(button, 3.5, "a")
         ask(client, "change", button=button, revision=0, change=change)
         ask(client, "change", button=button, revision=0, change={**change, "change_id": "stale"})
         ask(client, "rename", button=button, name="other")

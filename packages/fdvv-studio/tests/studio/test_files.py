@@ -53,7 +53,7 @@ def test_what_was_read_can_be_kept_under_a_name(client: TestClient, tmp_path: Pa
     assert again["name"] == "My Switch 2"
 
 
-def strokes_of(folder: Path) -> list[tuple[str, bytes]]:
+def strokes() -> list[tuple[str, bytes]]:
     x = np.round(np.arange(0.0, 4.38, 0.005), 3)
     files = []
     for name, stroke, places in (("downstroke", "press", x), ("upstroke", "release", x[::-1])):
@@ -62,8 +62,8 @@ def strokes_of(folder: Path) -> list[tuple[str, bytes]]:
     return files
 
 
-def test_the_two_files_of_a_pair_are_one_button(client: TestClient, tmp_path: Path) -> None:
-    pair = strokes_of(tmp_path)
+def test_the_two_files_of_a_pair_are_one_button(client: TestClient) -> None:
+    pair = strokes()
     for files in (pair, pair[::-1]):
         (found,) = dropped(client, *files)
         assert [fit["stroke"] for fit in found["fits"]] == ["press", "release"]

@@ -12,7 +12,6 @@ from starlette.websockets import WebSocketDisconnect
 
 from fdvv.errors import ModelError
 from fdvv_studio.studio.contract import ChannelKind, Tell
-from fdvv_studio.studio.studio import Studio
 from tests.studio.conftest import LIVE, GivenParts
 
 
@@ -68,7 +67,7 @@ def add(number: int) -> dict[str, Any]:
     return {"channel": "adder", "body": {"type": "add", "number": number}}
 
 
-def test_messages_are_taken_in_order(client: TestClient, own_studio: Studio) -> None:
+def test_messages_are_taken_in_order(client: TestClient) -> None:
     with client.websocket_connect(LIVE) as live:
         for number in range(50):
             live.send_json(add(number))

@@ -46,9 +46,7 @@ def pressed(recorded: RecordedVibrations) -> list[Vibration]:
     return [v for v in recorded.vibrations if v.stroke is Stroke.PRESS]
 
 
-def check_truth(
-    made: CapturedSession, recorded: RecordedVibrations, vibration: Vibration, lasts_rel: float = 0.10
-) -> None:
+def check_truth(made: CapturedSession, recorded: RecordedVibrations, vibration: Vibration) -> None:
     strokes = next(
         h
         for h in recorded.strokes
@@ -61,7 +59,7 @@ def check_truth(
     late_s = (vibration.onset_mm - true_mm) / strokes.report()["snap_velocity_mm_s"]
     assert late_s == pytest.approx(0.0, abs=1e-3)
     assert vibration.modes[0].frequency_Hz == pytest.approx(FREQUENCY_Hz, rel=0.05)
-    assert vibration.duration_s == pytest.approx(LASTS_s, rel=lasts_rel)
+    assert vibration.duration_s == pytest.approx(LASTS_s, rel=0.10)
 
 
 def test_onset_frequency_and_duration_are_true_at_every_speed_where_they_are_reported() -> None:

@@ -86,13 +86,13 @@ def upstroke() -> str:
     return _lines("", [(f"{d:.4f}", f"{max(f - 3, 0):.4f}") for d, f in zip(x, force, strict=True)], "\r\n")
 
 
-def haata(shifts: Sequence[float] = (0.0, 0.01, 0.0, 0.01), extra_gf: Sequence[float] = (0, 0, 0, 0)) -> str:
+def haata(shifts: Sequence[float] = (0.0, 0.01, 0.0, 0.01)) -> str:
     x, force = stroke()
     columns: list[tuple[str, list[float]]] = []
-    for i, (shift, extra) in enumerate(zip(shifts, extra_gf, strict=True)):
+    for i, shift in enumerate(shifts):
         keep = x.size - i  # later columns are shorter, so all but one are padded
         down = np.round(x + shift, 6)[-keep:]
-        felt = (force + extra * (force > 0))[-keep:]
+        felt = force[-keep:]
         columns += [(f"Press {i + 1}, x", list(down)), (f"Press {i + 1}, y", list(felt))]
         back = np.maximum(felt[::-1] - 3.0, 0.0)
         columns += [(f"Release {i + 1}, x", list(down[::-1])), (f"Release {i + 1}, y", list(back))]

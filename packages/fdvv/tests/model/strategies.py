@@ -19,13 +19,12 @@ sentences = st.text(st.characters(codec="utf-8"), max_size=30)
 
 
 @st.composite
-def knots(draw: st.DrawFn, degree: int, start_mm: float = 0.0, end_mm: float = 4.0) -> FloatArray:
-    """Draw clamped knots; an inner one repeats up to degree times, so that the curve is continuous."""
+def knots(draw: st.DrawFn, degree: int) -> FloatArray:
+    """Draw clamped knots of 4 mm; an inner one repeats up to degree times, so that curves are continuous."""
     spans = draw(st.lists(st.floats(0.05, 1.0), min_size=1, max_size=8))
-    places = start_mm + (end_mm - start_mm) * np.cumsum(spans) / np.sum(spans)
+    places = 4.0 * np.cumsum(spans) / np.sum(spans)
     repeats = [draw(st.integers(1, degree)) for _ in places[:-1]]
-    ends = [np.full(degree + 1, start_mm), np.repeat(places[:-1], repeats), np.full(degree + 1, end_mm)]
-    return np.concatenate(ends)
+    return np.concatenate([np.zeros(degree + 1), np.repeat(places[:-1], repeats), np.full(degree + 1, 4.0)])
 
 
 deviations = st.floats(0, 100, allow_subnormal=False)

@@ -20,11 +20,11 @@ def measured(x: FloatArray, force: FloatArray) -> MeasuredCurve:
     return MeasuredCurve(x, force, Stroke.PRESS)
 
 
-def switch(seed: int = 1, noise_cN: float = 0.1) -> MeasuredCurve:
+def switch(noise_cN: float = 0.1) -> MeasuredCurve:
     """Make a tactile stroke with a contact step, as benches see it."""
     x = np.arange(0, 4.0, 0.005)
     force = np.minimum(500 * x, 35 + 10 * x) + 20 * np.exp(-(((x - 1.4) / 0.35) ** 2))
-    return measured(x, force + np.random.default_rng(seed).normal(0, noise_cN, x.size))
+    return measured(x, force + np.random.default_rng(1).normal(0, noise_cN, x.size))
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3])

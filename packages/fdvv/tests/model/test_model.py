@@ -15,12 +15,12 @@ from tests.model.strategies import models
 CLEAR = load_builtin("mx-clear")
 
 
-def flat(force_cN: float, stroke: str = "press", velocity_mm_s: float | None = 50.0) -> ForceCurve:
-    return ForceCurve(Stroke(stroke), velocity_mm_s, 1, [0, 0, 4, 4], [force_cN] * 2)  # type: ignore[arg-type]
+def flat(force_cN: float, velocity_mm_s: float | None = 50.0) -> ForceCurve:
+    return ForceCurve(Stroke.PRESS, velocity_mm_s, 1, [0, 0, 4, 4], [force_cN] * 2)  # type: ignore[arg-type]
 
 
-def buzz(velocity_mm_s: float | None, stroke: str = "press") -> Vibration:
-    return Vibration(Stroke(stroke), velocity_mm_s, 2.0, 0.01, (Mode(239.0, 1.0, 10.0),))
+def buzz(velocity_mm_s: float | None) -> Vibration:
+    return Vibration(Stroke.PRESS, velocity_mm_s, 2.0, 0.01, (Mode(239.0, 1.0, 10.0),))
 
 
 def model(**fields: Any) -> FDVVModel:

@@ -27,9 +27,9 @@ def with_method(method: Interpolation) -> FDVVModel:
     return FDVVModel("clear", 4.0, CLEAR.curves, interpolation=method)
 
 
-def flat(velocity_mm_s: float | None, force_cN: float, stroke: Stroke = Stroke.PRESS) -> ForceCurve:
+def flat(velocity_mm_s: float | None, force_cN: float) -> ForceCurve:
     """A curve of constant force."""
-    return ForceCurve(stroke, velocity_mm_s, 1, uniform_knots(0, 4, 2, 1), np.full(2, force_cN))
+    return ForceCurve(Stroke.PRESS, velocity_mm_s, 1, uniform_knots(0, 4, 2, 1), np.full(2, force_cN))
 
 
 def flat_model(forces_cN: dict[float, float], method: Interpolation) -> FDVVModel:

@@ -95,7 +95,7 @@ def test_good_presses_are_used(session: CapturedSession, processed: Processed) -
     assert len(good & used) >= 0.97 * len(good)
 
 
-def test_the_spread_covers_how_presses_differ(session: CapturedSession, processed: Processed) -> None:
+def test_the_spread_covers_how_presses_differ(processed: Processed) -> None:
     curve = next(c for c in processed.curves if c.stroke is Stroke.PRESS and c.velocity_mm_s == 100.0)
 
     assert curve.spread_cN.shape == curve.force_cN.shape

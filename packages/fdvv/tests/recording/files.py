@@ -124,12 +124,12 @@ def table(separator: str = ",") -> str:
     return text.replace(".", ",") if separator == ";" else text
 
 
-def wav(samples: npt.NDArray[np.int64], width: int = 2, channels: int = 1, rate_Hz: int = 44100) -> bytes:
+def wav(samples: npt.NDArray[np.int64], width: int = 2, channels: int = 1) -> bytes:
     """Write whole numbers as a WAV; eight bits count from 128."""
     wide = (samples + (128 if width == 1 else 0)).astype("<i8").view(np.uint8).reshape(-1, 8)
     stream = io.BytesIO()
     with wave.open(stream, "wb") as file:
-        file.setparams((channels, width, rate_Hz, 0, "NONE", ""))
+        file.setparams((channels, width, 44100, 0, "NONE", ""))
         file.writeframes(wide[:, :width].tobytes())
     return stream.getvalue()
 

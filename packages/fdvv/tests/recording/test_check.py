@@ -22,8 +22,8 @@ def saved(path: Path, *takes: Take, about: Recording = ABOUT) -> Path:
     return path
 
 
-def whole(path: Path, takes: int = 3) -> Path:
-    return saved(path, *(take(number) for number in range(1, takes + 1)))
+def whole(path: Path) -> Path:
+    return saved(path, take(1), take(2), take(3))
 
 
 def test_a_whole_recording_tells_its_facts(tmp_path: Path) -> None:

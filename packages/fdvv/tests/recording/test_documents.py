@@ -19,11 +19,11 @@ from fdvv.recording.read import read_log
 REFERENCE = Path(__file__).resolve().parents[4] / "docs" / "reference"
 
 
-def block(page: str, language: str, number: int = 0) -> str:
-    """Return a block of code of a page."""
+def block(page: str, language: str) -> str:
+    """Return the first block of code in a language of a page."""
     text = (REFERENCE / page).read_text()
     blocks: list[tuple[str, str]] = re.findall(r"^```(\w*)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
-    return [code for tag, code in blocks if tag == language][number]
+    return next(code for tag, code in blocks if tag == language)
 
 
 @pytest.fixture

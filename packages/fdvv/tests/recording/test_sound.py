@@ -18,9 +18,10 @@ from tests.recording.files import wav
 RNG = np.random.default_rng(1)
 
 
-def noise(width: int, count: int = 400) -> npt.NDArray[np.int64]:
+def noise(width: int) -> npt.NDArray[np.int64]:
+    """Return 400 samples from end to end."""
     top = 2 ** (8 * width - 1)
-    return np.concatenate([[-top, top - 1, 0], RNG.integers(-top, top, count - 3)])
+    return np.concatenate([[-top, top - 1, 0], RNG.integers(-top, top, 397)])
 
 
 def read(folder: Path, content: bytes, full_scale_V: float | None = None) -> Recording:

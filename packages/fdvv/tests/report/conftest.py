@@ -20,7 +20,7 @@ Draw = Callable[[FDVVModel, MeasuredCurve, list[CurveFit], bool], Any]
 _SCORES = {"uniform": {5: 40.0, 6: 20.0, 7: 30.0}, "adaptive": {5: 30.0, 6: 12.0, 7: 11.0}}
 
 
-def _rendered(model: FDVVModel, simulated: bool = False) -> list[RenderedCurve]:
+def _rendered(model: FDVVModel) -> list[RenderedCurve]:
     x = np.linspace(0.0, model.travel_mm, 41)
     curves = []
     for stroke in Stroke:
@@ -30,13 +30,13 @@ def _rendered(model: FDVVModel, simulated: bool = False) -> list[RenderedCurve]:
                 RenderedBand(method, target + bias, target + bias - 1.0, target + bias + 2.0)
                 for method, bias in (("FD only", 6.0), ("FDVV", 0.5))
             )
-            curves.append(RenderedCurve(stroke, velocity, x, target, bands, simulated))
+            curves.append(RenderedCurve(stroke, velocity, x, target, bands))
     return curves
 
 
-def _histories(simulated: bool = False) -> list[ErrorHistory]:
+def _histories() -> list[ErrorHistory]:
     return [
-        ErrorHistory(stroke, velocity, np.array([velocity, 12.0, 5.0, 3.0]), simulated)
+        ErrorHistory(stroke, velocity, np.array([velocity, 12.0, 5.0, 3.0]))
         for stroke in Stroke
         for velocity in (100.0, 50.0)
     ]

@@ -31,9 +31,7 @@ def test_a_cell_draws_the_means_the_target_and_the_spread(rendered: list[Rendere
         assert force.max() == pytest.approx(record.high_cN.max())
 
 
-def test_the_legend_of_the_grid_names_target_and_methods_once(
-    gallery: Any, rendered: list[RenderedCurve]
-) -> None:
+def test_the_legend_of_the_grid_names_target_and_methods_once(rendered: list[RenderedCurve]) -> None:
     (legend,) = figure_of(plot_rendering(rendered)).legends
     assert [text.get_text() for text in legend.get_texts()] == ["target", "FD only", "FDVV"]
 

@@ -30,16 +30,14 @@ BENCH = ToneBench(2.4, lag_s=5e-4, lag_ratio=0.05)
 FREQUENCIES_Hz = np.array([260.0, 300, 340, 380, 420, 460, 540, 580, 620, 660, 700, 740, 780, 820])
 
 
-def tones(
-    exciter: KnownExciter = TRUE, grip_Hz: float = 80.0, noise_m: float = 0.0, seed: int = 0
-) -> list[Tone]:
-    """What the position sensor would show: written apart from the fit."""
+def tones(noise_m: float = 0.0, seed: int = 0) -> list[Tone]:
+    """What the position sensor would show of a cap held at 80 Hz: written apart from the fit."""
     random = np.random.default_rng(seed)
     found = []
     for f in FREQUENCIES_Hz:
-        w, w0 = 2 * np.pi * f, 2 * np.pi * exciter.resonance_Hz
-        gain = exciter.gain_m_s2_V * w**2 / np.hypot(w0**2 - w**2, w * w0 / exciter.quality)
-        moved = BENCH.drive_V * gain / w**2 / (1 - (grip_Hz / f) ** 2) / np.sqrt(1 + (w * BENCH.lag_s) ** 2)
+        w, w0 = 2 * np.pi * f, 2 * np.pi * TRUE.resonance_Hz
+        gain = TRUE.gain_m_s2_V * w**2 / np.hypot(w0**2 - w**2, w * w0 / TRUE.quality)
+        moved = BENCH.drive_V * gain / w**2 / (1 - (80.0 / f) ** 2) / np.sqrt(1 + (w * BENCH.lag_s) ** 2)
         seen = moved + complex(*random.normal(0, noise_m, 2))
         found.append(Tone(float(f), abs(seen), noise_m))
     return found

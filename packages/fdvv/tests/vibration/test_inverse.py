@@ -18,9 +18,9 @@ EXCITER = KnownExciter(24.0, 670.0, 2.0)
 SNAP = Vibration(Stroke.PRESS, None, 2.0, 0.016, (Mode(239.0, 3.0, 100.0),))
 
 
-def played(exciter: KnownExciter, drive_V: FloatArray, rate_Hz: float, count: int = 1200) -> FloatArray:
+def played(exciter: KnownExciter, drive_V: FloatArray, rate_Hz: float) -> FloatArray:
     """What a stepwise solution of the equation of motion gives for a wave as the board interpolates it."""
-    times = (np.arange(count) + 0.5) / 16_000
+    times = (np.arange(1200) + 0.5) / 16_000
     volts = np.interp(times * rate_Hz, np.arange(drive_V.size + 1), [*drive_V, 0.0], right=0.0)
     omega, fine_s = 2 * np.pi * exciter.resonance_Hz, 1 / 16_000 / 20
     x, v, rendered = 0.0, 0.0, []

@@ -13,13 +13,13 @@ PERIOD_s, NOISE = 1e-4, 0.03
 
 
 def records(
-    terms: list[tuple[float, float, float]], seed: int = 0, count: int = 12, samples: int = 150
+    terms: list[tuple[float, float, float]], seed: int = 0
 ) -> tuple[list[FloatArray], list[FloatArray]]:
-    """Draw records of (frequency, decay, amplitude) with phases of their own, over a slope and noise."""
+    """Draw 12 records of (frequency, decay, amplitude) with phases of their own, over a slope and noise."""
     random, times, signals = np.random.default_rng(seed), [], []
-    for _ in range(count):
-        t = np.asarray((np.arange(samples) + random.uniform()) * PERIOD_s, dtype=np.float64)
-        y = 0.3 - 20 * t + NOISE * random.standard_normal(samples)
+    for _ in range(12):
+        t = np.asarray((np.arange(150) + random.uniform()) * PERIOD_s, dtype=np.float64)
+        y = 0.3 - 20 * t + NOISE * random.standard_normal(t.size)
         for f, d, a in terms:
             y += a * np.exp(-d * t) * np.sin(2 * np.pi * f * t + random.uniform(0, 6.28))
         times.append(t)

@@ -15,10 +15,10 @@ from fdvv.vibration.sound import LEAST_CARRIED, sound_ring
 RATE_Hz = 44_100.0
 
 
-def ring(noise: float, onset_s: float = 0.03, seed: int = 0) -> FloatArray:
-    """Make two damped modes from the onset on, over white noise of so many parts of their rms."""
+def ring(noise: float, seed: int = 0) -> FloatArray:
+    """Make two damped modes from 30 ms on, over white noise of so many parts of their rms."""
     t = np.arange(round(0.2 * RATE_Hz)) / RATE_Hz
-    after = t - onset_s
+    after = t - 0.03
     modes = [(1900.0, 250.0, 1.0), (700.0, 150.0, 0.6)]
     sound = sum(a * np.exp(-d * after) * np.sin(2 * np.pi * f * after + 1.2) for f, d, a in modes)
     sound = np.where(after >= 0, sound, 0.0)

@@ -49,15 +49,10 @@ def test_two_different_templates_are_asked_about_and_each_as_often_first_as_seco
     assert all(abs(count) <= 2 for count in lead.values())
 
 
-def count_wins(seed: int, size: int = 4) -> FloatArray:
-    won = np.random.default_rng(seed).integers(0, 4, (size, size)).astype(float)
-    np.fill_diagonal(won, 0.0)
-    return won
-
-
 @pytest.mark.parametrize("seed", range(5))
 def test_the_posterior_is_where_a_plain_search_finds_its_peak(seed: int) -> None:
-    won = count_wins(seed)
+    won = np.random.default_rng(seed).integers(0, 4, (4, 4)).astype(float)
+    np.fill_diagonal(won, 0.0)
 
     def cost(logs: FloatArray) -> float:
         chance = 1 / (1 + np.exp(logs[None, :] - logs[:, None]))
