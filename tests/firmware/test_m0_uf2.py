@@ -2,31 +2,16 @@
 
 from __future__ import annotations
 
-import importlib.util
 import struct
-from pathlib import Path
-from types import ModuleType
 
 from hypothesis import given
 from hypothesis import strategies as st
-
-
-def tool() -> ModuleType:
-    path = Path(__file__).resolve().parents[2] / "tools" / "uf2.py"
-    spec = importlib.util.spec_from_file_location("uf2", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-UF2 = tool()
+from tools.uf2 import uf2_blocks
 
 
 @given(st.binary(min_size=1, max_size=2000), st.integers(0, 255).map(lambda page: 256 * page))
 def test_the_blocks_put_together_are_the_program(program: bytes, start: int) -> None:
-    file = UF2.uf2_blocks(program, 0x68ED2B88, start)
+    file = uf2_blocks(program, 0x68ED2B88, start)
     flash = bytearray()
     for at in range(0, len(file), 512):
         first, second, flags, address, size, number, count, family = struct.unpack_from("<8I", file, at)

@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from benchmarks.core_cost import full_image
+from benchmarks.force_loop_cost import dearest_settings
 
 from fdvv.compensation.force_loop.gains import force_loop_gains
 from fdvv.device.linked import LinkedDevice
@@ -27,7 +29,6 @@ from fdvv_m0.m4 import PIN_ENABLE, M4Emulator
 from fdvv_m0.records import TickInputs
 from tests.firmware._m0 import M4_CHECK, M4_CONTROLLER, build, build_with, frames, sizes_bytes
 from tests.firmware._simavr import say
-from tests.firmware.test_m0_cost import benchmark
 from tests.support.force_loop_press import CONTROLLER, KNOWN, RIG
 
 pytestmark = pytest.mark.firmware
@@ -35,7 +36,6 @@ FLASH_BYTES, RAM_BYTES, STACK_BYTES = 512 * 1024 - 16 * 1024, 192 * 1024, 8 * 10
 FAMILY, START = 0x55114460, 0x4000
 SUPPLY_GAIN_Q11 = 18150
 BEFORE = 200
-COST = benchmark("force_loop_cost")
 
 
 @pytest.fixture(scope="module")
@@ -204,14 +204,14 @@ def test_the_loop_holds_the_force_and_no_tick_is_late(pressed: Pressed) -> None:
 
 
 def test_the_largest_program_on_the_dearest_settings_misses_no_tick(elf: Path) -> None:
-    settings = COST.dearest_settings()
+    settings = dearest_settings()
     person = SimulatedPerson(RIG, seed=2)
     person.settings = settings
     board = EmulatedBoard(elf)
     device = LinkedDevice(board, person)
     assert device.load_cell is not None
     device.close_loop(force_loop_gains(KNOWN, device.load_cell, 1e-4, CONTROLLER))
-    device.upload_program(COST.full_image(48, 32, settings))
+    device.upload_program(full_image(48, 32, settings))
     device.client.stream(1)
     device.client.arm()
     device.client.listen(device.port.now_s() + 0.1)

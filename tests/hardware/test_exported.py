@@ -1,6 +1,5 @@
 """The exported parts: closed, as large as their solids, of today's dimensions, and they go together."""
 
-import importlib.util
 import json
 import math
 import shutil
@@ -8,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tools import make_hardware
 
 from fdvv.errors import InputError
 from fdvv.twin.files import load_rig
@@ -77,13 +77,8 @@ def test_every_file_is_the_one_that_was_exported_and_no_other_lies_there() -> No
 
 
 def test_the_package_tells_of_the_parts_what_the_manifest_tells() -> None:
-    spec = importlib.util.spec_from_file_location("make_hardware", REPOSITORY / "tools" / "make_hardware.py")
-    assert spec is not None
-    assert spec.loader is not None
-    tool = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(tool)
     kept = (REPOSITORY / "extras/fdvv-rig/src/fdvv_rig/printed.json").read_text()
-    assert kept == tool.printed(read_manifest(HARDWARE)), "run python tools/make_hardware.py"
+    assert kept == make_hardware.printed(read_manifest(HARDWARE)), "run python tools/make_hardware.py"
     assert part_named("base").made.volume_cm3 == read_manifest(HARDWARE).parts["base"].volume_cm3
 
 

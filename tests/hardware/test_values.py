@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import math
 import re
@@ -11,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from tools import make_circuit
 
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
 from fdvv.protocol.tables import Settings
@@ -86,15 +86,11 @@ def test_the_ripple_is_that_of_a_simulated_coil() -> None:
 
 def test_the_committed_drawings_netlists_and_pages_are_those_of_the_circuit() -> None:
     pytest.importorskip("schemdraw")
-    spec = importlib.util.spec_from_file_location("make_circuit", ROOT / "tools" / "make_circuit.py")
-    assert spec is not None
-    assert spec.loader is not None
-    tool = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(tool)
-    for path, text in tool.files().items():
+    for path, text in make_circuit.files().items():
         assert path.read_text() == text, f"run python tools/make_circuit.py: {path.name}"
-    for folder in tool.FOLDERS.values():
-        assert {p.name for p in folder.iterdir()} == {p.name for p in tool.files() if p.parent == folder}
+    for folder in make_circuit.FOLDERS.values():
+        made = {path.name for path in make_circuit.files() if path.parent == folder}
+        assert {path.name for path in folder.iterdir()} == made
 
 
 @pytest.mark.parametrize(
