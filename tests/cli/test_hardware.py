@@ -13,13 +13,10 @@ HARDWARE = Path(__file__).resolve().parents[2] / "hardware"
 WITHOUT_KERNEL = importlib.util.find_spec("build123d") is None
 
 
-def test_the_parts_are_listed_with_what_they_weigh(fdvv: Run) -> None:
+def test_the_parts_are_listed(fdvv: Run) -> None:
     ran = fdvv("hardware", "parts")
     assert ran.status == 0
     assert "coil-mount" in ran.out
-    parts = {part["name"]: part for part in fdvv("hardware", "parts", "--json").json["parts"]}
-    assert parts["marker-post"]["count"] == 3
-    assert 20 < parts["coil-mount"]["mass_g"] < 60
 
 
 def test_dimensions_are_printed_as_toml_that_reads_back(fdvv: Run, tmp_path: Path) -> None:
@@ -53,22 +50,6 @@ def test_a_folder_without_parts_is_refused(fdvv: Run, tmp_path: Path) -> None:
     ran = fdvv("hardware", "check", str(tmp_path))
     assert ran.status == 2
     assert "holds no manifest.json" in ran.err
-
-
-@pytest.mark.slow
-def test_the_exported_parts_are_good_and_their_figures_printed(fdvv: Run) -> None:
-    pytest.importorskip("manifold3d", reason="manifold3d is not installed")
-    ran = fdvv("hardware", "check", str(HARDWARE), "--json")
-    assert ran.status == 0
-    report = ran.json
-    assert report["good"]
-    assert report["limiter"]["from_mm"] <= 0
-    assert report["limiter"]["to_mm"] >= 6.2
-    assert (
-        report["sensor_mount"]["float_mm"] + report["sensor_mount"]["room_mm"]
-        >= report["sensor_mount"]["worst_mm"]
-    )
-    assert min(gap["gap_mm"] for gap in report["clearances"]) > 0.15
 
 
 @pytest.mark.slow

@@ -14,12 +14,8 @@ from tests.support.command_line import Ran
 Run = Callable[..., Ran]
 
 
-def test_the_bill_has_a_total_beside_the_papers(fdvv: Run) -> None:
+def test_the_bill_is_printed_and_written_as_a_table(fdvv: Run) -> None:
     bill = fdvv("hardware", "bill", "--json").json
-    assert bill["total_USD"] == pytest.approx(
-        sum(line["packs"] * line["price_USD"] for line in bill["lines"])
-    )
-    assert bill["paper_USD"] == 550
     shown = fdvv("hardware", "bill").out
     assert "HVCM-025-022-003-01" in shown
     assert "estimates" in shown
@@ -27,16 +23,6 @@ def test_the_bill_has_a_total_beside_the_papers(fdvv: Run) -> None:
     assert len(rows) == len(bill["lines"])
     ran = fdvv("hardware", "bill", "--csv", "--json")
     assert (ran.status, ran.json["error"]["source"]) == (2, "--csv")
-
-
-def test_the_circuit_is_checked_and_printed_with_units(fdvv: Run) -> None:
-    circuit = fdvv("hardware", "circuit", "--json").json
-    assert circuit["violations"] == []
-    assert circuit["paper_parts_cutoff_Hz"] == pytest.approx(477.94, abs=0.01)
-    assert len(circuit["netlist"]["parts"]) == circuit["parts"]
-    shown = fdvv("hardware", "circuit").out
-    assert "every rule holds" in shown
-    assert "479.5" in shown
 
 
 def test_the_recommended_rig_has_a_bill_and_a_circuit_of_its_own(fdvv: Run, tmp_path: Path) -> None:
@@ -79,8 +65,7 @@ def test_a_failed_selftest_names_the_part_and_leaves_no_receipt(fdvv: Run, tmp_p
     assert list(tmp_path.iterdir()) == []
 
 
-def test_faults_can_be_listed_and_a_wrong_one_is_refused(fdvv: Run) -> None:
-    assert "coil-reversed" in fdvv("hardware", "selftest", "--fault", "list").out
+def test_a_fault_a_device_and_a_receipt_that_are_none_are_refused(fdvv: Run) -> None:
     assert fdvv("hardware", "selftest", "--fault", "x").status == 2
     assert fdvv("hardware", "selftest", "--device", "x").status == 2
     assert fdvv("hardware", "selftest", "-o", "receipt.txt").status == 2

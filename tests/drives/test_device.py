@@ -48,12 +48,8 @@ class Pressing:
         self.drive.exchange = watched  # type: ignore[method-assign, assignment]
 
 
-def made() -> tuple[DriveDevice, DirectDrive, VirtualClock]:
-    return direct_device()
-
-
 def test_the_torque_is_that_of_the_table_at_the_displacement_one_cycle_before() -> None:
-    device, drive, _clock = made()
+    device, drive, _clock = direct_device()
     device.upload(plain_surface(40.0, 4.0), 4.0)
     press = device.press(100.0)
     log = device.log
@@ -183,7 +179,7 @@ def test_a_watchdog_that_is_not_on_is_found_when_the_device_is_opened() -> None:
 
 
 def test_a_press_without_a_sensor_says_so_and_nothing_is_learned_from_it() -> None:
-    device, _drive, _clock = made()
+    device, _drive, _clock = direct_device()
     assert device.force_is_estimated
     assert device.settings().force_gain_q14 == 0
     for truth_counts in (False, True):
@@ -211,7 +207,7 @@ def test_a_force_sensor_beyond_its_bound_falls_to_zero() -> None:
 
 
 def test_settings_that_would_loosen_the_stage_are_refused() -> None:
-    device, _drive, _clock = made()
+    device, _drive, _clock = direct_device()
     limit = device.settings().force_limit_cN64
     own = device.settings()
     looser = {
@@ -230,7 +226,7 @@ def test_settings_that_would_loosen_the_stage_are_refused() -> None:
 
 
 def test_a_closed_device_has_stopped_its_drive_and_presses_no_more() -> None:
-    device, drive, _clock = made()
+    device, drive, _clock = direct_device()
     device.upload(plain_surface(), 4.0)
     with device:
         pass

@@ -110,11 +110,6 @@ def test_the_core_reads_displacements_to_a_sixteenth_of_a_micrometre() -> None:
         ("port = ", "id = 0\nport = ", "moteus: id is 0, write 1 to 126"),
         ("port = ", "watchdog_ms = 0\nport = ", "moteus: watchdog_ms is 0, write 10 to 1000"),
         ("port = ", "watchdog_ms = nan\nport = ", "moteus: watchdog_ms is nan, write 10 to 1000"),
-        (
-            "port = ",
-            'force_input = "aux3.1"\nport = ',
-            "moteus: a load cell needs force_input aux1.1 to aux2.5",
-        ),
     ],
 )
 def test_a_mistake_is_named_with_its_place(before: str, after: str, text: str, tmp_path: Path) -> None:

@@ -55,27 +55,14 @@ def test_the_converters_of_the_m4_are_on_pins_that_have_one_and_the_command_on_i
     assert set(chips.values()) <= {f"PA{n:02d}" for n in range(2, 12)} | {"PB08", "PB09"}
 
 
-@pytest.mark.skipif(not (BOARDS / "itsybitsy_m4").exists(), reason="there is no firmware for the M4")
-def test_the_m4s_pins_are_those_of_its_firmware() -> None:
-    text = (BOARDS / "itsybitsy_m4" / "pins.h").read_text()
-    declared = re.findall(r"(PIN_\w+) = (\d+),?\s*/\* \((\w+)\)", text)
+@pytest.mark.parametrize(("circuit", "board"), [(CIRCUIT, "itsybitsy_m0"), (RECOMMENDED, "itsybitsy_m4")])
+def test_a_controllers_pins_are_those_of_its_firmware(circuit: Circuit, board: str) -> None:
+    declared = re.findall(r"(PIN_\w+) = (\d+),?\s*/\* \((\w+)\)", (BOARDS / board / "pins.h").read_text())
     firmware = {
-        (name, f"P{'B' if name.startswith('PIN_B_') else 'A'}{int(number):02d}", board)
-        for name, number, board in declared
+        (name, f"P{'B' if name.startswith('PIN_B_') else 'A'}{int(number):02d}", pin)
+        for name, number, pin in declared
     }
-    pins = RECOMMENDED.parts["U1"].kind.pins.values()
-    assert {(pin.signal, pin.chip, pin.name) for pin in pins if pin.signal} == firmware
-
-
-def port_of(signal: str) -> str:
-    return "B" if signal.startswith("PIN_B_") else "A"
-
-
-def test_the_controllers_pins_are_those_of_the_firmware() -> None:
-    text = (BOARDS / "itsybitsy_m0" / "pins.h").read_text()
-    declared = re.findall(r"(PIN_\w+) = (\d+),?\s*/\* \((\w+)\)", text)
-    firmware = {(name, f"P{port_of(name)}{int(number):02d}", board) for name, number, board in declared}
-    pins = CIRCUIT.parts["U1"].kind.pins.values()
+    pins = circuit.parts["U1"].kind.pins.values()
     assert {(pin.signal, pin.chip, pin.name) for pin in pins if pin.signal} == firmware
 
 

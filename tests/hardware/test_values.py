@@ -15,9 +15,8 @@ from tools import make_circuit
 from fdvv.protocol.messages import CN64_PER_cN, UM16_PER_mm
 from fdvv.protocol.tables import Settings
 from fdvv.twin.files import load_rig
-from fdvv_rig.bill import PAPER_USD, group_totals, load_bill, read_bill, summary, to_csv
+from fdvv_rig.bill import PAPER_USD, group_totals, load_bill, read_bill, summary
 from fdvv_rig.circuit.circuit import Circuit
-from fdvv_rig.circuit.circuit_report import circuit_report
 from fdvv_rig.circuit.current import cell_reading, current_drive
 from fdvv_rig.circuit.filters import converter_steps, filter_values, paper_cutoff_Hz, rig_settings
 from fdvv_rig.circuit.netlist import to_document, to_kicad, wiring_rows
@@ -232,14 +231,3 @@ def test_a_role_that_the_bill_lacks_and_one_that_the_circuit_lacks_are_refused()
         read_bill(line, {})
     with pytest.raises(Exception, match="the circuit needs nut"):
         read_bill(line, {"screw": 1, "nut": 2})
-
-
-def test_the_csv_has_a_row_for_every_line() -> None:
-    bill = load_bill(CIRCUIT)
-    assert len(to_csv(bill).splitlines()) == len(bill.lines) + 1
-
-
-def test_the_report_bears_units_and_no_violation() -> None:
-    report = circuit_report(CIRCUIT)
-    assert report["violations"] == []
-    assert all("Hz" in key for key in report["filters"][0] if key.endswith("cutoff_Hz"))
