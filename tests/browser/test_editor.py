@@ -15,7 +15,6 @@ from fdvv.model.bump import find_bump
 from fdvv.model.curve import ForceCurve
 from fdvv.model.file import load_builtin, load_model
 from fdvv.model.model import FDVVModel
-from tests.browser.accessibility import audit
 from tests.browser.editing import FORCE, drag, number, scales
 
 if TYPE_CHECKING:
@@ -304,15 +303,6 @@ def test_a_vibration_is_shaped_by_number_and_the_surface_is_drawn(editor: Page, 
         if canvas.screenshot() != before:
             break
     assert canvas.screenshot() != before
-
-
-def test_every_part_of_the_editor_is_without_serious_fault_before_axe(editor: Page) -> None:
-    found = {}
-    for name in ("Points", "Figures", "Assign", "Vibration", "Surface", "Steps"):
-        editor.click(f"role=tab[name={name}]")
-        expect(editor.locator(".edit-side > *").first).to_be_visible()
-        found[name] = audit(editor)
-    assert {name: lines for name, lines in found.items() if lines} == {}
 
 
 def test_constraints_hold_while_a_point_is_moved(editor: Page) -> None:

@@ -13,7 +13,6 @@ from playwright.sync_api import expect
 
 from fdvv.model.file import load_builtin
 from fdvv.model.jnd_file import FILE_NAME as JNDS_FILE
-from tests.browser.accessibility import audit
 from tests.studio.running import RunningStudio
 from tests.support.buttons import write_cycle
 
@@ -267,15 +266,3 @@ def test_without_folders_the_page_says_how_to_give_some(page: Page) -> None:
     page.keyboard.press("Alt+1")
     expect(page.locator(".lib-more-buttons")).to_contain_text("fdvv studio FOLDER")
     expect(page.locator(ROWS)).to_have_count(6)
-
-
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_a_full_page_has_no_serious_fault_before_axe(library: Page, scheme: str) -> None:
-    library.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
-    ids = "&".join(f"over=builtin%3A{name}" for name in ("mx-clear", "mx-red", "rubber-dome"))
-    library.goto(f"{library.url.partition('#')[0]}#/library?{ids}&peak_cN=10..80")
-    expect(library.locator(".lib-landmarks thead th")).to_have_count(4)
-    assert audit(library) == []
-    library.get_by_role("tab", name="About").click()
-    expect(library.get_by_role("button", name="Press it")).to_be_visible()
-    assert audit(library) == []

@@ -200,6 +200,7 @@ OPEN: dict[str, tuple[str, Callable[[Page], None]]] = {
     "the list of keys": ("edit/builtin:mx-clear", keys),
     "the meaning of a term": ("library?over=builtin%3Amx-clear", term),
     "the tour": ("home", tour),
+    "what is known of a button": ("library?over=builtin%3Amx-clear", tab("About")),
     **{
         f"the tab {name}": ("edit/builtin:mx-clear", tab(name))
         for name in ("Figures", "Assign", "Vibration", "Surface", "Steps")

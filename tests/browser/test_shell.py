@@ -141,10 +141,13 @@ def test_the_keys_are_listed_and_put_away(page: Page) -> None:
 def test_an_error_is_read_out_and_leaves_with_its_page(page: Page, studio: RunningStudio) -> None:
     page.goto(f"{studio.base}/#/edit/own:there-is-none")
     alert = page.get_by_role("alert").filter(has_text="there-is-none")
+    notice = page.locator("[data-sonner-toast]")
     expect(alert).to_be_visible()
+    expect(notice).to_have_count(1)
     page.keyboard.press("Alt+1")
     page.wait_for_selector("main[data-page=library]")
     expect(alert).to_have_count(0)
+    expect(notice).to_have_count(0)
 
 
 def test_the_first_page_of_a_new_project_has_nothing_empty(page: Page, studio: RunningStudio) -> None:
@@ -166,11 +169,3 @@ def test_the_first_page_leads_back_to_what_was_worked_on(page: Page, studio: Run
     page.keyboard.press("Alt+0")
     page.get_by_role("link", name="my button").click()
     expect(page).to_have_url(re.compile("#/edit/own%3Amy%20button"))
-
-
-def test_notices_leave_with_their_page(page: Page, studio: RunningStudio) -> None:
-    page.goto(f"{studio.base}/#/edit/own:there-is-none")
-    notice = page.locator("[data-sonner-toast]")
-    expect(notice).to_have_count(1)
-    page.keyboard.press("Alt+0")
-    expect(notice).to_have_count(0)
