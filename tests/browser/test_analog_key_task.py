@@ -15,7 +15,8 @@ from playwright.sync_api import expect
 from fdvv_people.optimize.run.session import Optimization
 from fdvv_people.task.rounds import ClockSource
 from tests.browser.accessibility import audit
-from tests.browser.test_optimize import ROUNDS, Wire, begin, kept_rounds
+from tests.browser.test_optimize import ROUNDS, begin, kept_rounds
+from tests.browser.wire import Wire
 from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def crossings_ms(said: Sequence[dict[str, Any]], place_mm: float) -> list[float]
 def test_a_run_is_played_to_its_end_with_a_recorded_key(
     page: Page, studio: RunningStudio, recording: Path
 ) -> None:
-    wire = Wire(page)
+    wire = Wire(page, "play")
     page.reload()
     page.wait_for_selector("html[data-ready]")
     begin(page, Budget="2", Retest="0")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import time
 from collections.abc import Iterator
@@ -22,6 +21,7 @@ from fdvv_people.task.questionnaire import LIKING, liking_score
 from fdvv_people.task.rounds import ClockSource, TaskRound, TaskRounds
 from fdvv_people.task.score import Score
 from tests.browser.accessibility import audit
+from tests.browser.wire import Wire
 from tests.pages.test_optimize_group import scored_run
 from tests.studio.running import RunningStudio
 from tests.support.grids import grid
@@ -62,29 +62,6 @@ PRESS_WHEN_SEEN = """(x_ratio) => {
 }"""
 """Presses as soon as the picture shows the bullet at a place of the strip or beyond, by its pixels alone:
 between two pictures of a screen it may jump over any one. Once the game draws, this looks after it."""
-
-
-class Wire:
-    """What the page says and hears on the channel of the game."""
-
-    def __init__(self, page: Page) -> None:
-        self.said: list[dict[str, Any]] = []
-        self.heard: list[dict[str, Any]] = []
-        page.on("websocket", self._join)
-
-    def _join(self, socket: Any) -> None:
-        socket.on("framesent", lambda text: self._take(text, self.said))
-        socket.on("framereceived", lambda text: self._take(text, self.heard))
-
-    @staticmethod
-    def _take(text: str | bytes, into: list[dict[str, Any]]) -> None:
-        message = json.loads(text)
-        if message["channel"] == "play":
-            into.append(message.get("body", {}))
-
-    def of(self, kind: str) -> list[dict[str, Any]]:
-        """Return the messages of a kind, sent or received, in order."""
-        return [body for body in (*self.said, *self.heard) if body.get("type") == kind]
 
 
 def form(page: Page, kind: str = "I play") -> None:
@@ -140,7 +117,7 @@ def kept_rounds(folder: Path) -> tuple[TaskRound, ...]:
 @pytest.fixture
 def wire(page: Page) -> Wire:
     """A page on which a run of ROUNDS presses begins, and what it says."""
-    heard = Wire(page)
+    heard = Wire(page, "play")
     page.reload()
     page.wait_for_selector("html[data-ready]")
     begin(page)

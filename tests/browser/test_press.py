@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ from playwright.sync_api import expect
 from fdvv.model.file import load_builtin
 from fdvv.vibration.wave import vibration_samples
 from tests.browser.pressing import DOWN, LAMP, UP, presses, ready
+from tests.browser.wire import Wire
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -22,26 +22,20 @@ if TYPE_CHECKING:
 HEAD_bytes, RATE_Hz = 44, 48_000
 
 
-class Wire:
-    """The messages that the page receives on the channel."""
+class PressWire(Wire):
+    """The channel of presses."""
 
     def __init__(self, page: Page) -> None:
-        self.received: list[dict[str, Any]] = []
-        page.on("websocket", lambda socket: socket.on("framereceived", self._take))
-
-    def _take(self, text: str | bytes) -> None:
-        message = json.loads(text)
-        if message["channel"] == "press":
-            self.received.append(message.get("body", {}))
+        super().__init__(page, "press")
 
     def events(self, kind: str) -> list[dict[str, Any]]:
-        return [e for body in self.received for e in body.get("events", []) if e["kind"] == kind]
+        return [e for body in self.heard for e in body.get("events", []) if e["kind"] == kind]
 
 
 @pytest.fixture
-def wire(page: Page) -> Wire:
+def wire(page: Page) -> PressWire:
     """The press page, with a button under the finger, and the messages it receives."""
-    heard = Wire(page)
+    heard = PressWire(page)
     page.goto(f"{page.url.partition('#')[0]}#/press/builtin:mx-clear")
     page.reload()
     page.wait_for_selector("html[data-ready=press]")
@@ -60,7 +54,7 @@ def place(page: Page, part: float) -> tuple[float, float]:
     return box["x"] + 0.42 * box["width"], box["y"] + part * box["height"]
 
 
-def test_the_space_bar_presses_as_long_as_it_is_held(page: Page, wire: Wire) -> None:
+def test_the_space_bar_presses_as_long_as_it_is_held(page: Page, wire: PressWire) -> None:
     for count in (1, 2):
         page.keyboard.down(" ")
         page.wait_for_selector(DOWN)
@@ -73,7 +67,7 @@ def test_the_space_bar_presses_as_long_as_it_is_held(page: Page, wire: Wire) -> 
     assert wire.events("actuation")[0]["displacement_mm"] == pytest.approx(actuation_mm, abs=0.05)
 
 
-def test_what_a_press_found_is_said_with_the_next_step(page: Page, wire: Wire) -> None:
+def test_what_a_press_found_is_said_with_the_next_step(page: Page, wire: PressWire) -> None:
     verdict = page.get_by_label("Verdict")
     expect(verdict).to_have_text(re.compile("Hold the space bar, or press the cap"))
     page.keyboard.down(" ")
@@ -94,7 +88,7 @@ def test_what_a_press_found_is_said_with_the_next_step(page: Page, wire: Wire) -
     page.wait_for_url("**/#/live/compensate?button=builtin*mx-clear*")
 
 
-def test_the_button_that_is_worked_on_is_under_the_finger(page: Page, wire: Wire) -> None:
+def test_the_button_that_is_worked_on_is_under_the_finger(page: Page, wire: PressWire) -> None:
     page.select_option("select >> nth=0", "button builtin:mx-red")
     page.wait_for_selector(".press-view[aria-label^='mx-red']")
     page.goto(f"{page.url.partition('#')[0]}#/library")
@@ -103,7 +97,7 @@ def test_the_button_that_is_worked_on_is_under_the_finger(page: Page, wire: Wire
     page.wait_for_selector(".press-view[aria-label^='mx-red']")
 
 
-def test_the_finger_follows_the_mouse_down_and_up(page: Page, wire: Wire) -> None:
+def test_the_finger_follows_the_mouse_down_and_up(page: Page, wire: PressWire) -> None:
     page.mouse.move(*place(page, 0.1))
     page.mouse.down()
     page.mouse.move(*place(page, 0.97), steps=10)
@@ -116,17 +110,17 @@ def test_the_finger_follows_the_mouse_down_and_up(page: Page, wire: Wire) -> Non
     assert len(wire.events("reset")) == len(wire.events("actuation"))
 
 
-def test_a_held_cap_is_pushed_harder_until_it_gives_way(page: Page, wire: Wire) -> None:
+def test_a_held_cap_is_pushed_harder_until_it_gives_way(page: Page, wire: PressWire) -> None:
     page.mouse.move(*place(page, 0.5))
     page.mouse.down()
     page.wait_for_selector(DOWN)
     page.mouse.up()
     page.wait_for_selector(UP)
-    deepest = max(x for body in wire.received for x in body.get("displacement_mm", []))
+    deepest = max(x for body in wire.heard for x in body.get("displacement_mm", []))
     assert deepest > load_builtin("mx-clear").travel_mm / 2
 
 
-def test_a_pen_pushes_as_hard_as_it_is_pressed(page: Page, wire: Wire) -> None:
+def test_a_pen_pushes_as_hard_as_it_is_pressed(page: Page, wire: PressWire) -> None:
     x, y = place(page, 0.4)
     pen = """([kind, pressure, clientX, clientY]) => document.querySelector('.press-view').dispatchEvent(
         new PointerEvent(kind, {pointerType: 'pen', pointerId: 1, pressure, clientX, clientY}))"""
@@ -141,7 +135,7 @@ def test_a_pen_pushes_as_hard_as_it_is_pressed(page: Page, wire: Wire) -> None:
     page.evaluate(pen, ["pointerup", 0.0, x, y])
 
 
-def test_everything_is_reached_by_keys_alone(page: Page, wire: Wire) -> None:
+def test_everything_is_reached_by_keys_alone(page: Page, wire: PressWire) -> None:
     page.focus(".press-view")
     for _ in range(75):
         page.keyboard.press("ArrowDown")
@@ -155,7 +149,7 @@ def test_everything_is_reached_by_keys_alone(page: Page, wire: Wire) -> None:
     page.wait_for_selector(UP)
 
 
-def test_the_click_that_is_saved_is_the_models_vibration(page: Page, wire: Wire) -> None:
+def test_the_click_that_is_saved_is_the_models_vibration(page: Page, wire: PressWire) -> None:
     """What an offline context renders through the graph that is played, against fdvv.vibration."""
     page.keyboard.down(" ")
     page.wait_for_selector(DOWN)
@@ -182,7 +176,7 @@ def test_clicks_are_scheduled_as_far_apart_as_the_cap_shook(page: Page) -> None:
         AudioBufferSourceNode.prototype.start = function (when) {
           window.asked.push(when); return start.call(this, when); };"""
     )
-    heard = Wire(page)
+    heard = PressWire(page)
     page.goto(f"{page.url.partition('#')[0]}#/press/builtin:mx-clear")
     page.reload()
     ready(page)
@@ -204,7 +198,7 @@ def test_clicks_are_scheduled_as_far_apart_as_the_cap_shook(page: Page) -> None:
     assert apart_s < 1e-3
 
 
-def test_a_trace_is_replayed(page: Page, wire: Wire, tmp_path: Path) -> None:
+def test_a_trace_is_replayed(page: Page, wire: PressWire, tmp_path: Path) -> None:
     page.click("text=Replay a key")
     page.click("button:text-is('fast double tap')")
     presses(page, 2)
@@ -217,7 +211,7 @@ def test_a_trace_is_replayed(page: Page, wire: Wire, tmp_path: Path) -> None:
     assert page.is_visible("button:text-is('mine.csv')")
 
 
-def test_a_page_that_is_hidden_is_not_simulated_for(page: Page, wire: Wire) -> None:
+def test_a_page_that_is_hidden_is_not_simulated_for(page: Page, wire: PressWire) -> None:
     page.evaluate("Object.defineProperty(document, 'hidden', {get: () => window.away, configurable: true})")
     turn = "away => { window.away = away; document.dispatchEvent(new Event('visibilitychange')); }"
     page.keyboard.down(" ")
@@ -226,18 +220,17 @@ def test_a_page_that_is_hidden_is_not_simulated_for(page: Page, wire: Wire) -> N
     page.wait_for_selector("text=paused")
     # that nothing comes can only be seen by letting time pass
     page.wait_for_timeout(200)
-    before = len(wire.received)
+    before = len(wire.heard)
     page.wait_for_timeout(500)
-    assert len(wire.received) == before, "frames came although nobody looked"
+    assert len(wire.heard) == before, "frames came although nobody looked"
     page.evaluate(turn, False)
     page.wait_for_selector(UP)
-    frames = [body for body in wire.received if body.get("type") == "frame"]
-    times = [t for body in frames for t in body["t_s"]]
+    times = [t for body in wire.of("frame") for t in body["t_s"]]
     assert np.diff(times).max() < 0.01, "simulated time stood still"
     page.keyboard.up(" ")
 
 
-def test_a_fault_says_why_and_is_cleared(page: Page, wire: Wire) -> None:
+def test_a_fault_says_why_and_is_cleared(page: Page, wire: PressWire) -> None:
     page.click("text=Advanced")
     page.click("text=Break its sensor")
     page.wait_for_selector(".press-fault")
@@ -249,7 +242,7 @@ def test_a_fault_says_why_and_is_cleared(page: Page, wire: Wire) -> None:
     page.keyboard.up(" ")
 
 
-def test_two_buttons_are_exchanged_under_a_pressing_finger(page: Page, wire: Wire) -> None:
+def test_two_buttons_are_exchanged_under_a_pressing_finger(page: Page, wire: PressWire) -> None:
     page.keyboard.down(" ")
     page.wait_for_selector(DOWN)
     page.keyboard.press("x")
@@ -260,7 +253,7 @@ def test_two_buttons_are_exchanged_under_a_pressing_finger(page: Page, wire: Wir
     page.wait_for_selector(UP)
 
 
-def test_a_program_tells_its_levels_and_what_to_try(page: Page, wire: Wire) -> None:
+def test_a_program_tells_its_levels_and_what_to_try(page: Page, wire: PressWire) -> None:
     page.select_option("select >> nth=0", "program shipped:multi-level")
     page.wait_for_selector("text=three key levels")
     page.wait_for_selector("[data-value=state]:has-text('level 0')")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,12 +18,12 @@ from tests.browser.study_screens import (
     Sitter,
     frozen_study,
     names_in,
-    open_sessions,
     plan_text,
     recorded_answers,
     seat_address,
     wait_for_part,
 )
+from tests.browser.test_timing import kill_and_start_again
 from tests.studio.running import RunningStudio
 
 if TYPE_CHECKING:
@@ -172,18 +171,8 @@ def test_a_killed_server_costs_no_answer_and_the_screen_goes_on_by_itself(
     sitter.feel("A")
     sitter.rate("A", 6)
     page.close()
-    port = int(studio.base.rpartition(":")[2])
-    studio.stop(signal.SIGKILL)
-    sitter.page.wait_for_selector(".study-veil >> text=The connection is lost")
-    again = RunningStudio(studio.project, port=port)
+    again = kill_and_start_again(sitter.page, studio, context)
     try:
-        # the studio opens its own page, which brings the cookie of this run
-        opened = context.new_page()
-        opened.goto(again.address)
-        wait_for_part(opened)
-        sitter.page.wait_for_selector("text=The study pauses")
-        open_sessions(opened)
-        expect(sitter.page.locator(".study-veil").first).to_be_hidden()
         sitter.wait_for(2, 3)
         expect(sitter.page.locator(".study-rating[aria-label$=' A'] input[value='6']")).to_be_checked()
         expect(sitter.page.locator(".study-place[data-pressed=true]")).to_have_count(0)

@@ -58,19 +58,19 @@ def test_a_whole_experiment_is_done_by_keyboard_and_every_press_is_kept(study: S
     assert study.verify() == ()
 
 
-def kill_and_start_again(timer: Timer, studio: RunningStudio, context: BrowserContext) -> RunningStudio:
+def kill_and_start_again(screen: Page, studio: RunningStudio, context: BrowserContext) -> RunningStudio:
     """Kill the studio, start it at its port, and open the sessions as the key holder does."""
     port = int(studio.base.rpartition(":")[2])
     studio.stop(signal.SIGKILL)
-    timer.page.wait_for_selector(".study-veil >> text=The connection is lost")
+    screen.wait_for_selector(".study-veil >> text=The connection is lost")
     again = RunningStudio(studio.project, port=port)
     # the studio opens its own page, which brings the cookie of this run
     opened = context.new_page()
     opened.goto(again.address)
     wait_for_part(opened)
-    timer.page.wait_for_selector("text=The study pauses")
+    screen.wait_for_selector("text=The study pauses")
     open_sessions(opened)
-    expect(timer.page.locator(".study-veil").first).to_be_hidden()
+    expect(screen.locator(".study-veil").first).to_be_hidden()
     opened.close()
     return again
 
@@ -87,7 +87,7 @@ def test_a_studio_killed_in_training_and_in_validation_costs_no_round_that_was_k
     timer.wait_for(f"Training 1 of {TRIALS}")
     timer.begin()
     wait_for_round(timer, 1)
-    studio = kill_and_start_again(timer, studio, context)
+    studio = kill_and_start_again(timer.page, studio, context)
     expect(timer.page.locator(".line")).to_have_text(f"1 of {PRESSES} presses are kept: this trial goes on.")
     timer.begin()
     timer.trial("Training 2", TRIALS)
@@ -95,7 +95,7 @@ def test_a_studio_killed_in_training_and_in_validation_costs_no_round_that_was_k
     timer.prepare()
     timer.begin()
     wait_for_round(timer, 2)
-    studio = kill_and_start_again(timer, studio, context)
+    studio = kill_and_start_again(timer.page, studio, context)
     try:
         for number in range(1, CONDITIONS + 1):
             timer.trial(f"Trial {number}", CONDITIONS)

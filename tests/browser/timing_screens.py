@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from fdvv_people.study.admin.study import Study
 from fdvv_people.study.files.chained_log import read_chained
 from tests.browser.study_screens import CHEAP, NAME, PASSPHRASE, Sitter
+from tests.browser.wire import Wire
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -118,29 +118,11 @@ def recorded(study: Study, kind: str, person: str = "P01") -> list[dict[str, Any
     return [record[kind] for record in records if kind in record]
 
 
-class TimingWire:
-    """What a participant's page hears and says. kept : the trial and number of each round that was kept."""
+class TimingWire(Wire):
+    """What a participant's page hears and says."""
 
     def __init__(self, page: Page) -> None:
-        self.said: list[dict[str, Any]] = []
-        self.heard: list[dict[str, Any]] = []
-        self.texts: list[str] = []
-
-        def take(text: str | bytes, into: list[dict[str, Any]]) -> None:
-            self.texts.append(str(text))
-            message = json.loads(text)
-            if message["channel"] == "timing":
-                into.append(message.get("body", {}))
-
-        def join(socket: Any) -> None:
-            socket.on("framesent", lambda text: take(text, self.said))
-            socket.on("framereceived", lambda text: take(text, self.heard))
-
-        page.on("websocket", join)
-
-    def of(self, kind: str) -> list[dict[str, Any]]:
-        """Return the messages of a kind, sent or received, in order."""
-        return [body for body in (*self.said, *self.heard) if body.get("type") == kind]
+        super().__init__(page, "timing")
 
     def kept(self) -> list[tuple[int, int]]:
         """Return trial and number of each round that the page heard was kept."""

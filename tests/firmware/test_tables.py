@@ -1,15 +1,19 @@
-"""The firmware's table of the thermistor is that of its equation, and on the safe side of it."""
+"""The firmware's tables are those of the code; the thermistor's is on the safe side of its equation."""
 
 from __future__ import annotations
 
 import numpy as np
-from tools import make_thermistor
+from tools import make_sine, make_thermistor
 from tools.make_thermistor import COLDEST_ROOM_C, MARGIN_K, R25_ohm, temperature_C
 
 from tests.safety._thermistor import rise_K_q16
 
 
-def test_the_table_is_that_of_the_tool() -> None:
+def test_the_sine_table_is_that_of_the_code() -> None:
+    assert make_sine.HEADER.read_text() == make_sine.reference(), "run python tools/make_sine.py"
+
+
+def test_the_thermistors_table_is_that_of_the_tool() -> None:
     assert make_thermistor.HEADER.read_text() == make_thermistor.reference(), "run tools/make_thermistor.py"
 
 
