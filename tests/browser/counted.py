@@ -26,13 +26,13 @@ class CountedPerson:
             on.click()
             return
         on.wait_for()
-        self._reach(on)
+        self.reach(on)
         choice = on.get_attribute("type") in ("radio", "checkbox")
         self.page.keyboard.press("Space" if choice else "Enter")
 
-    def _reach(self, on: Locator) -> None:
+    def reach(self, on: Locator, most_tabs: int = MOST_TABS) -> None:
         """Move the focus there with Tab; within a group of radio buttons with the arrows."""
-        for _ in range(MOST_TABS):
+        for _ in range(most_tabs):
             if on.evaluate("(it) => it === document.activeElement"):
                 return
             group = "(it) => it.type === 'radio' && document.activeElement?.name === it.name"

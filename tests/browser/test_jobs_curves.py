@@ -13,25 +13,18 @@ import pytest
 from playwright.sync_api import expect
 
 from fdvv.model.file import load_model
+from tests.browser.counted import CountedPerson
 from tests.browser.dropping import drop
-from tests.browser.editing import scales
+from tests.browser.editing import drag, scales
 from tests.browser.pressing import presses, ready
 from tests.support.buttons import write_cycle
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Locator, Page
+    from playwright.sync_api import Page
 
 
-class Hand:
-    """A hand that counts its clicks."""
-
-    def __init__(self, page: Page) -> None:
-        self.page = page
-        self.clicks = 0
-
-    def click(self, what: Locator) -> None:
-        self.clicks += 1
-        what.click()
+class Hand(CountedPerson):
+    """A hand that drags and holds, too."""
 
     def enter(self, keys: str = "Enter") -> None:
         self.clicks += 1
@@ -39,12 +32,7 @@ class Hand:
 
     def drag(self, start: tuple[float, float], up_px: float) -> None:
         self.clicks += 1
-        mouse = self.page.mouse
-        mouse.move(*start)
-        mouse.down()
-        for part in (0.5, 1.0):
-            mouse.move(start[0], start[1] - part * up_px)
-        mouse.up()
+        drag(self.page, start, (0.0, -up_px))
 
     def hold_space(self) -> None:
         """Press what is under the finger, and let it go."""

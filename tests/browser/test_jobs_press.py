@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from playwright.sync_api import expect
 
+from tests.browser.counted import CountedPerson
 from tests.browser.pressing import DOWN, LAMP, UP, ready
 
 if TYPE_CHECKING:
@@ -15,15 +16,8 @@ if TYPE_CHECKING:
 MOST_CLICKS, MOST_TABS = 3, 60
 
 
-class Hand:
-    """A person with a mouse, whose clicks are counted."""
-
-    def __init__(self, page: Page) -> None:
-        self.page, self.clicks = page, 0
-
-    def click(self, target: Locator) -> None:
-        self.clicks += 1
-        target.click()
+class Hand(CountedPerson):
+    """A person who holds, too."""
 
     def hold(self, target: Locator, until: str) -> None:
         """Press the middle of something until a selector is there."""
@@ -34,15 +28,6 @@ class Hand:
         self.page.mouse.down()
         self.page.wait_for_selector(until)
         self.page.mouse.up()
-
-
-def tab_to(page: Page, target: Locator) -> None:
-    """Walk with Tab until something has the focus."""
-    for _ in range(MOST_TABS):
-        page.keyboard.press("Tab")
-        if target.evaluate("element => element === document.activeElement"):
-            return
-    raise AssertionError(f"Tab does not reach {target}")
 
 
 def verdict(page: Page) -> Locator:
@@ -73,23 +58,24 @@ def test_a_program_is_copied_pressed_and_edited_by_mouse(page: Page) -> None:
 
 
 def test_a_button_is_chosen_pressed_compared_and_taken_to_the_rig_by_keys_alone(page: Page) -> None:
+    hand = Hand(page, keyboard=True)
     page.goto(f"{page.url.partition('#')[0]}#/press/builtin:mx-clear")
     ready(page)
     page.keyboard.press("x")
     page.wait_for_selector(".press-view[aria-label^='mx-brown']")
     page.keyboard.press("x")
     page.wait_for_selector(".press-view[aria-label^='mx-clear']")
-    tab_to(page, page.get_by_label("Press", exact=True))
+    hand.reach(page.get_by_label("Press", exact=True), MOST_TABS)
     page.keyboard.press("ArrowDown")
     page.wait_for_selector(".press-view:not([aria-label^='mx-clear'])")
     page.wait_for_selector(UP)
-    tab_to(page, page.get_by_role("button", name="Hold to push"))
+    hand.reach(page.get_by_role("button", name="Hold to push"), MOST_TABS)
     page.keyboard.down("Enter")
     page.wait_for_selector(DOWN)
     page.keyboard.up("Enter")
     page.wait_for_selector(UP)
     expect(verdict(page)).to_contain_text("Clicked at")
-    tab_to(page, page.get_by_role("link", name="Render it on a rig"))
+    hand.reach(page.get_by_role("link", name="Render it on a rig"), MOST_TABS)
     page.keyboard.press("Enter")
     page.wait_for_selector("main[data-page=live]")
     assert "builtin" in page.url.partition("button=")[2]

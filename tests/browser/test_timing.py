@@ -43,7 +43,9 @@ def timer(study: Study, page: Page, context: BrowserContext) -> Timer:
     return found
 
 
-def test_a_whole_experiment_is_done_by_keyboard_and_every_press_is_kept(study: Study, timer: Timer) -> None:
+def test_a_whole_experiment_by_keyboard_keeps_every_press_and_no_message_names_what_a_code_hides(
+    study: Study, timer: Timer
+) -> None:
     for number in range(1, TRIALS + 1):
         timer.trial(f"Training {number}", TRIALS)
     for number in range(1, CONDITIONS + 1):
@@ -56,6 +58,10 @@ def test_a_whole_experiment_is_done_by_keyboard_and_every_press_is_kept(study: S
     table = {one["number"] for one in began["trials"] if one["hand"] != "button"}
     assert all(len(one["activations_s"]) == 1 for one in rounds if one["number"] in table)
     assert study.verify() == ()
+    codes = [one["trial"]["code"] for one in timer.wire.of("step") if one["trial"]]
+    assert any(codes)
+    assert [text[:200] for text in timer.wire.texts if "mx-" in text or "MX Red" in text] == []
+    assert not any("late_ms" in text for text in timer.wire.texts)
 
 
 def kill_and_start_again(screen: Page, studio: RunningStudio, context: BrowserContext) -> RunningStudio:
@@ -197,15 +203,3 @@ def test_taps_are_kept_second_by_second(study: Study, timer: Timer) -> None:
         taps = sum(at_ms < downs_ms[0] + 3000.0 for at_ms in downs_ms)
         keys = sum(len(one["activations_s"]) for one in rounds if one["number"] == trial)
         assert taps - 1 <= keys <= taps
-
-
-def test_no_message_names_what_a_code_hides(study: Study, timer: Timer) -> None:
-    for number in range(1, TRIALS + 1):
-        timer.trial(f"Training {number}", TRIALS)
-    for number in range(1, CONDITIONS + 1):
-        timer.trial(f"Trial {number}", CONDITIONS)
-    timer.page.wait_for_selector("h1:has-text('Thank you')")
-    codes = [one["trial"]["code"] for one in timer.wire.of("step") if one["trial"]]
-    assert any(codes)
-    assert [text[:200] for text in timer.wire.texts if "mx-" in text or "MX Red" in text] == []
-    assert not any("late_ms" in text for text in timer.wire.texts)
