@@ -140,17 +140,6 @@ def test_a_silent_bus_is_one_line() -> None:
         ODriveDrive(part(line.port), 0.5)
 
 
-def test_garbage_is_one_line() -> None:
-    with scripted(ScriptedODrive(), every_s=0.05) as line:
-        drive = ODriveDrive(part(line.port), 0.05)
-        drive._state = 8
-        line._answer = lambda _data: bytes(range(1, 256)) + b"t0698zz\r"
-        with pytest.raises(DeviceError) as error:
-            drive.exchange(0.0)
-        assert "\n" not in str(error.value)
-        drive.close()
-
-
 def test_an_adapter_that_is_not_there_is_one_line() -> None:
     with pytest.raises(DeviceError, match="cannot be opened") as error:
         ODriveDrive(part("/dev/no-such-adapter"), 0.5)

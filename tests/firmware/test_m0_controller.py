@@ -11,26 +11,22 @@ import pytest
 
 from fdvv.device.boards import LibraryBoard
 from fdvv.device.linked import LinkedDevice
-from fdvv.device.remote import surface_image
 from fdvv.model.file import load_builtin
-from fdvv.model.surface import ForceSurface
 from fdvv.program.button import compile_button
 from fdvv.protocol.tables import Settings, TickFlag
-from fdvv.testing.conformance import plain_surface
 from fdvv_m0.board import SHARE_OF_TICK, EmulatedBoard
 from fdvv_m0.emulator import M0Emulator
 from fdvv_m0.records import TickInputs
 from tests.firmware._m0 import CONTROLLER, build, sizes_bytes
 from tests.firmware._simavr import say
+from tests.support.link_rigs import LONG, PROGRAMS
 from tests.support.scripted_person import ScriptedPerson, ScriptedPlant
 
 pytestmark = pytest.mark.firmware
 
 AHEAD = {"predictor_q16": 6000, "lead_us": 3000, "brake_lead_us": 2000, "drag_q13": 500, "friction_cN64": 100}
 BUTTON = compile_button(load_builtin("mx-brown")).image
-PLAIN = surface_image(plain_surface(20.0, 3.0), 3.0)
-FORCES = np.full((6, 255), 30.0)
-LONG = surface_image(ForceSurface(np.linspace(0.0, 5.08, 255), np.arange(1.0, 7.0), FORCES, FORCES - 5), 4.0)
+PLAIN = PROGRAMS[0]
 
 
 @pytest.fixture(scope="module")

@@ -33,10 +33,6 @@ def engine(request: pytest.FixtureRequest) -> Engine:
     return compared_engine(request.param)
 
 
-def test_an_engine_bears_the_name_it_is_called_by(engine: Engine) -> None:
-    assert compared_engine(engine.name) == engine
-
-
 def test_the_same_problem_and_trials_give_the_same_suggestion(engine: Engine) -> None:
     for trials in ([], STARTED):
         first, again = (compared_engine(engine.name).suggest(problem(), trials, 2) for _ in range(2))

@@ -11,7 +11,6 @@ from msgspec import UNSET
 from scipy.stats import norm
 
 from fdvv.errors import InputError
-from fdvv.units import FloatArray
 from fdvv_botorch.models import torch_there
 from fdvv_people.optimize.engines.gp import ChangeCost
 from fdvv_people.optimize.engines.gp_model import Basis, Observed, believe, believed_best, prior_basis
@@ -239,12 +238,6 @@ def test_a_dear_change_is_made_less_often_where_its_cost_is_known() -> None:
         built[name] = len({trial.design["y1_cN"] for trial in trials})
     # a force at the end of its range may come twice where it costs nothing
     assert 2 * built["dear"] < built["free"]
-
-
-def test_places_are_arrays_of_the_unit_cube() -> None:
-    place: FloatArray = SPACE.to_unit(engine_of("gp").suggest(Problem(SPACE, problem().objectives), []))
-    assert place.shape == (1, 8)
-    assert np.all((place >= 0) & (place <= 1))
 
 
 def test_the_length_of_the_space_is_what_the_kernel_expects_unless_the_engine_has_its_own() -> None:

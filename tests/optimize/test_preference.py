@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import minimize
 from scipy.stats import norm
 
-from fdvv.errors import InputError, ModelError
+from fdvv.errors import ModelError
 from fdvv_botorch.models import torch_there
 from fdvv_people.optimize.engines.preference import NOISE, believe_choices
 from fdvv_people.optimize.engines.registry import engine_of, pair_engine_names
@@ -94,8 +94,3 @@ def test_the_worths_are_the_most_probable_ones() -> None:
 
     wanted = minimize(cost, np.zeros(3), tol=1e-12).x
     np.testing.assert_allclose(belief.mean(belief.places), wanted, atol=1e-4)
-
-
-def test_an_unknown_engine_is_refused_with_those_there_are() -> None:
-    with pytest.raises(InputError, match="preference-botorch"):
-        engine_of("elo")

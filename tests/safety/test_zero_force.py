@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from fdvv.firmware.core import Core, RecordArray
-from fdvv.protocol.tables import NONE, Fault, Mode, Settings, State, Surface
+from fdvv.protocol.tables import Fault, Mode, Settings, Surface
 from tests.safety._images import Parts
+from tests.support.core.programs import REST
 from tests.support.inputs import inputs_at
 
 TICKS_US = (50, 250, 500, 1000, 4000)
@@ -21,23 +22,8 @@ Disturb = Callable[[RecordArray], None]
 def constant_force(force_cN64: int) -> bytes:
     """A program of one state that always pushes so hard."""
     surface = Surface(start_um16=0, step_um16=16000, columns=2, rows=1, velocities_at=84, forces_at=86)
-    state = State(
-        press_surface=0,
-        release_surface=0,
-        velocity_source=0,
-        key=0,
-        first_transition=0,
-        transitions=0,
-        enter_slot=NONE,
-        repeat_slot=NONE,
-        repeat_ms=0,
-        fade_ms=0,
-        bias_cN64=0,
-        bias_end_cN64=0,
-        bias_ms=0,
-    )
     pool = bytes(20) + np.array([1600], "<u2").tobytes() + np.array([force_cN64, force_cN64], "<i2").tobytes()
-    return Parts(states=[state], surfaces=[surface], pool=pool).image()
+    return Parts(states=[REST], surfaces=[surface], pool=pool).image()
 
 
 def rendering(settings: Settings, force_cN64: int = 6400) -> tuple[Core, RecordArray]:

@@ -115,13 +115,7 @@ class StillStage:
 
     def rendered(self) -> tuple[Rendered, ...]:
         self._live("telemetry of FDVV ended")
-        return tuple(
-            # what differs between renderings differs here too
-            Rendered(
-                label, one.name, 2, (1.0,) if one.rendered == "FD" else (2.25, 0.125), (80.0,), len(one.name)
-            )
-            for label, one in self.labels.items()
-        )
+        return tuple(self._rendered(label, one) for label, one in self.labels.items())
 
     def close(self) -> None:
         self.closed = True
