@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 from fdvv._native import address
+from tests.safety._build import CORE, REPOSITORY, SANITISED, compile_c
 
-ROOT = Path(__file__).resolve().parents[1]
-NATIVE, CORE = ROOT / "packages/fdvv/src/fdvv/_native", ROOT / "firmware" / "core"
-FORCE_LOOP = ROOT / "firmware" / "force_loop"
-FOLDERS = NATIVE, CORE, FORCE_LOOP
-SOURCES = [f"-I{CORE}", f"-I{FORCE_LOOP}", "-DFDVV_FORCE_LOOP"]
-SOURCES += [str(path) for part in FOLDERS for path in sorted(part.glob("*.c"))]
+NATIVE = REPOSITORY / "packages/fdvv/src/fdvv/_native"
+FORCE_LOOP = REPOSITORY / "firmware" / "force_loop"
+FLAGS = (f"-I{NATIVE}", f"-I{FORCE_LOOP}", "-DFDVV_FORCE_LOOP")
+SOURCES = tuple(path for part in (NATIVE, CORE, FORCE_LOOP) for path in sorted(part.glob("*.c")))
 
 # run in a process of its own: the sanitiser ends it at the first fault
 EXERCISE = """
@@ -62,9 +61,8 @@ def test_an_array_lives_as_long_as_its_address() -> None:
 
 @pytest.mark.slow
 def test_fits_and_presses_run_without_undefined_behaviour(tmp_path: Path) -> None:
-    library = tmp_path / "libsanitised.so"
-    flags = ["-std=c99", "-O1", "-g", "-fPIC", "-shared", "-fsanitize=undefined", "-fno-sanitize-recover=all"]
-    subprocess.run(["cc", *flags, "-o", str(library), *SOURCES, "-lm"], check=True)
+    flags = ("-O1", "-g", "-fPIC", "-shared", "-fsanitize=undefined", "-fno-sanitize-recover=all")
+    library = compile_c(tmp_path / "libsanitised.so", *flags, *FLAGS, sources=SOURCES, after=("-lm",))
     out = subprocess.run(
         [sys.executable, "-c", EXERCISE, str(library)], capture_output=True, text=True, check=False
     )
@@ -84,15 +82,6 @@ def test_the_kernels_free_what_they_take_and_stay_in_bounds(tmp_path: Path) -> N
         "      fdvv_spline_free_knots(n, x, y, w, d, m, 0.004, 5, t, c);\n"
         "    free(x); free(y); free(w);\n  }\n  return 0;\n}\n"
     )
-    binary = tmp_path / "program"
-    flags = [
-        "-std=c99",
-        "-O1",
-        "-g",
-        "-fsanitize=address,undefined",
-        "-fno-sanitize-recover=all",
-        f"-I{NATIVE}",
-    ]
-    subprocess.run(["cc", *flags, "-o", str(binary), str(program), *SOURCES, "-lm"], check=True)
+    binary = compile_c(tmp_path / "program", *SANITISED, *FLAGS, sources=(program, *SOURCES), after=("-lm",))
     out = subprocess.run([str(binary)], capture_output=True, text=True, check=False)
     assert (out.returncode, out.stderr) == (0, "")

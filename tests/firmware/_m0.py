@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import fcntl
-import os
 import shutil
 import struct
 import subprocess
@@ -13,7 +12,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-import pytest
+from tests.firmware._simavr import require
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 BOARDS = REPOSITORY / "firmware" / "boards"
@@ -25,14 +24,9 @@ M4_CHECK, M4_CONTROLLER = BUILD / "itsybitsy_m4_check.elf", BUILD / "itsybitsy_m
 
 
 def require_tools() -> None:
-    """Skip by name where a tool is absent; fail where CI is set."""
-    missing = [tool for tool in ("arm-none-eabi-gcc", "arm-none-eabi-size", "make") if not shutil.which(tool)]
-    missing += [] if find_spec("unicorn") else ["unicorn (extra dev)"]
-    missing += [] if TINYUSB.is_file() else ["tinyusb-source"]
-    if missing and os.environ.get("CI"):
-        pytest.fail(f"make firmware-tools has not installed {', '.join(missing)}")
-    if missing:
-        pytest.skip(f"make firmware-tools installs {', '.join(missing)}")
+    """See that a controller can be built and emulated."""
+    others = {"unicorn (extra dev)": bool(find_spec("unicorn")), "tinyusb-source": TINYUSB.is_file()}
+    require("arm-none-eabi-gcc", "arm-none-eabi-size", "make", **others)
 
 
 def build(program: Path) -> Path:

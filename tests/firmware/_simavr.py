@@ -47,15 +47,19 @@ def say(figure: str) -> None:
     sys.stdout.write(f"emulated: {figure}\n")
 
 
-def require_tools() -> None:
-    """Skip by name where a tool is absent; fail where CI is set."""
-    missing = [tool for tool in ("avr-gcc", "avr-size", "make", "cc") if not shutil.which(tool)]
-    if not (HEADERS / "sim_avr.h").is_file():
-        missing.append("libsimavr-dev")
+def require(*tools: str, **others: bool) -> None:
+    """Skip by name where a tool or something else is absent; fail where CI is set."""
+    missing = [tool for tool in tools if not shutil.which(tool)]
+    missing += [name for name, is_there in others.items() if not is_there]
     if missing and os.environ.get("CI"):
         pytest.fail(f"make firmware-tools has not installed {', '.join(missing)}")
     if missing:
         pytest.skip(f"make firmware-tools installs {', '.join(missing)}")
+
+
+def require_tools() -> None:
+    """See that an Uno can be built and emulated."""
+    require("avr-gcc", "avr-size", "make", "cc", **{"libsimavr-dev": (HEADERS / "sim_avr.h").is_file()})
 
 
 def build_board(folder: Path, name: str = "uno_vibration") -> Path:

@@ -11,7 +11,7 @@ import pytest
 
 from fdvv_m0.emulator import M0Emulator
 from fdvv_m0.records import TickInputs, TickOutputs
-from tests.firmware._m0 import CHECK, build, frames, sizes_bytes
+from tests.firmware._m0 import CHECK, TickFrame, build, frames, sizes_bytes
 from tests.firmware._simavr import say
 
 pytestmark = pytest.mark.firmware
@@ -237,8 +237,8 @@ def test_a_pulled_cable_stops_the_port_and_not_the_ticks(elf: Path) -> None:
     assert telemetry[-1].elapsed_ticks == 1
 
 
-def test_ticks_that_the_processor_missed_are_counted_and_the_clock_stays_true(elf: Path) -> None:
-    stalls = {300: 600.0, 310: 250.0, 320: 2 * TICK_US - 20.0}
+def run_stalled(elf: Path, stalls: dict[int, float], ticks: int) -> list[TickFrame]:
+    """Return what the board tells of ticks whose number it reads, some stalled for so many us."""
     emulator: list[M0Emulator] = []
 
     def world(outputs: TickOutputs) -> TickInputs:
@@ -246,8 +246,13 @@ def test_ticks_that_the_processor_missed_are_counted_and_the_clock_stays_true(el
         return TickInputs(outputs.tick)
 
     emulator.append(M0Emulator(elf, world))
-    emulator[0].run_ticks(400)
-    telemetry, _echo = frames(emulator[0].read())
+    emulator[0].run_ticks(ticks)
+    return frames(emulator[0].read())[0]
+
+
+def test_ticks_that_the_processor_missed_are_counted_and_the_clock_stays_true(elf: Path) -> None:
+    stalls = {300: 600.0, 310: 250.0, 320: 2 * TICK_US - 20.0}
+    telemetry = run_stalled(elf, stalls, 400)
     late = [frame for frame in telemetry if frame.elapsed_ticks != 1]
     assert len(late) == len(stalls)
     assert all(b.time_us - a.time_us == TICK_US * b.elapsed_ticks for a, b in pairwise(telemetry))
@@ -257,16 +262,7 @@ def test_ticks_that_the_processor_missed_are_counted_and_the_clock_stays_true(el
 
 def test_a_tick_that_comes_while_the_converter_is_made_ready_for_it_is_counted_as_missed(elf: Path) -> None:
     # stalls that end before, in and after that time: a conversion that the missed tick started goes on
-    stalls = {200 + 4 * k: 205 + 0.25 * k for k in range(140)}
-    emulator: list[M0Emulator] = []
-
-    def world(outputs: TickOutputs) -> TickInputs:
-        emulator[0].stall(stalls.get(outputs.tick, 0.0))
-        return TickInputs(outputs.tick)
-
-    emulator.append(M0Emulator(elf, world))
-    emulator[0].run_ticks(780)
-    telemetry, _echo = frames(emulator[0].read())
+    telemetry = run_stalled(elf, {200 + 4 * k: 205 + 0.25 * k for k in range(140)}, 780)
     assert {frame.elapsed_ticks for frame in telemetry} == {1, 2}
     assert all(b.time_us - a.time_us == TICK_US * b.elapsed_ticks for a, b in pairwise(telemetry))
     assert all(f.lowest == f.highest == f.time_us // TICK_US for f in telemetry)

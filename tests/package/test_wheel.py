@@ -91,29 +91,30 @@ def test_the_tag_of_the_wheel_is_the_glibc_that_its_symbols_need(packages: Packa
     assert (int(tag[1]), int(tag[2])) == needed
 
 
+def run(folder: Path, *command: str | Path) -> str:
+    """Run a command that says nothing of errors, away from the checkout; return what it prints."""
+    ran = subprocess.run(
+        command, cwd=folder, env=clean_environment(), capture_output=True, text=True, check=False
+    )
+    assert (ran.returncode, ran.stderr) == (0, "")
+    return ran.stdout
+
+
+def try_wheels(folder: Path, *wheels: Path) -> tuple[Path, str]:
+    """Try wheels in an environment of their own; return its Python and what the try prints."""
+    python = new_environment(folder / "clean", *map(str, wheels))
+    return python, run(folder, python, "-P", shutil.copy(REPOSITORY / "tools" / "try_wheel.py", folder))
+
+
 def test_the_wheels_work_without_extras_and_without_the_repository(
     packages: Packages, tmp_path: Path
 ) -> None:
-    python = new_environment(tmp_path / "clean", str(packages.wheel), *map(str, packages.others))
-    tool = shutil.copy(REPOSITORY / "tools" / "try_wheel.py", tmp_path)
-    run = [str(python), "-P", str(tool)]
-    ran = subprocess.run(
-        run, cwd=tmp_path, env=clean_environment(), capture_output=True, text=True, check=False
-    )
-    assert (ran.returncode, ran.stderr) == (0, "")
+    python, said = try_wheels(tmp_path, packages.wheel, *packages.others)
     # the extras are really away, else nothing was proven of them
     parts = "fdvv[plot], fdvv[study], fdvv[optimize], fdvv[serial]"
-    assert f"{parts}, fdvv-rig, fdvv-strip, fdvv-switch, fdvv-m0, fdvv-haptics, fdvv-drives" in ran.stdout
-    where = "import fdvv; print(fdvv.__file__)"
-    found = subprocess.run(
-        [str(python), "-P", "-c", where],
-        cwd=tmp_path,
-        env=clean_environment(),
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert Path(found.stdout.strip()).is_relative_to(tmp_path)
+    assert f"{parts}, fdvv-rig, fdvv-strip, fdvv-switch, fdvv-m0, fdvv-haptics, fdvv-drives" in said
+    where = run(tmp_path, python, "-P", "-c", "import fdvv; print(fdvv.__file__)")
+    assert Path(where.strip()).is_relative_to(tmp_path)
     host = next((tmp_path / "clean").rglob("fdvv-host"))
     assert os.access(host, os.X_OK)
 
@@ -184,11 +185,4 @@ def test_a_newcomer_gets_from_the_readme_to_a_button_a_studio_and_a_study(packag
 
 
 def test_the_core_works_alone_and_names_what_brings_the_rest(packages: Packages, tmp_path: Path) -> None:
-    python = new_environment(tmp_path / "clean", str(packages.wheel))
-    tool = shutil.copy(REPOSITORY / "tools" / "try_wheel.py", tmp_path)
-    command = [str(python), "-P", str(tool)]
-    ran = subprocess.run(
-        command, cwd=tmp_path, env=clean_environment(), capture_output=True, text=True, check=False
-    )
-    assert (ran.returncode, ran.stderr) == (0, "")
-    assert "fdvv-studio, fdvv-people, fdvv-campaigns" in ran.stdout
+    assert "fdvv-studio, fdvv-people, fdvv-campaigns" in try_wheels(tmp_path, packages.wheel)[1]

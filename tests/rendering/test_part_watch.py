@@ -44,9 +44,12 @@ class Bench:
         self.asked: list[float] = []
         self.notices: list[str] = []
 
+    def ask(self, _ask: object) -> None:
+        self.asked.append(self.board.largest_cN)
+
     def learn(self) -> CompensationResult:
         """Run a session of four presses after the check's one."""
-        guide = Guide(lambda _ask: self.asked.append(self.board.largest_cN), self.notices.append)
+        guide = Guide(self.ask, self.notices.append)
         with LinkedDevice(self.board, self.person) as device:
             return compensate(device, MODEL, SPEEDS, RigAware(0), session=Session(self.folder), guide=guide)
 
@@ -141,15 +144,9 @@ def test_a_press_that_was_used_is_set_apart_once_the_next_one_shows_the_change(t
 
 def test_a_session_resumed_on_the_same_day_is_not_checked_again(tmp_path: Path) -> None:
     class Stops(Bench):
-        def learn(self) -> CompensationResult:
-            def ask(_ask: object) -> None:
-                if self.person.presses == 3:
-                    raise KeyboardInterrupt
-
-            with LinkedDevice(self.board, self.person) as device:
-                return compensate(
-                    device, MODEL, SPEEDS, RigAware(0), session=Session(self.folder), guide=Guide(ask)
-                )
+        def ask(self, _ask: object) -> None:
+            if self.person.presses == 3:
+                raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt, match="2 presses are kept"):
         Stops(folder=tmp_path / "s").learn()

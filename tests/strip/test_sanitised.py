@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-CORE = Path(__file__).resolve().parents[2] / "firmware" / "core"
-SOURCES = [str(CORE / name) for name in ("strip.c", "strip_link.c", "small_frame.c")]
+from tests.safety._build import CORE, SANITISED, compile_c
+
+SOURCES = tuple(CORE / name for name in ("strip.c", "strip_link.c", "small_frame.c"))
 
 PROGRAM = r"""
 #include "strip.h"
@@ -62,16 +63,8 @@ int main(void) {
 
 @pytest.mark.slow
 def test_neither_noise_nor_wild_clocks_lead_the_strip_astray(tmp_path: Path) -> None:
-    (tmp_path / "program.c").write_text(PROGRAM)
-    flags = [
-        "-std=c99",
-        "-O1",
-        "-g",
-        "-fsanitize=address,undefined",
-        "-fno-sanitize-recover=all",
-        f"-I{CORE}",
-    ]
-    program = tmp_path / "program"
-    subprocess.run(["cc", *flags, "-o", str(program), str(tmp_path / "program.c"), *SOURCES], check=True)
+    source = tmp_path / "program.c"
+    source.write_text(PROGRAM)
+    program = compile_c(tmp_path / "program", *SANITISED, sources=(source, *SOURCES))
     out = subprocess.run([str(program)], capture_output=True, text=True, check=False)
     assert (out.returncode, out.stderr) == (0, "")
