@@ -12,7 +12,7 @@ import pytest
 from tools import check_budget
 from tools.budget_file import Row, parse_limits, write_limits
 from tools.budget_house import begins_with_participle
-from tools.budget_measures import COUNTED, list_files, to_pattern, walk_files
+from tools.budget_measures import list_files, to_pattern
 
 CHECKOUT = Path(__file__).resolve().parents[1]
 
@@ -438,13 +438,6 @@ def test_files_are_the_same_with_git_and_without(repository: Path) -> None:
     assert not {"README.md", "build/out.py", "src/fdvv/made.py", "web/src/messages.ts"} & set(tracked)
     (repository / ".git").rename(repository / "git")
     assert [name for name in list_files(repository) if not name.startswith("git/")] == tracked
-
-
-def test_files_of_this_checkout_are_the_same_with_git_and_without() -> None:
-    if not (CHECKOUT / ".git").exists():
-        pytest.skip("needs a checkout with git")
-    counted = {name for name in walk_files(CHECKOUT) if name.endswith(COUNTED)}
-    assert counted == set(list_files(CHECKOUT))
 
 
 def test_writing_the_same_limits_changes_nothing() -> None:

@@ -49,28 +49,6 @@ def test_a_dropped_file_is_one_click_from_the_editor(page: Page, tmp_path: Path)
     assert [str(curve.stroke) for curve in kept.curves] == ["press", "release"]
 
 
-def test_a_file_is_opened_and_kept_by_keys_alone(page: Page, tmp_path: Path) -> None:
-    path = write_cycle(tmp_path / "By keys.csv")
-    opener = page.get_by_role("button", name="Open file…")
-    for _ in range(20):
-        page.keyboard.press("Tab")
-        if opener.evaluate("element => element === document.activeElement"):
-            break
-    with page.expect_file_chooser() as choosing:
-        page.keyboard.press("Enter")
-    choosing.value.set_files(path)
-    keep = page.get_by_role("button", name="Keep and edit")
-    expect(keep).to_be_focused(timeout=LONG_ms)
-    page.keyboard.press("Shift+Tab")
-    page.keyboard.press("Control+a")
-    page.keyboard.type("Of my own")
-    page.keyboard.press("Enter")
-    page.wait_for_selector(".edit-points")
-    expect(page).to_have_url(re.compile("#/edit/own%3AOf%20my%20own"))
-    with page.expect_file_chooser():
-        page.keyboard.press("o")
-
-
 def test_a_name_that_is_taken_is_refused_beside_it(page: Page, tmp_path: Path) -> None:
     path = write_cycle(tmp_path / "Twice.csv")
     drop(page, path).get_by_role("button", name="Keep and edit").click()

@@ -1,6 +1,5 @@
 """Export and import: what is written is summarized in figures, and what is read goes where it belongs."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -158,12 +157,6 @@ def test_a_table_says_what_an_import_makes_of_it(form: str, tmp_path: Path) -> N
     assert off <= (made.figures["imported_max_cN"] or 0) + 1e-12 < 1
 
 
-def test_a_sound_says_how_like_the_vibration_it_comes_back() -> None:
-    figures = export_vibration(TWO, "wav", "a").figures
-    assert (figures["correlation"] or 0) > 0.999
-    assert figures["full_scale_m_s2"] == pytest.approx(6.7, rel=0.1)
-
-
 @pytest.mark.parametrize(
     ("content", "message"),
     [
@@ -244,8 +237,3 @@ def test_a_cut_export_is_refused(tmp_path: Path) -> None:
         path.write_bytes(whole[:end])
         with pytest.raises(InputError):
             import_file(path, ImportSettings(into="mx-blue", full_scale_m_s2=1.0))
-
-
-def test_an_hjif_file_says_when_it_was_made() -> None:
-    record = json.loads(export_vibration(TWO, "hjif", "a", "2026-02-03").text)
-    assert record["date"] == "2026-02-03"

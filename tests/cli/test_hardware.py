@@ -64,6 +64,7 @@ def test_an_open_part_gives_status_1(fdvv: Run, tmp_path: Path) -> None:
     ran = fdvv("hardware", "check", str(folder))
     assert ran.status == 1
     assert "open at 3 edges" in ran.out
+    assert "limiter-arm.stl is not the file that was exported" in ran.out
 
 
 def test_without_manifold3d_check_says_in_one_line_what_to_install(

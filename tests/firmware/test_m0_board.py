@@ -11,7 +11,7 @@ import pytest
 
 from fdvv_m0.emulator import M0Emulator
 from fdvv_m0.records import TickInputs, TickOutputs
-from tests.firmware._m0 import CHECK, TickFrame, build, frames, sizes_bytes
+from tests.firmware._m0 import CHECK, TickFrame, build, frames
 from tests.firmware._simavr import say
 
 pytestmark = pytest.mark.firmware
@@ -294,10 +294,3 @@ def test_no_tick_is_late_while_every_tick_is_reported_over_usb(elf: Path, is_cac
     assert worst_us < 200
     # what the program says of itself ends a little later and is cut to whole microseconds
     assert all(abs(frame.served_us - worst_us) < 60 for frame in telemetry)
-
-
-def test_the_board_support_leaves_room_for_the_controller(elf: Path) -> None:
-    flash, ram = sizes_bytes(elf)
-    say(f"board support and check: {flash} bytes of flash, {ram} of RAM and 2048 of stack")
-    assert flash <= 12 * 1024
-    assert ram + 2048 <= 5 * 1024

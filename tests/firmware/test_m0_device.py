@@ -56,11 +56,6 @@ def test_a_press_on_the_simulated_rig_is_nearly_that_of_the_host_program(elf: Pa
     assert np.median(np.abs(felt[0] - felt[1])) < 0.05 * np.ptp(felt[1])
 
 
-def test_an_emulated_board_says_that_it_is_simulated_and_what_it_is(elf: Path) -> None:
-    info = open_device(f"emulated:{elf}").info()
-    assert (info.name, info.simulated) == ("emulated itsybitsy-m0", True)
-
-
 def test_a_program_that_is_not_there_is_refused_in_one_line() -> None:
     with pytest.raises(InputError, match="no such file"):
         open_device("emulated:nowhere.elf")

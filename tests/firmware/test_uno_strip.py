@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,7 +14,7 @@ import pytest
 from fdvv.errors import DeviceError
 from fdvv_strip.board import LedPointingTask, StripResult, StripRound
 from fdvv_strip.tables import STRIP_HOST_TIMEOUT_MS, StripLed, StripMode
-from tests.firmware._simavr import build_board, require_tools, say
+from tests.firmware._simavr import build_board, check_memory, require_tools, say
 from tests.firmware._uno_strip import CYCLES_us, StripFrame, UnoStrip, build_strip_emulator
 
 pytestmark = pytest.mark.firmware
@@ -25,8 +24,6 @@ BOARD, LONG = StripRound(), StripRound(200, 0.1, 240, 200, 7, 0.3)
 SHORT = StripRound(200, 0.06, zone_px=20, after_s=0.4)
 OVERFLOW_us = 32768
 TIMSK1, PORTB, DDRB = 0x6F, 0x25, 0x24
-STACK_POINTER, RAM_START, RAM_END, STACK_PAINT = 0x5D, 0x100, 0x8FF, 0xA5
-FLASH_BYTES, RAM_BYTES = 32_768 - 512, 2048
 
 
 @dataclass(frozen=True)
@@ -272,14 +269,6 @@ def test_a_board_that_stands_still_is_reset_and_dark_and_says_why(
     assert LedPointingTask(uno).was_reset
 
 
-def test_a_strip_at_a_round_refuses_another_program_with_one_line(
-    uno: UnoStrip, task: LedPointingTask
-) -> None:
-    task.begin(BOARD)
-    with pytest.raises(DeviceError, match="the strip is at a round of another program; wait for its end"):
-        LedPointingTask(uno)
-
-
 def test_presses_beyond_the_eighth_and_outside_the_round_are_counted_only(
     uno: UnoStrip, task: LedPointingTask
 ) -> None:
@@ -314,15 +303,4 @@ def test_a_damaged_request_is_counted_and_asked_again(uno: UnoStrip, task: LedPo
 def test_flash_and_ram_hold_the_program_and_its_stack(
     uno: UnoStrip, task: LedPointingTask, build: Build
 ) -> None:
-    out = subprocess.run(["avr-size", str(build.elf)], check=True, capture_output=True, text=True).stdout
-    text, data, bss = (int(word) for word in out.splitlines()[1].split()[:3])
-    # paint what nothing has used, work, and see how far the paint was worn off
-    top = uno.peek(STACK_POINTER) | uno.peek(STACK_POINTER + 1) << 8
-    for address in range(RAM_START + data + bss, top - 8):
-        uno.poke(address, STACK_PAINT)
-    played_with(uno, task, SHORT, [0, 5000])
-    painted = [uno.peek(at) == STACK_PAINT for at in range(RAM_START + data + bss, RAM_END + 1)]
-    stack = len(painted) - painted.index(False)
-    say(f"flash {text + data} B of {FLASH_BYTES}, RAM {data + bss} B of {RAM_BYTES}, stack {stack} B")
-    assert text + data <= 8192
-    assert data + bss + 2 * stack <= RAM_BYTES
+    check_memory(uno, build.elf, lambda: played_with(uno, task, SHORT, [0, 5000]))

@@ -17,7 +17,7 @@ from fdvv.protocol.tables import Settings
 from fdvv.twin.rig import Rig
 from fdvv_rig.selftest.diagnosis import Diagnosis, diagnose
 from fdvv_rig.selftest.evidence import Evidence
-from fdvv_rig.selftest.faults import RIG_FAULTS, SLOW_PWM_Hz, _slow_pwm
+from fdvv_rig.selftest.faults import RIG_FAULTS, SLOW_PWM_Hz
 from fdvv_rig.selftest.measure import line_um, measure_rig
 from fdvv_rig.selftest.open import open_rig, with_sensor
 from fdvv_rig.selftest.operator import SOUND, PromptedOperator, SimulatedOperator
@@ -113,13 +113,6 @@ def test_a_line_of_known_height_is_found() -> None:
         telemetry = TickColumns(np.arange(800), place, none, none, none, none.astype(int), none.astype(int))
         assert line_um(telemetry, 1e-3, frequency) == pytest.approx(4.0, rel=0.02)
         assert line_um(telemetry, 1e-3, frequency + 40) < 0.1
-
-
-def test_the_slow_pwm_of_the_fault_has_the_commanded_mean() -> None:
-    ticks = [_slow_pwm(-0.3, i * 1e-3, 1e-3) for i in range(20_000)]
-    assert np.mean(ticks) == pytest.approx(-0.3, abs=1e-3)
-    assert min(ticks) < -0.4
-    assert max(ticks) > -0.2
 
 
 def test_a_real_rig_is_neither_drawn_nor_broken_on_purpose(tmp_path: Path) -> None:

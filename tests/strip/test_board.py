@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from fdvv.errors import DeviceError, InputError, ModelError
+from fdvv.errors import DeviceError, ModelError
 from fdvv.protocol.frame import Frame, FrameDecoder, encode
 from fdvv.protocol.messages import REPLY
 from fdvv_strip.board import LedPointingTask, StripRound
-from fdvv_strip.library import LibraryStrip, open_strip
+from fdvv_strip.library import LibraryStrip
 from fdvv_strip.tables import STRIP_HASH, StripHelloReply, StripMessage, StripMode
 
 QUICK = StripRound(200, 0.1, zone_px=40, after_s=0.2)
@@ -150,13 +150,3 @@ def test_the_clock_may_turn_over_in_a_round(line: LibraryStrip) -> None:
     assert start.end_s > 2**32 * 1e-6 > start.start_s
     line.press_at(start.target_s + 0.01)
     assert task.wait(start).activations_s[0] == pytest.approx(start.target_s + 0.01, abs=1e-6)
-
-
-def test_strips_are_opened_by_name() -> None:
-    with open_strip("host") as task:
-        assert task.firmware == "0.1.0"
-        assert not task.was_reset
-    with pytest.raises(InputError, match="names no LED strip; use one of host, serial:PORT"):
-        open_strip("uno")
-    with pytest.raises(DeviceError, match="cannot be opened"):
-        open_strip("serial:/dev/there-is-none")
