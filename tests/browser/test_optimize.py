@@ -374,13 +374,18 @@ def test_a_run_begins_from_what_others_did_if_there_is_any(page: Page, studio: R
     expect(page.get_by_text("begun from 5 designs scored by 2 simulated people, easy")).to_be_visible()
 
 
-def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: RunningStudio) -> None:
-    form(page, "I compare")
+def begin_comparing(page: Page, kind: str) -> None:
+    """Begin a run of two questions and one that is asked again."""
+    form(page, kind)
     page.get_by_label("Designs").select_option("paper")
     for label, value in (("Budget", "2"), ("Retest", "1")):
         page.get_by_label(label, exact=True).fill(value)
         page.keyboard.press("Enter")
     page.get_by_role("button", name="Begin", exact=True).click()
+
+
+def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: RunningStudio) -> None:
+    begin_comparing(page, "I compare")
     for number, key in ((1, "2"), (2, "0"), (3, "1")):
         page.wait_for_selector(f"h2:has-text('Comparison {number}')")
         for side in ("A", "B"):
@@ -397,12 +402,7 @@ def test_two_are_compared_by_keys_until_the_budget_is_spent(page: Page, studio: 
 def test_a_line_is_felt_and_answered_by_keys_until_the_budget_is_spent(
     page: Page, studio: RunningStudio
 ) -> None:
-    form(page, "I slide")
-    page.get_by_label("Designs").select_option("paper")
-    for label, value in (("Budget", "2"), ("Retest", "1")):
-        page.get_by_label(label, exact=True).fill(value)
-        page.keyboard.press("Enter")
-    page.get_by_role("button", name="Begin", exact=True).click()
+    begin_comparing(page, "I slide")
     choose = page.get_by_role("button", name="This one is best")
     for line, back in ((1, 3), (2, 0)):
         page.wait_for_selector(f"h2:has-text('Line {line}')")

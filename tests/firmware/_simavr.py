@@ -7,10 +7,10 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +21,8 @@ HEADERS = Path("/usr/include/simavr")
 CLOCK_HZ = 16_000_000
 ROOM = 200_000
 BOOT_CYCLES = 20_000
+RAM_START, RAM_END, STACK_POINTER, STACK_PAINT = 0x100, 0x8FF, 0x5D, 0xA5
+FLASH_BYTES, RAM_BYTES = 32_768 - 512, 2048
 
 Signature = tuple[Any, list[Any]]
 SIGNATURES: dict[str, Signature] = {
@@ -67,6 +69,30 @@ def build_board(folder: Path, name: str = "uno_vibration") -> Path:
     board = REPOSITORY / "firmware" / "boards" / name
     subprocess.run(["make", "-C", str(board), f"BUILD={folder}"], check=True, capture_output=True)
     return folder / f"{name}.elf"
+
+
+class Board(Protocol):
+    """An emulated Uno."""
+
+    def peek(self, address: int) -> int: ...
+
+    def poke(self, address: int, value: int) -> None: ...
+
+
+def check_memory(board: Board, elf: Path, work: Callable[[], object]) -> None:
+    """See that flash holds the program, and RAM its data and twice the stack that it needs to work."""
+    out = subprocess.run(["avr-size", str(elf)], check=True, capture_output=True, text=True).stdout
+    text, data, bss = (int(word) for word in out.splitlines()[1].split()[:3])
+    # paint what nothing has used, work, and see how far the paint was worn off
+    free, top = RAM_START + data + bss, board.peek(STACK_POINTER) | board.peek(STACK_POINTER + 1) << 8
+    for address in range(free, top - 8):
+        board.poke(address, STACK_PAINT)
+    work()
+    painted = [board.peek(address) == STACK_PAINT for address in range(free, RAM_END + 1)]
+    stack = len(painted) - painted.index(False)
+    say(f"flash {text + data} B of {FLASH_BYTES}, RAM {data + bss} B of {RAM_BYTES}, stack {stack} B")
+    assert text + data <= 8192
+    assert data + bss + 2 * stack <= RAM_BYTES
 
 
 def build_emulator(folder: Path) -> ctypes.CDLL:

@@ -27,7 +27,7 @@ from fdvv.twin.gesture import plan
 from fdvv_m0.board import EmulatedBoard
 from fdvv_m0.m4 import PIN_ENABLE, M4Emulator
 from fdvv_m0.records import TickInputs
-from tests.firmware._m0 import M4_CHECK, M4_CONTROLLER, build, build_with, frames, sizes_bytes
+from tests.firmware._m0 import M4_CHECK, M4_CONTROLLER, TickFrame, build, build_with, frames, sizes_bytes
 from tests.firmware._simavr import say
 from tests.support.force_loop_press import CONTROLLER, KNOWN, RIG
 
@@ -47,6 +47,22 @@ def started(elf: Path, inputs: TickInputs | None = None) -> M4Emulator:
     emulator = M4Emulator(elf, lambda _outputs: inputs or TickInputs(2048, 1354, 2048))
     emulator.run_ticks(20)
     return emulator
+
+
+def read_ticks(emulator: M4Emulator, count: int) -> list[TickFrame]:
+    """Return what the check program tells of its first ticks over USB."""
+    while not emulator.usb.is_open:
+        emulator.run_ticks(1)
+    emulator.run_ticks(50)
+    return frames(emulator.read()[: 24 * count])[0]
+
+
+def close_loop(board: EmulatedBoard, person: SimulatedPerson | None = None) -> LinkedDevice:
+    """Return the device of a board, its force loop closed."""
+    device = LinkedDevice(board, person or SimulatedPerson(RIG, seed=2))
+    assert device.load_cell is not None
+    device.close_loop(force_loop_gains(KNOWN, device.load_cell, 1e-4, CONTROLLER))
+    return device
 
 
 class Witness(EmulatedBoard):
@@ -80,9 +96,7 @@ class Pressed(NamedTuple):
 @pytest.fixture(scope="module")
 def pressed(elf: Path) -> Pressed:
     board = Witness(elf)
-    device = LinkedDevice(board, SimulatedPerson(RIG, seed=2))
-    assert device.load_cell is not None
-    device.close_loop(force_loop_gains(KNOWN, device.load_cell, 1e-4, CONTROLLER))
+    device = close_loop(board)
     device.upload(plain_surface(), 4.0)
     device.client.ping()
     return Pressed(board, device, device.press(100.0))
@@ -208,9 +222,7 @@ def test_the_largest_program_on_the_dearest_settings_misses_no_tick(elf: Path) -
     person = SimulatedPerson(RIG, seed=2)
     person.settings = settings
     board = EmulatedBoard(elf)
-    device = LinkedDevice(board, person)
-    assert device.load_cell is not None
-    device.close_loop(force_loop_gains(KNOWN, device.load_cell, 1e-4, CONTROLLER))
+    device = close_loop(board, person)
     device.upload_program(full_image(48, 32, settings))
     device.client.stream(1)
     device.client.arm()
@@ -226,9 +238,7 @@ def test_the_largest_program_on_the_dearest_settings_misses_no_tick(elf: Path) -
 
 
 def test_a_pulled_cable_ends_the_force_and_opens_the_loop(elf: Path) -> None:
-    device = LinkedDevice(EmulatedBoard(elf), SimulatedPerson(RIG, seed=2))
-    assert device.load_cell is not None
-    device.close_loop(force_loop_gains(KNOWN, device.load_cell, 1e-4, CONTROLLER))
+    device = close_loop(EmulatedBoard(elf))
     device.upload(plain_surface(), 4.0)
     device.client.arm()
     device.port.step()
@@ -249,11 +259,7 @@ def flushed_while_it_runs(program: Path, folder: Path) -> Path:
 
 
 def test_a_converter_that_is_flushed_while_it_runs_free_starts_again_before_its_tick(tmp_path: Path) -> None:
-    emulator = started(flushed_while_it_runs(M4_CHECK, tmp_path))
-    while not emulator.usb.is_open:
-        emulator.run_ticks(1)
-    emulator.run_ticks(50)
-    ticks, _ = frames(emulator.read()[: 24 * 40])
+    ticks = read_ticks(started(flushed_while_it_runs(M4_CHECK, tmp_path)), 40)
     assert {t.elapsed_ticks for t in ticks[1:]} == {0, 1}
 
 
@@ -276,11 +282,7 @@ def test_a_program_that_hangs_is_reset_by_the_watchdog_with_the_drive_off(elf: P
 
 
 def test_the_check_program_reports_what_the_converters_read() -> None:
-    emulator = started(build(M4_CHECK), TickInputs(1000, 1354, 3000))
-    while not emulator.usb.is_open:
-        emulator.run_ticks(1)
-    emulator.run_ticks(50)
-    ticks, _ = frames(emulator.read()[: 24 * 20])
+    ticks = read_ticks(started(build(M4_CHECK), TickInputs(1000, 1354, 3000)), 20)
     assert {(t.sum, t.lowest, t.highest, t.force_counts) for t in ticks} == {(25_000, 1000, 1000, 3000)}
     assert {t.supply_mV for t in ticks} == {1354 * SUPPLY_GAIN_Q11 >> 11}
     assert {t.elapsed_ticks for t in ticks[1:]} == {1}

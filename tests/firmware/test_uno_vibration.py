@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,15 @@ import numpy as np
 import pytest
 
 from fdvv.program.synth import SILENCE_counts, Slot, Waveform, render
-from tests.firmware._simavr import CLOCK_HZ, Uno, build_board, build_emulator, require_tools, say
+from tests.firmware._simavr import (
+    CLOCK_HZ,
+    Uno,
+    build_board,
+    build_emulator,
+    check_memory,
+    require_tools,
+    say,
+)
 from tests.support.program.vibration_wire import bank_messages, play_message, read_status
 
 pytestmark = pytest.mark.firmware
@@ -20,8 +27,6 @@ TICK_CYCLES = 1000
 COMMAND = 0x3000
 PHASES = range(0, TICK_CYCLES, 8)
 TIMSK1, WATCHDOG_CYCLES = 0x6F, 30 * CLOCK_HZ // 1000
-RAM_START, RAM_END, STACK_POINTER, STACK_PAINT = 0x100, 0x8FF, 0x5D, 0xA5
-FLASH_BYTES, RAM_BYTES = 32_768 - 512, 2048
 
 SNAP = Slot(Waveform.SINE, 3824, 256, 1840, 50_461)
 HUM = Slot(Waveform.SINE, 16 * 60, 1200, 2047)
@@ -223,25 +228,11 @@ def test_the_bus_pins_have_no_pull_ups(uno: Uno) -> None:
     assert uno.peek(mcucr) & 0x10 == 0
 
 
-def sizes(elf: Path) -> tuple[int, int]:
-    """Return the bytes of flash and of RAM that the linker placed."""
-    out = subprocess.run(["avr-size", str(elf)], check=True, capture_output=True, text=True).stdout
-    text, data, bss = (int(word) for word in out.splitlines()[1].split()[:3])
-    return text + data, data + bss
-
-
 def test_flash_and_ram_hold_the_program_and_its_stack(uno: Uno, build: Build) -> None:
-    flash, ram = sizes(build.elf)
-    # paint what nothing has used, work, and see how far the paint was worn off
-    top = uno.peek(STACK_POINTER) | uno.peek(STACK_POINTER + 1) << 8
-    for address in range(RAM_START + ram, top):
-        uno.poke(address, STACK_PAINT)
-    for index in range(len(SLOTS)):
-        uno.write(play_message(index))
-        uno.run(50 * TICK_CYCLES)
-        uno.read(5)
-    painted = [uno.peek(address) == STACK_PAINT for address in range(RAM_START + ram, RAM_END + 1)]
-    stack = len(painted) - painted.index(False)
-    say(f"flash {flash} B of {FLASH_BYTES}, RAM {ram} B of {RAM_BYTES}, stack {stack} B")
-    assert flash <= 8192
-    assert ram + 2 * stack <= RAM_BYTES
+    def play_every_slot() -> None:
+        for index in range(len(SLOTS)):
+            uno.write(play_message(index))
+            uno.run(50 * TICK_CYCLES)
+            uno.read(5)
+
+    check_memory(uno, build.elf, play_every_slot)
