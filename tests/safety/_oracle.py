@@ -56,14 +56,14 @@ class Scene:
 
 @dataclass(frozen=True)
 class Rule:
-    """One fault: when it is looked for and cleared, whether it stops, its condition and evidence."""
+    """One fault: its condition and evidence, when it is looked for and cleared, whether it stops."""
 
     fault: Fault
-    armed_only: bool
-    clear: str
-    stops: bool
     holds: Callable[[Scene], bool]
-    evidence: Callable[[Scene], tuple[int, int]]
+    evidence: Callable[[Scene], tuple[int, int]] = lambda _scene: (0, 0)
+    armed_only: bool = False
+    clear: str = "gone"
+    stops: bool = True
 
 
 NOTHING_SEEN = Inputs()
@@ -80,119 +80,75 @@ def board_bit(bit: int) -> Callable[[Scene], bool]:
 FIRST_RULES = (
     Rule(
         Fault.POSITION_LOW,
-        False,
-        "gone",
-        True,
         lambda s: s.inputs.lowest < s.settings.reading_low,
         lambda s: (s.inputs.lowest, s.settings.reading_low),
     ),
     Rule(
         Fault.POSITION_HIGH,
-        False,
-        "gone",
-        True,
         lambda s: s.inputs.highest > s.settings.reading_high,
         lambda s: (s.inputs.highest, s.settings.reading_high),
     ),
     Rule(
         Fault.POSITION_STUCK,
-        True,
-        "gone",
-        True,
         lambda s: s.equal_sums >= s.settings.stuck_ticks,
         lambda s: (s.equal_sums, s.settings.stuck_ticks),
+        armed_only=True,
     ),
     Rule(
         Fault.POSITION_JUMP,
-        True,
-        "gone",
-        True,
         lambda s: s.moved_um16 > s.jump_um16,
         lambda s: (s.moved_um16, s.jump_um16),
+        armed_only=True,
     ),
     Rule(
         Fault.OVER_FORCE,
-        True,
-        "gone",
-        True,
         lambda s: s.settings.force_gain_q14 != 0 and abs(s.inputs.force_cN64) > s.settings.over_force_cN64,
         lambda s: (abs(s.inputs.force_cN64), s.settings.over_force_cN64),
+        armed_only=True,
     ),
     Rule(
         Fault.OVER_HEAT,
-        False,
-        "gone",
-        True,
         lambda s: s.heat_K >= s.settings.heat_limit_K,
         lambda s: (s.heat_K, s.settings.heat_limit_K),
     ),
     Rule(
         Fault.SUPPLY_LOW,
-        False,
-        "gone",
-        True,
         lambda s: s.inputs.supply_mV < s.settings.supply_low_mV,
         lambda s: (s.inputs.supply_mV, s.settings.supply_low_mV),
     ),
     Rule(
         Fault.SUPPLY_HIGH,
-        False,
-        "gone",
-        True,
         lambda s: s.inputs.supply_mV > s.settings.supply_high_mV,
         lambda s: (s.inputs.supply_mV, s.settings.supply_high_mV),
     ),
     Rule(
         Fault.HOST_LOST,
-        True,
-        "gone",
-        True,
         lambda s: not s.host_heard,
         lambda s: (s.silent_us, 1000 * s.settings.host_timeout_ms),
+        armed_only=True,
     ),
-    Rule(Fault.IMAGE_CORRUPT, False, "any", True, lambda s: False, lambda s: (0, 0)),
-    Rule(Fault.WATCHDOG, False, "any", True, board_bit(WATCHDOG), lambda s: (0, 0)),
+    Rule(Fault.IMAGE_CORRUPT, lambda s: False, clear="any"),
+    Rule(Fault.WATCHDOG, board_bit(WATCHDOG), clear="any"),
     Rule(
         Fault.BROWN_OUT,
-        False,
-        "any",
-        True,
         board_bit(BROWN_OUT),
         lambda s: (s.inputs.supply_mV, s.settings.supply_low_mV),
+        clear="any",
     ),
     Rule(
         Fault.LATE,
-        True,
-        "gone",
-        True,
         lambda s: s.inputs.elapsed_ticks > s.settings.late_ticks,
         lambda s: (s.inputs.elapsed_ticks, s.settings.late_ticks),
+        armed_only=True,
     ),
-    Rule(Fault.OUTPUT, False, "gone", True, board_bit(OUTPUT), lambda s: (0, 0)),
-    Rule(
-        Fault.SETTINGS_CORRUPT,
-        False,
-        "gone",
-        True,
-        lambda s: not s.settings_right,
-        lambda s: s.checksums,
-    ),
-    Rule(Fault.VIBRATION_BOARD, False, "gone", False, board_bit(VIBRATION), lambda s: (0, 0)),
-    Rule(
-        Fault.INTERNAL,
-        False,
-        "never",
-        True,
-        lambda s: s.mode > Mode.FAULT,
-        lambda s: (s.mode, Mode.FAULT),
-    ),
+    Rule(Fault.OUTPUT, board_bit(OUTPUT)),
+    Rule(Fault.SETTINGS_CORRUPT, lambda s: not s.settings_right, lambda s: s.checksums),
+    Rule(Fault.VIBRATION_BOARD, board_bit(VIBRATION), stops=False),
+    Rule(Fault.INTERNAL, lambda s: s.mode > Mode.FAULT, lambda s: (s.mode, Mode.FAULT), clear="never"),
 )
 BEAD_RULES = tuple(
     Rule(
         fault,
-        False,
-        "gone",
-        True,
         lambda s, fault=fault: s.thermistor.fault is fault,  # type: ignore[misc]
         lambda s: s.thermistor.evidence,
     )

@@ -402,28 +402,9 @@ def follow(script: Script, settings: Settings, loads: list[tuple[int, int]], cou
 def broken_beads(script: Script) -> None:
     """Come to every bound of counts and change, cold and warm, then clear while it is so and after."""
     faults = (Fault.THERMISTOR_OPEN, Fault.THERMISTOR_SHORT, Fault.THERMISTOR_JUMP, Fault.THERMISTOR_COLD)
-    odd = (
-        63,
-        64,
-        65,
-        127,
-        128,
-        129,
-        3899,
-        3900,
-        3901,
-        4095,
-        65535,
-        0,
-        700,
-        1500,
-        1960,
-        1965,
-        1970,
-        1975,
-        2245,
-    )
-    for counts in (*odd, *range(1900, 1990, 6), *range(2200, 2320, 14)):
+    edges = (63, 64, 65, 127, 128, 129, 3899, 3900, 3901, 4095, 65535, 0)
+    between = (700, 1500, 1960, 1965, 1970, 1975, 2245)
+    for counts in (*edges, *between, *range(1900, 1990, 6), *range(2200, 2320, 14)):
         script.start(BEADED, replace(bead_board(BEADED), thermistor_lag_ms=(60_000, 1000)[counts % 2]))
         script.ask(BEADED, CoreRequest.BOOTED)
         script.host(0)

@@ -13,25 +13,8 @@ from fdvv.protocol.tables import BoardLimits, Evidence, Settings
 from tests.safety._build import safety_library
 from tests.safety._oracle import Inputs, Supervisor
 
-CALLS = {
-    name: number
-    for number, name in enumerate(
-        (
-            "init",
-            "settings",
-            "ask",
-            "host",
-            "check",
-            "fault",
-            "limit",
-            "heat",
-            "thermistor",
-            "resume",
-            "poke_mode",
-            "poke_faults",
-        )
-    )
-}
+NAMES = "init settings ask host check fault limit heat thermistor resume poke_mode poke_faults"
+CALLS = {name: number for number, name in enumerate(NAMES.split())}
 STEP = np.dtype(
     [
         ("call", "<u4"),

@@ -8,22 +8,23 @@ import numpy as np
 from hypothesis import strategies as st
 
 Damage = Callable[[bytes], bytes]
-JUNK = [
-    b"abc",
-    b"nan",
-    b"-inf",
-    b"inf",
-    b"1e308",
-    b"-1e999",
-    b"9" * 400,
+WORDS = (b"abc", b"nan", b"-inf", b"inf", b"1e308", b"-1e999", b"1e5", b"-999", b"1_0", b"0x1F", b"9" * 400)
+SIGNS = (
     b"\x00",
     b"",
     b'"',
     b",",
     b";",
     b"--",
-]
-JUNK += ["µ".encode(), b"\xff\xfe", b"1_0", b"0x1F", b"{}", b"[[[", b"\n\n", b"\r", b"\x0b", b"1e5", b"-999"]
+    b"{}",
+    b"[[[",
+    b"\n\n",
+    b"\r",
+    b"\x0b",
+    b"\xff\xfe",
+    "µ".encode(),
+)
+JUNK = (*WORDS, *SIGNS)
 
 
 def truncate(part: float) -> Damage:
