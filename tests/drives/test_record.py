@@ -25,9 +25,7 @@ def columns_of(x_mm: FloatArray) -> TickColumns:
         max_size=14,
     )
 )
-def test_the_press_found_in_the_loop_is_that_found_afterwards(
-    pieces: list[tuple[float, int]],
-) -> None:
+def test_the_press_found_in_the_loop_is_that_found_afterwards(pieces: list[tuple[float, int]]) -> None:
     x_mm = np.concatenate([np.full(count, value) for value, count in pieces])
     finder, last = PressFinder(4.0), -1
     for number, value in enumerate(x_mm):

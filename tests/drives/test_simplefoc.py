@@ -92,10 +92,7 @@ def test_in_voltage_control_the_limit_and_the_report_are_voltages() -> None:
     ],
 )
 def test_a_board_that_is_set_up_otherwise_is_refused(other: dict[str, str], text: str) -> None:
-    with (
-        scripted(ScriptedBoard(**other)) as line,
-        pytest.raises(DeviceError, match=text),
-    ):
+    with scripted(ScriptedBoard(**other)) as line, pytest.raises(DeviceError, match=text):
         SimpleFOCDrive(part(line.port), 0.75, 0.05)
 
 

@@ -166,9 +166,7 @@ def test_a_setpoint_that_is_not_zero_at_the_start_is_a_fault_and_keeps_the_drive
     assert not any(change.enable for change in board.emulator.pwm_log)
 
 
-def test_a_press_with_the_loop_closed_over_usb_is_that_of_the_core_bit_for_bit(
-    pressed: Pressed,
-) -> None:
+def test_a_press_with_the_loop_closed_over_usb_is_that_of_the_core_bit_for_bit(pressed: Pressed) -> None:
     board, device, _ = pressed
     done = np.array([(o.duty_q15, o.enable) for _, o in board.log])
     first = int(np.flatnonzero(done[:, 1])[0])

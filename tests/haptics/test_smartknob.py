@@ -58,11 +58,7 @@ def test_the_firmwares_law_snaps_at_the_peak_and_returns_at_the_releases(name: s
 
 
 @settings(max_examples=25, deadline=None)
-@given(
-    peak=st.floats(0.3, 3.7),
-    back=st.floats(0.3, 3.7),
-    fall=st.floats(6, 60),
-)
+@given(peak=st.floats(0.3, 3.7), back=st.floats(0.3, 3.7), fall=st.floats(6, 60))
 def test_every_field_stays_within_what_the_firmware_takes(peak: float, back: float, fall: float) -> None:
     def hill(stroke: Stroke, at: float) -> ForceCurve:
         knots = np.array([0, 0, at, at + 0.2, 4, 4])

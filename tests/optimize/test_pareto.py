@@ -70,10 +70,7 @@ def test_what_lies_within_the_doubt_is_no_reason_to_give_anything_up() -> None:
             TWO,
             [
                 Trial(
-                    i,
-                    DESIGN,
-                    TrialState.DONE,
-                    {"asynchrony_ms": Score(a, 1.0), "hits": Score(b, hits_error)},
+                    i, DESIGN, TrialState.DONE, {"asynchrony_ms": Score(a, 1.0), "hits": Score(b, hits_error)}
                 )
                 for i, (a, b) in enumerate(rows)
             ],

@@ -27,9 +27,7 @@ MODEL = load_builtin("mx-clear")
 SPEEDS = (50.0, 100.0)
 LIGHT = Rig()
 RIG = replace(
-    LIGHT,
-    mover=replace(LIGHT.mover, mass_kg=0.015),
-    keycap_sensor=replace(LIGHT.keycap_sensor, kind="force"),
+    LIGHT, mover=replace(LIGHT.mover, mass_kg=0.015), keycap_sensor=replace(LIGHT.keycap_sensor, kind="force")
 )
 FINGER = replace(Finger(), habit=replace(Finger().habit, push_N=1.5))
 

@@ -21,10 +21,7 @@ LIBRARY = "FDVV_SAFETY_LIBRARY"
 
 
 def compile_c(
-    target: Path,
-    *flags: str,
-    sources: tuple[Path, ...] = (*DRIVERS, *SOURCES),
-    after: tuple[str, ...] = (),
+    target: Path, *flags: str, sources: tuple[Path, ...] = (*DRIVERS, *SOURCES), after: tuple[str, ...] = ()
 ) -> Path:
     """Compile and link, the libraries after the sources; the compiler's words on failure."""
     out = subprocess.run(

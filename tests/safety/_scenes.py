@@ -187,8 +187,7 @@ def jumps(script: Script) -> None:
                     start = min(2**31 - 1, max(-(2**31), -sign * (way // 2)))
                     script.armed(settings, Inputs(displacement_um16=start))
                     script.tick(
-                        settings,
-                        Inputs(sum=1, elapsed_ticks=elapsed, displacement_um16=start + sign * way),
+                        settings, Inputs(sum=1, elapsed_ticks=elapsed, displacement_um16=start + sign * way)
                     )
     for first, second in ((-(2**31), 2**31 - 1), (2**31 - 1, -(2**31)), (0, -(2**31))):
         script.armed(patient, Inputs(displacement_um16=first))

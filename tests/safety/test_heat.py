@@ -27,12 +27,7 @@ from tests.support.inputs import inputs_at
 
 SCENE_s = 60.0
 RIGS = ("voltage", "recommended", "light")
-STRONG = {
-    "force_limit_cN64": 32_000,
-    "duty_gain_q16": 1_048_576,
-    "tick_low_us": 50,
-    "tick_high_us": 4000,
-}
+STRONG = {"force_limit_cN64": 32_000, "duty_gain_q16": 1_048_576, "tick_low_us": 50, "tick_high_us": 4000}
 """A board at any tick whose force only the supervisor's bound of the heat holds back."""
 
 

@@ -84,12 +84,7 @@ def verdict(bench: Bench, name: str, mutant: Mutant, number: int) -> str:
     if out.returncode:
         return "not C"
     try:
-        same = subprocess.run(
-            [program, *bench.files],
-            capture_output=True,
-            check=False,
-            timeout=SECONDS,
-        )
+        same = subprocess.run([program, *bench.files], capture_output=True, check=False, timeout=SECONDS)
     except subprocess.TimeoutExpired:
         return "caught"
     finally:

@@ -155,11 +155,7 @@ def draw_other_rig(random: np.random.Generator, kinds: Sequence[str] = KINDS) ->
             "spring_free_m": u(-1e-3, 4e-3),
         },
         "cable": {"cable_N": u(-0.15, 0.15), "cable_m": u(0.7e-3, 4e-3)},
-        "detent": {
-            "detent_N": u(0.01, 0.06),
-            "detent_m": u(0.8e-3, 3.0e-3),
-            "detent_rad": u(0.0, 6.28),
-        },
+        "detent": {"detent_N": u(0.01, 0.06), "detent_m": u(0.8e-3, 3.0e-3), "detent_rad": u(0.0, 6.28)},
         "friction": {
             "stick_ratio": u(1.1, 1.9),
             "stribeck_m_s": u(0.005, 0.06),

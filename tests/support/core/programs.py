@@ -64,12 +64,7 @@ def when(
 def event(at_um16: int, stroke: int = 0, slowest: int = 0, fastest: int = 65535, slot: int = 0) -> Vibration:
     """Say where to vibrate, in the first state."""
     return Vibration(
-        at_um16=at_um16,
-        slowest_mm_s16=slowest,
-        fastest_mm_s16=fastest,
-        states=1,
-        stroke=stroke,
-        slot=slot,
+        at_um16=at_um16, slowest_mm_s16=slowest, fastest_mm_s16=fastest, states=1, stroke=stroke, slot=slot
     )
 
 
