@@ -9,15 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from msgspec import Struct, inspect
 from tools.snapshot.cases import EDITS
 from tools.snapshot.commands import Commands
 from tools.snapshot.compare import difference
-from tools.snapshot.contract import type_lines
-from tools.snapshot.files import text_of
-from tools.snapshot.normalise import Normaliser
 from tools.snapshot.reference import FOLDER, MACHINE, Reference, Snapshot, snapshots
-from tools.snapshot.values import lines_of, shorten_repeats
+from tools.snapshot.values import lines_of
 
 from tests.support.campaign import campaign
 
@@ -66,22 +62,6 @@ def test_each_snapshot_has_a_name_of_its_own_and_a_text() -> None:
     assert sorted(names) == sorted(path.stem for path in FOLDER.glob("*.txt") if path != MACHINE)
 
 
-@pytest.fixture
-def normaliser(tmp_path: Path) -> Normaliser:
-    return Normaliser({"folder": tmp_path}, ["salt"])
-
-
-def test_paths_and_times_are_left_out(normaliser: Normaliser, tmp_path: Path) -> None:
-    text = f"{tmp_path}/a.csv at 2026-11-24T02:43:16.123Z"
-    assert normaliser.text(text) == "<folder>/a.csv at <time>"
-
-
-def test_a_random_field_counts_by_its_name_and_every_other_one_by_its_value(normaliser: Normaliser) -> None:
-    record = {"crc32": 7, "salt": "x", "began_s": 1.79e9, "time_s": 2.5}
-    named = {"crc32": "<crc32>", "salt": "<salt>", "began_s": "<began_s>", "time_s": 2.5}
-    assert normaliser.value([record]) == [named]
-
-
 def test_the_order_of_fields_counts() -> None:
     assert lines_of({"a": 1, "b": 2}) != lines_of({"b": 2, "a": 1})
 
@@ -97,47 +77,11 @@ def test_one_bit_of_a_long_list_changes_its_digest_and_a_large_change_its_figure
     assert large.rpartition(" ")[0] != figures
 
 
-def test_a_table_of_records_is_shown_by_column_with_a_short_one_item_by_item() -> None:
-    records = [{"trial": number, "design": {"x": number / 2}} for number in range(6)]
-    assert lines_of(records) == [
-        "6 records:",
-        "trial: [0, 1, 2, 3, 4, 5]",
-        "design:",
-        "  6 records:",
-        "  x: [0.0, 0.5, 1.0, 1.5, 2.0, 2.5]",
-    ]
-    assert lines_of(records[:1]) == ["- trial: 0", "  design:", "    x: 0.0"]
-
-
-def test_a_block_that_was_there_before_is_one_line() -> None:
-    block = ["  curve:", "    a: 1", "    b: 2", "    c: 3"]
-    first, shorter = shorten_repeats(["x:", *block, "y:", *block]), [*block[:3], *block[:3]]
-    assert first[:6] == ["x:", *block, "y:"]
-    assert [line[:-12] for line in first[6:]] == ["  curve: ... as before #"]
-    assert shorten_repeats(shorter) == shorter
-
-
 def test_an_array_is_shown_by_its_numbers_however_it_was_compressed() -> None:
     data = np.arange(20.0).tobytes()
     texts = [f"<f8:{base64.b64encode(zlib.compress(data, level)).decode()}" for level in (1, 9)]
     assert texts[0] != texts[1]
     assert lines_of(texts[0]) == lines_of(texts[1]) == lines_of([float(number) for number in range(20)])
-
-
-def test_a_journal_is_shown_by_the_order_and_the_kind_of_its_lines(normaliser: Normaliser) -> None:
-    lines = b'{"crc32": 1, "record": {"press": 1}}\n' * 2 + b'{"crc32": 9, "record": {"run": 1}}\n'
-    text = text_of("a.jsonl", lines, normaliser)
-    assert text.startswith("order: press x2, run\npress:\n")
-
-
-def test_a_page_is_shown_by_its_words_and_a_drawing_by_its_geometry(normaliser: Normaliser) -> None:
-    page = (
-        b"<style>p {color: red}</style><h1>A  <b>report</b></h1><table><tr><td>1<td>2</table>"
-        b'<svg><path d="M0 1L2 3"/><text x="5">force</text></svg>'
-    )
-    *words, geometry = text_of("a.html", page, normaliser).splitlines()
-    assert words == ["A report", "1 | 2", "force"]
-    assert geometry.startswith("[3 elements, 5 numbers: 0 ... 5, rms 2.79284800875 #")
 
 
 BEFORE = "force_cN: 3 numbers: first 1.0, rms 2.00000000001 #0123456789ab\nname: mx-2"
@@ -166,18 +110,3 @@ def test_a_file_is_cut_and_its_numbers_are_set(tmp_path: Path) -> None:
     EDITS["set"](tmp_path, "a.toml", "rounds=2", "trials=5")
     EDITS["keep-lines"](tmp_path, "a.toml", "2")
     assert (tmp_path / "a.toml").read_text() == "rounds = 2 # of each\npeople = 3\n"
-
-
-class Node(Struct):
-    name: str
-    left: int | None = None
-    inner: tuple[Node, ...] = ()
-
-
-def test_a_message_is_shown_by_its_fields_and_not_by_the_names_of_its_records() -> None:
-    assert type_lines(inspect.type_info(Node), ()) == [
-        "record",
-        "  name: text",
-        "  left: integer | null = null",
-        "  inner: list of record as above = []",
-    ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-import zlib
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -12,7 +11,6 @@ import numpy as np
 from fdvv.firmware.core import Core
 from fdvv.protocol.record import Record
 from fdvv.protocol.tables import (
-    IMAGE_MAGIC,
     NONE,
     Condition,
     ImageHeader,
@@ -23,6 +21,7 @@ from fdvv.protocol.tables import (
     Transition,
     Vibration,
 )
+from tests.safety._images import Parts
 
 REST = State(
     press_surface=0,
@@ -75,20 +74,18 @@ def image(
     slots: int = 4,
 ) -> bytes:
     """Put an image together; a table is start and step (um16), velocities (mm_s16), rows of forces (cN64)."""
-    records: list[Record] = []
-    runs = [run for _, run in states]
-    firsts = np.cumsum([0, *(len(run) for run in runs)])
-    for (state, run), first in zip(states, firsts, strict=False):
-        records.append(replace(state, first_transition=int(first), transitions=len(run)))
-    records += [transition for run in runs for transition in run]
-    tail: list[Record] = [*vibrations, *[WAVE] * slots]
-    at = 32 + sum(r.length_bytes() for r in [*records, *tail]) + 12 * len(tables)
-    pool = b""
+    parts = Parts(vibrations=[*vibrations], slots=[WAVE] * slots)
+    for state, run in states:
+        parts.states.append(replace(state, first_transition=len(parts.transitions), transitions=len(run)))
+        parts.transitions += run
+    records: list[Record] = [*parts.states, *parts.transitions, *parts.vibrations, *parts.slots]
+    at = ImageHeader.length_bytes() + len(tables) * Surface.length_bytes()
+    at += sum(record.length_bytes() for record in records)
     for start, step, velocities, forces in tables:
         rows, columns = np.shape(forces)
-        here = at + len(pool)
-        pool += struct.pack(f"<{rows}H", *velocities) + np.asarray(forces, "<i2").tobytes()
-        records.append(
+        here = at + len(parts.pool)
+        parts.pool += struct.pack(f"<{rows}H", *velocities) + np.asarray(forces, "<i2").tobytes()
+        parts.surfaces.append(
             Surface(
                 start_um16=start,
                 step_um16=step,
@@ -98,23 +95,7 @@ def image(
                 forces_at=here + 2 * rows,
             )
         )
-    body = b"".join(record.pack() for record in [*records, *tail]) + pool
-    body += bytes(-len(body) % 4)
-    header = ImageHeader(
-        magic=IMAGE_MAGIC,
-        crc32=0,
-        travel_um16=64000,
-        size_bytes=32 + len(body),
-        version=1,
-        start_state=0,
-        states=len(states),
-        transitions=int(firsts[-1]),
-        surfaces=len(tables),
-        vibrations=len(vibrations),
-        slots=slots,
-        name=b"test",
-    )
-    return replace(header, crc32=zlib.crc32((header.pack() + body)[8:])).pack() + body
+    return parts.image(name=b"test")
 
 
 def armed(program: bytes, settings: Settings | None = None) -> Core:
