@@ -40,13 +40,6 @@ def test_the_bands_width_is_the_root_of_the_sum_of_what_tolerances_do_alone(spri
     np.testing.assert_allclose(half, wanted, rtol=0.12)
 
 
-def test_a_thousandth_of_wire_matters_as_its_fourth_power(spring: SpringMechanism) -> None:
-    thicker = varied(spring, {"coil.wire_mm": 0.001})
-    assert isinstance(thicker, SpringMechanism)
-    wire = spring.coil.wire_mm
-    assert thicker.coil.rate_cN_mm / spring.coil.rate_cN_mm == pytest.approx((1 + 0.001 / wire) ** 4)
-
-
 def test_shares_are_sorted_and_name_their_sources(spring: SpringMechanism) -> None:
     shares = band_of(spring, X, draws=20).shares
     assert [s.rms_cN for s in shares] == sorted((s.rms_cN for s in shares), reverse=True)

@@ -14,7 +14,7 @@ from fdvv_botorch.models import torch_there
 from fdvv_people.optimize.engines.registry import engine_names, engine_of
 from fdvv_people.optimize.paper_space import paper_space
 from fdvv_people.optimize.problem import Engine, Problem, Trial, TrialState
-from fdvv_people.optimize.space import Constraint, DesignSpace, Parameter
+from fdvv_people.optimize.space import Constraint, DesignSpace
 from fdvv_people.task.score import Objective, Score
 from tests.optimize.problems import BOWL, HELD, bowl_ms, problem, run, scored
 
@@ -127,23 +127,6 @@ def test_an_unknown_engine_or_option_is_refused_by_name() -> None:
         engine_of("annealing")
     with pytest.raises(InputError, match="heat"):
         engine_of("random", {"heat": 3})
-
-
-def test_with_trials_of_others_the_first_design_is_near_what_they_did_best() -> None:
-    space = DesignSpace("square", (Parameter("a_mm", 0.0, 1.0), Parameter("b_mm", 0.0, 2.0)))
-    plain = Problem(space, (Objective("score_ms"),), 4)
-    designs = engine_of("sobol").suggest(plain, (), 40)
-    others = tuple(
-        Trial(
-            i, d, TrialState.DONE, {"score_ms": Score((d["a_mm"] - 0.8) ** 2 + (d["b_mm"] - 0.4) ** 2, 0.01)}
-        )
-        for i, d in enumerate(designs)
-    )
-    first, second = engine_of("gp").suggest(replace(plain, prior=others), (), 2)
-    for design in (first, second):
-        assert design["a_mm"] == pytest.approx(0.8, abs=0.1)
-        assert design["b_mm"] == pytest.approx(0.4, abs=0.15)
-    assert first != second
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -60,18 +60,6 @@ def test_the_posterior_is_that_of_the_normal_equations_with_the_weights_as_unkno
     np.testing.assert_allclose(sd, spread, rtol=1e-5)
 
 
-def test_a_score_with_a_small_error_is_believed_more_than_one_with_a_large_one() -> None:
-    scores = observed(14)
-    lucky = scores.values.copy()
-    lucky[0] -= 30.0
-    errors = np.full(14, 1.0)
-    means = []
-    for error in (1.0, 30.0):
-        errors[0] = error
-        means.append(believe(Observed(scores.places, lucky, errors)).predict(scores.places[:1])[0][0])
-    assert abs(means[0] - lucky[0]) < abs(means[1] - lucky[0])
-
-
 def test_a_fantasy_leaves_the_mean_where_it_is_and_takes_the_spread() -> None:
     belief = believe(observed(10))
     place = np.array([0.9, 0.1, 0.9])
