@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from fdvv.errors import BuildError, DeviceError
+from fdvv.errors import DeviceError
 from fdvv_drives.drive import LostAnswerError
 from fdvv_drives.moteus_drive import MoteusDrive, MoteusPart
 from fdvv_drives.testing.moteus_end import FarMoteus
@@ -152,9 +152,3 @@ def test_a_frame_that_the_adapter_refuses_is_one_line() -> None:
         with pytest.raises(DeviceError, match="refuses the frame"):
             drive.exchange(0.0)
         drive.close()
-
-
-def test_without_the_library_one_line_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "moteus", None)
-    with pytest.raises(BuildError, match=r"pip install 'fdvv-drives\[moteus\]'"):
-        MoteusDrive(MoteusPart("nowhere"), 0.5, 0.1)

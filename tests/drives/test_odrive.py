@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import struct
-import sys
 
 import pytest
 
-from fdvv.errors import BuildError, DeviceError
+from fdvv.errors import DeviceError
 from fdvv_drives.drive import LostAnswerError, Reading
 from fdvv_drives.odrive_drive import ODriveDrive, ODrivePart
 from tests.drives.conftest import need
@@ -138,15 +137,3 @@ def test_a_silent_bus_is_one_line() -> None:
         pytest.raises(DeviceError, match=r"no heartbeat on .* in 1 s; check power, node and bit rate"),
     ):
         ODriveDrive(part(line.port), 0.5)
-
-
-def test_an_adapter_that_is_not_there_is_one_line() -> None:
-    with pytest.raises(DeviceError, match="cannot be opened") as error:
-        ODriveDrive(part("/dev/no-such-adapter"), 0.5)
-    assert "\n" not in str(error.value)
-
-
-def test_without_the_library_one_line_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "can", None)
-    with pytest.raises(BuildError, match=r"pip install 'fdvv-drives\[odrive\]'"):
-        ODriveDrive(part("nowhere"), 0.5)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from pathlib import Path
 from types import MappingProxyType
 
@@ -10,8 +12,16 @@ import pytest
 from fdvv import extras
 from fdvv.device.open import KINDS, open_board, open_device, pressed_by_person
 from fdvv.errors import BuildError, DeviceError, InputError
+from tests.drives.conftest import LIBRARIES, need
 
 DRIVES = ("moteus", "odrive", "simplefoc")
+PORT = '"/dev/no-such-port"'
+PARTS = {
+    "moteus": (f"port = {PORT}", "Nm"),
+    "odrive": (f'channel = {PORT}\ninterface = "slcan"\nwatchdog_ms = 50.0', "Nm"),
+    "simplefoc": (f"port = {PORT}\nwatchdog_ms = 50.0", "A"),
+}
+"""What a stage file says of a drive, and the unit of its command."""
 
 
 @pytest.mark.parametrize("kind", DRIVES)
@@ -48,12 +58,32 @@ def test_a_drive_is_no_board(monkeypatch: pytest.MonkeyPatch) -> None:
         open_board("moteus:stage.toml")
 
 
-def test_a_port_that_is_not_there_is_one_line(tmp_path: Path) -> None:
-    path = tmp_path / "stage.toml"
+def stage_file(kind: str, folder: Path) -> Path:
+    """Write the stage file of a drive at a port that is not there."""
+    part, unit = PARTS[kind]
+    path = folder / "stage.toml"
     path.write_text(
-        '[moteus]\nport = "/dev/no-such-port"\n[stage]\nlead_mm_rev = 10.0\ntravel_mm = 6.0\n'
+        f"[{kind}]\n{part}\n[stage]\nlead_mm_rev = 10.0\ntravel_mm = 6.0\nforce_N_{unit} = 4.0\n"
         "[limits]\nforce_N = 3.0\n"
     )
-    with pytest.raises(DeviceError, match="/dev/no-such-port: cannot be opened") as error:
-        open_device(f"moteus:{path}")
+    return path
+
+
+@pytest.mark.parametrize("kind", DRIVES)
+def test_a_port_that_is_not_there_is_one_line(kind: str, tmp_path: Path) -> None:
+    need(kind)
+    with pytest.raises(DeviceError, match="cannot be opened") as error:
+        open_device(f"{kind}:{stage_file(kind, tmp_path)}")
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("kind", "package"),
+    [("moteus", "'fdvv-drives[moteus]'"), ("odrive", "'fdvv-drives[odrive]'"), ("simplefoc", "pyserial")],
+)
+def test_without_its_library_one_line_says_what_to_install(
+    kind: str, package: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, LIBRARIES[kind], None)
+    with pytest.raises(BuildError, match=re.escape(f"pip install {package}")):
+        open_device(f"{kind}:{stage_file(kind, tmp_path)}")

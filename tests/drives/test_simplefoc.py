@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 
 import pytest
 
-from fdvv.errors import BuildError, DeviceError
+from fdvv.errors import DeviceError
 from fdvv_drives.drive import LostAnswerError, Reading
 from fdvv_drives.simplefoc_drive import SimpleFOCDrive, SimpleFOCPart
 from tests.drives.conftest import need
@@ -160,15 +159,3 @@ def test_a_drive_without_a_watchdog_says_so_in_its_name() -> None:
         assert drive.watchdog_s is None
         assert drive.name == "simplefoc M, no watchdog"
         drive.close()
-
-
-def test_a_port_that_is_not_there_is_one_line() -> None:
-    with pytest.raises(DeviceError, match="cannot be opened") as error:
-        SimpleFOCDrive(part("/dev/no-such-port"), 0.75, 0.5)
-    assert "\n" not in str(error.value)
-
-
-def test_without_the_library_one_line_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "serial", None)
-    with pytest.raises(BuildError, match="pip install pyserial"):
-        SimpleFOCDrive(part("nowhere"), 0.75, 0.5)

@@ -95,12 +95,6 @@ def test_a_sentence_says_what_was_seen_and_what_to_do() -> None:
     assert " cN: look at its cable and amplifier" in text
 
 
-def test_a_coil_of_half_the_force_is_named_at_the_second_press() -> None:
-    bench = Bench("gain halved")
-    assert bench.named().fault.part == "coil"
-    assert bench.person.presses <= 2
-
-
 def test_a_person_who_does_not_press_is_asked_again_and_no_part_is_blamed() -> None:
     class Absent(PlantedPerson):
         def press(self, image: bytes, velocity_mm_s: float, settings: Settings) -> PlantedPerson:

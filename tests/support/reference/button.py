@@ -21,7 +21,7 @@ from fdvv.twin.gesture import Gesture
 from fdvv.twin.rig import ForceSensor
 from fdvv.twin.simulate_button import SETTLE_TICKS, ButtonNoise, button_ticks
 from fdvv.units import FloatArray, cN_from_N, mm_from_m
-from tests.support.reference.plant import _hunt_crossley, _smooth_step
+from tests.support.reference.plant import _hunt_crossley, referent
 
 LONGEST_STEP_s = 2e-4
 
@@ -100,10 +100,7 @@ class _Plant:
     def muscle(self, t: float, x: float, v: float) -> float:
         """Return the pull of the referent, with the noise of its effort."""
         g = self.gesture
-        down, rate_down = _smooth_step((t - g.onset_s) / g.press_s)
-        up, rate_up = _smooth_step((t - g.onset_s - g.press_s - g.dwell_s) / g.release_s)
-        reach = g.end_m - g.start_m
-        to, rate = g.start_m + reach * (down - up), reach * (rate_down / g.press_s - rate_up / g.release_s)
+        to, rate = referent(g, t)
         to, rate = to + self.detour(t), rate + self.detour.slope(t)
         return (1 + self.effort(t)) * (g.stiffness_N_m * (to - x) + g.damping_N_s_m * (rate - v))
 

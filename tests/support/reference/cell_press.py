@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,7 +21,6 @@ STOP_m, STOP_us = 4e-3, 1600
 DWELL_s, TAIL_s = 0.02, 0.02
 IMPACT_s = (-0.002, 0.02)
 """What counts as the impact, around the first contact with the bottom stop."""
-Step = Callable[[int, bool], np.void]
 
 
 @dataclass(frozen=True)

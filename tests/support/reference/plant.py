@@ -24,6 +24,14 @@ def _smooth_step(s: float) -> tuple[float, float]:
     return 10 * s**3 - 15 * s**4 + 6 * s**5, 30 * s**2 - 60 * s**3 + 30 * s**4
 
 
+def referent(g: Gesture, t: float) -> tuple[float, float]:
+    """Return the intended position and velocity of the finger."""
+    down, rate_down = _smooth_step((t - g.onset_s) / g.press_s)
+    up, rate_up = _smooth_step((t - g.onset_s - g.press_s - g.dwell_s) / g.release_s)
+    reach = g.end_m - g.start_m
+    return g.start_m + reach * (down - up), reach * (rate_down / g.press_s - rate_up / g.release_s)
+
+
 def _hunt_crossley(k: float, alpha: float, depth: float, rate: float) -> float:
     return max(0.0, k * max(depth, 0.0) * (1 + 1.5 * alpha * rate))
 
@@ -39,14 +47,6 @@ class ReferencePlant:
     ratio: float = 0.0
     enabled: bool = False
     modulation: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 0.0)
-
-    def referent(self, t: float) -> tuple[float, float]:
-        """Return the intended position and velocity of the finger."""
-        g = self.gesture
-        down, rate_down = _smooth_step((t - g.onset_s) / g.press_s)
-        up, rate_up = _smooth_step((t - g.onset_s - g.press_s - g.dwell_s) / g.release_s)
-        reach = g.end_m - g.start_m
-        return g.start_m + reach * (down - up), reach * (rate_down / g.press_s - rate_up / g.release_s)
 
     def touch(self, y: FloatArray) -> float:
         """Return the force between cone and cap."""
@@ -69,7 +69,7 @@ class ReferencePlant:
     def muscle(self, t: float, y: FloatArray) -> float:
         """Return the pull of the referent, with the noise of its effort."""
         t0, t1, u0, u1 = self.modulation
-        x, v = self.referent(t)
+        x, v = referent(self.gesture, t)
         pull = self.gesture.stiffness_N_m * (x - y[0]) + self.gesture.damping_N_s_m * (v - y[1])
         return float(pull * (1 + u0 + (u1 - u0) * (t - t0) / (t1 - t0)))
 
