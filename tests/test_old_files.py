@@ -6,14 +6,9 @@ What they are is in tests/files/old/README.md.
 from __future__ import annotations
 
 import json
-import runpy
 import shutil
-import signal
-import subprocess
-import sys
 import urllib.request
 from collections.abc import Callable, Iterator
-from http.cookiejar import CookieJar
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +16,8 @@ import numpy as np
 import pytest
 
 from fdvv import Stroke, load_model
+from tests.studio.running import RunningStudio
+from tests.support.command_line import Ran
 
 OLD = Path(__file__).parent / "files" / "old"
 PASSPHRASE = ("--passphrase-file", "passphrase.txt")
@@ -29,19 +26,15 @@ Run = Callable[..., Any]
 
 
 @pytest.fixture
-def fdvv(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+def fdvv(fdvv: Callable[..., Ran], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
     """Run a command in a copy of the old files and return the JSON that it prints."""
     shutil.copytree(OLD, tmp_path / "old")
     monkeypatch.chdir(tmp_path / "old")
 
     def run(*words: str, status: int = 0) -> Any:
-        monkeypatch.setattr("sys.argv", ["fdvv", *words, "--json"])
-        capsys.readouterr()
-        with pytest.raises(SystemExit) as stop:
-            runpy.run_module("fdvv", run_name="__main__")
-        out, err = capsys.readouterr()
-        assert stop.value.code == status, err
-        return err if status else json.loads(out)
+        ran = fdvv(*words, "--json")
+        assert ran.status == status, ran.err
+        return ran.err if status else ran.json
 
     return run
 
@@ -185,30 +178,20 @@ def test_a_study_is_verified_unsealed_and_analysed(fdvv: Run) -> None:
     fdvv("study", "analyse", "study")
 
 
-class Studio:
-    """``fdvv studio`` on a project, asked as its page asks."""
+class Studio(RunningStudio):
+    """A studio that is asked as its page asks."""
 
     def __init__(self, project: Path) -> None:
-        words = ["studio", "--project", str(project), "--port", "0", "--no-browser"]
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "fdvv", *words], stdout=subprocess.PIPE, text=True
-        )
-        assert self.process.stdout is not None
-        address = self.process.stdout.readline().split()[-1]
-        self._base = address.partition("/?")[0]
-        self._opener = urllib.request.build_opener(urllib.request.HTTPCookieProcessor(CookieJar()))
-        self._opener.open(address).close()
+        super().__init__(project)
+        self._opener = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())
+        self._opener.open(self.address).close()
 
     def ask(self, call: str, **question: Any) -> Any:
-        headers = {"Content-Type": "application/json", "Origin": self._base}
+        headers = {"Content-Type": "application/json", "Origin": self.base}
         data = json.dumps(question).encode()
-        asked = urllib.request.Request(f"{self._base}/api/{call}", data, headers)
+        asked = urllib.request.Request(f"{self.base}/api/{call}", data, headers)
         with self._opener.open(asked) as answer:
             return json.load(answer)
-
-    def close(self) -> None:
-        self.process.send_signal(signal.SIGTERM)
-        self.process.communicate(timeout=20)
 
 
 @pytest.fixture
@@ -216,7 +199,7 @@ def studio(tmp_path: Path) -> Iterator[Studio]:
     shutil.copytree(OLD / "project", tmp_path / "project")
     running = Studio(tmp_path / "project")
     yield running
-    running.close()
+    running.stop()
 
 
 def test_a_project_is_opened_in_the_studio(studio: Studio) -> None:
