@@ -18,12 +18,11 @@ FORCE_LOOP = REPOSITORY / "firmware" / "force_loop"
 FLAGS = (f"-I{NATIVE}", f"-I{FORCE_LOOP}", "-DFDVV_FORCE_LOOP")
 SOURCES = tuple(path for part in (NATIVE, CORE, FORCE_LOOP) for path in sorted(part.glob("*.c")))
 
-# run in a process of its own: the sanitiser ends it at the first fault
-EXERCISE = """
+ON_LIBRARY = """
 import ctypes, sys
 import fdvv._native as native
-sanitised = ctypes.CDLL(sys.argv[1])
-native.library = lambda: sanitised
+other = ctypes.CDLL(sys.argv[1])
+native.library = lambda: other
 import fdvv.model.fit as fit, fdvv.twin.rig_kernel as kernel
 fit.library = kernel.library = native.library
 import numpy as np
@@ -33,6 +32,12 @@ from fdvv.model.curve import MeasuredCurve, Stroke
 from fdvv.model.fit import fit_curve
 from fdvv import load_builtin
 rng = np.random.default_rng(1)
+"""
+"""Begins a program that fits and presses with the kernels of another library, which is named to it."""
+# run in a process of its own: the sanitiser ends it at the first fault
+EXERCISE = (
+    ON_LIBRARY
+    + """
 for count in (4, 16, 17, 120, 800):
     x = np.cumsum(rng.uniform(1e-6, 0.02, count))
     for degree in (1, 2, 3):
@@ -47,6 +52,7 @@ for velocity in (5.0, 100.0, 500.0):
     device.press(velocity)
 print("done")
 """
+)
 
 
 def test_an_array_lives_as_long_as_its_address() -> None:

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 
 import pytest
 
 from fdvv_strip.library import LibraryStrip
-from tests.support.command_line import Ran
-
-Run = Callable[..., Ran]
+from tests.support.command_line import Run
 
 
 def test_a_strip_is_checked_and_every_press_printed(fdvv: Run) -> None:

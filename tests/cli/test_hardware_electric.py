@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.support.command_line import Ran
-
-Run = Callable[..., Ran]
+from tests.support.command_line import Run
 
 
 def test_the_bill_is_printed_and_written_as_a_table(fdvv: Run) -> None:

@@ -13,6 +13,7 @@ from types import ModuleType
 import pytest
 
 from tests.package.conftest import REPOSITORY, module_of
+from tests.test_native import ON_LIBRARY
 
 TARGETS = {
     "x86_64-windows-gnu": ("win32", b"MZ"),
@@ -24,20 +25,10 @@ TARGETS = {
     "x86_64-linux-musl": ("linux", b"\x7fELF"),
 }
 """Beside each its system and the first bytes of its libraries."""
-EXERCISE = """
-import ctypes, hashlib, sys
-import fdvv._native as native
-other = ctypes.CDLL(sys.argv[1])
-native.library = lambda: other
-import fdvv.model.fit as fit, fdvv.twin.rig_kernel as kernel
-fit.library = kernel.library = native.library
-import numpy as np
-from fdvv.device.twin import TwinDevice
-from fdvv.model.surface import ForceSurface
-from fdvv.model.curve import MeasuredCurve, Stroke
-from fdvv.model.fit import fit_curve
-from fdvv import load_builtin
-rng = np.random.default_rng(1)
+EXERCISE = (
+    ON_LIBRARY
+    + """
+import hashlib
 found = hashlib.sha256()
 for count in (40, 400):
     curve = MeasuredCurve(np.cumsum(rng.uniform(1e-6, 0.02, count)), rng.normal(50, 30, count), Stroke.PRESS)
@@ -49,6 +40,7 @@ for velocity in (5.0, 100.0, 500.0):
     found.update(press.force_cN.tobytes() + press.displacement_mm.tobytes())
 print(found.hexdigest())
 """
+)
 
 
 @pytest.fixture
