@@ -47,11 +47,11 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def start_studio(tmp_path: Path) -> Iterator[Callable[..., RunningStudio]]:
-    """Yield a function that starts a studio: sources as arguments, project by name, below a fresh folder."""
+    """Yield a function that starts a studio on sources, its project below a fresh folder."""
     running: list[RunningStudio] = []
 
-    def start(*sources: Path, project: Path | None = None) -> RunningStudio:
-        running.append(RunningStudio(project or tmp_path / "project", sources))
+    def start(*sources: Path) -> RunningStudio:
+        running.append(RunningStudio(tmp_path / "project", sources))
         return running[-1]
 
     yield start

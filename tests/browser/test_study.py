@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,12 +32,6 @@ SIZES: dict[InputMethod, dict[str, Any]] = {
     "mouse": {"viewport": {"width": 1280, "height": 720}},
     "touch": {"viewport": {"width": 820, "height": 1180}, "has_touch": True},
 }
-
-
-@pytest.fixture
-def studio(tmp_path: Path, start_studio: Callable[..., RunningStudio]) -> RunningStudio:
-    """A studio whose project is made before: see the study fixture."""
-    return start_studio(project=tmp_path / "project")
 
 
 @pytest.fixture

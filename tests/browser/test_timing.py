@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,12 +19,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
 
 TRIALS, PRESSES, CONDITIONS = 2, 3, 3
-
-
-@pytest.fixture
-def studio(tmp_path: Path, start_studio: Callable[..., RunningStudio]) -> RunningStudio:
-    """A studio whose project is made before: see the study fixture."""
-    return start_studio(project=tmp_path / "project")
 
 
 @pytest.fixture
