@@ -117,6 +117,11 @@ class StillStage:
         self._live("telemetry of FDVV ended")
         return tuple(self._rendered(label, one) for label, one in self.labels.items())
 
+    def _rendered(self, label: str, one: Stimulus) -> Rendered:
+        # what differs between renderings differs in length here too
+        error_cN = (1.0,) if one.rendered == "FD" else (2.25, 0.125)
+        return Rendered(label, one.name, 2, error_cN, (80.0,), len(one.name))
+
     def close(self) -> None:
         self.closed = True
 

@@ -25,8 +25,8 @@ class Page:
         """Send an ask."""
         self._socket.send_json({"channel": channel or self.channel, "body": {"type": kind, **more}})
 
-    def hear(self, kind: str) -> dict[str, Any]:
-        """Return the next message of a kind, or the first error."""
+    def hear(self, *kinds: str) -> dict[str, Any]:
+        """Return the next message of these kinds, or the first error."""
         while True:
             envelope = self._socket.receive_json()
             body = {"type": "error", **envelope} if "error" in envelope else envelope["body"]
@@ -34,7 +34,7 @@ class Page:
                 self.heard.append(body)
             if body["type"] == "step":
                 self.step = dict(body)
-            if body["type"] in (kind, "error"):
+            if body["type"] in (*kinds, "error"):
                 return dict(body)
 
     def sit(self, seat: str) -> dict[str, Any]:

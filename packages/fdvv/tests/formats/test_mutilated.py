@@ -98,7 +98,7 @@ def test_any_numbers_under_a_header_are_read_or_refused(
     check(files.write(tmp_path, "a.csv", "\n".join([header, *(",".join(row) for row in rows)])))
 
 
-def test_a_spreadsheet_whose_elements_are_not_closed_is_refused(files: Any, tmp_path: Path) -> None:
+def test_a_spreadsheet_whose_elements_are_not_closed_is_refused(tmp_path: Path) -> None:
     # the spreadsheet library would go on for ever
     path = files.write(tmp_path, "a.ods", files.ods_from_xml("<table:table-row><table:table-cell>"))
     with pytest.raises(InputError, match="not well formed"):
