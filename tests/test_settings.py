@@ -15,7 +15,7 @@ from tools.make_studio_types import settings_reference
 
 from fdvv.bench.settings import CaptureSettings
 from fdvv.cli.settings import settings_options
-from fdvv.errors import ModelError
+from fdvv.errors import ModelError, SettingError
 from fdvv.protocol.tables import SURFACE_VELOCITIES
 from fdvv.rendering.settings import (
     SPEED_LIMIT,
@@ -24,7 +24,7 @@ from fdvv.rendering.settings import (
     ProbeSettings,
     TuneSettings,
 )
-from fdvv.settings import SettingError, Settings, about, settings_of
+from fdvv.settings import Settings, about, settings_of
 from fdvv_studio.studio.jobs.orders import SETTINGS
 
 EVERY = (CaptureSettings, CompensateSettings, FeasibleSettings, ProbeSettings, TuneSettings)
