@@ -14,10 +14,10 @@ from tools.make_record_reference import settings_tables
 from tools.make_studio_types import settings_reference
 
 from fdvv.cli.settings import settings_options
-from fdvv.errors import ModelError
+from fdvv.errors import ModelError, SettingError
 from fdvv.protocol.tables import SURFACE_VELOCITIES
 from fdvv.rendering.settings import SPEED_LIMIT, CompensateSettings, ProbeSettings
-from fdvv.settings import SettingError, Settings, about
+from fdvv.settings import Settings, about
 from fdvv_studio.studio.jobs.orders import SETTINGS
 
 

@@ -3,6 +3,7 @@
 FdvvError
 ├── InputError    a file or value from a person cannot be used (exit status 2)
 ├── ModelError    numbers that do not make a curve or a model
+│   └── SettingError  a setting that does not go with another
 ├── FitError      a curve cannot be fitted as asked
 ├── DeviceError   a device refused, failed or went away
 │   └── PartFaultError  a part of its rig is broken or wired wrongly
@@ -12,7 +13,6 @@ FdvvError
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
@@ -51,6 +51,23 @@ class InputError(FdvvError):
 
 class ModelError(FdvvError, ValueError):
     """Numbers that do not make a curve, a surface or a model; says what was received."""
+
+
+class SettingError(ModelError):
+    """A setting that does not go with another, or with what is worked on.
+
+    Parameters
+    ----------
+    name : of the setting. reason, remedy : as of `InputError`, which a door makes of it under its own name.
+    """
+
+    def __init__(self, name: str, reason: str, remedy: str) -> None:
+        self.name, self.reason, self.remedy = name, reason, remedy
+        super().__init__(f"{name} {reason}; {remedy}")
+
+    def as_option(self) -> InputError:
+        """Return what a command says of it: the option has the setting's name."""
+        return InputError(f"--{self.name.replace('_', '-')}", "option", self.reason, self.remedy)
 
 
 class FitError(FdvvError, ValueError):
@@ -101,5 +118,7 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
     otherwise : "use one of ..." with all of them if left out.
     """
     names = tuple(known)
+    import difflib  # most commands misspell nothing
+
     near = difflib.get_close_matches(name, names, 1, NEAR_ratio)
     return f"did you mean {near[0]}?" if near else otherwise or f"use one of {', '.join(names)}"

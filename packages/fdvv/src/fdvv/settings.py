@@ -63,19 +63,6 @@ def about(
     return Meta(description=help, extra=shown | {"choices": tuple(choices), "more": more}, **bounds)
 
 
-class SettingError(ModelError):
-    """A setting that does not go with another, or with what is worked on.
-
-    Parameters
-    ----------
-    name : of the setting. reason, remedy : as of `InputError`, which a door makes of it under its own name.
-    """
-
-    def __init__(self, name: str, reason: str, remedy: str) -> None:
-        self.name, self.reason, self.remedy = name, reason, remedy
-        super().__init__(f"{name} {reason}; {remedy}")
-
-
 UNITS = (("_mm_s", "mm/s"), ("_mm", "mm"))
 """Of settings, by the end of their names."""
 

@@ -14,10 +14,8 @@ import click
 from fdvv import extras
 from fdvv._version import __version__
 from fdvv.cli import ui
-from fdvv.cli.settings import refused_option
-from fdvv.errors import BuildError, DeviceError, FdvvError, InputError, WorkerError
+from fdvv.errors import BuildError, DeviceError, FdvvError, InputError, SettingError, WorkerError
 from fdvv.force_text import UNITS, shown_in
-from fdvv.settings import SettingError
 
 COMMANDS = {
     "assign": ("fdvv.cli.models", "Assign a curve, or a segment of one, to press or release of a model."),
@@ -153,7 +151,7 @@ def main() -> NoReturn:
     except click.ClickException as error:
         _stop(2, error.format_message())
     except SettingError as error:
-        refused = refused_option(error)
+        refused = error.as_option()
         _stop(2, str(refused), refused)
     except FdvvError as error:
         _stop(1 if isinstance(error, BuildError | DeviceError | WorkerError) else 2, str(error), error)

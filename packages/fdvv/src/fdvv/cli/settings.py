@@ -9,8 +9,7 @@ from typing import Any
 import click
 
 from fdvv.cli import ui
-from fdvv.errors import InputError
-from fdvv.settings import Setting, SettingError, Settings, settings_of
+from fdvv.settings import Setting, Settings, settings_of
 
 Command = Callable[..., Any]
 
@@ -37,11 +36,6 @@ def settings_options(
 
 def option_name(setting: Setting) -> str:
     return setting.option or f"--{setting.name.replace('_', '-')}"
-
-
-def refused_option(error: SettingError) -> InputError:
-    """Say of a setting that was refused what a command says of its option."""
-    return InputError(f"--{error.name.replace('_', '-')}", "option", error.reason, error.remedy)
 
 
 def _option(setting: Setting) -> Callable[[Command], Command]:

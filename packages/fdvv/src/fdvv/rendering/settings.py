@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from msgspec import Meta
 
 from fdvv import extras
-from fdvv.settings import SettingError, Settings, about
+from fdvv.errors import SettingError
+from fdvv.settings import Settings, about
 
 if TYPE_CHECKING:
     from fdvv.compensation.identification.rig_file import LearnedRig

@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 
 from fdvv.device.open import pressed_by_person
-from fdvv.errors import InputError
+from fdvv.errors import InputError, SettingError
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS
-from fdvv.settings import SettingError
 from fdvv.twin.capture.participant import PARTICIPANTS
 from fdvv.twin.files import button_names, current_rig_name
 from fdvv_studio.studio.devices import may_be_listed, require_listed
