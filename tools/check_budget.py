@@ -76,7 +76,7 @@ def explain(row: Row, figure: int, limit: int) -> str:
 
 
 def lower(row: Row, limit: int, figure: int) -> int:
-    """Return the new limit: a part gives back from 2 % on; those of CPU time, which is noisy, are set by hand."""
+    """Return the new limit: a part gives back from 2 % on; CPU time is noisy, so its limits stay."""
     if row.section == "cpu":
         return limit
     if row.section == "parts" and figure > 0.98 * limit:

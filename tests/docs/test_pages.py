@@ -16,6 +16,7 @@ from tools.markdown import anchors, links
 
 from fdvv.cli.main import cli
 from tests.docs.pages import DOCS, PAGES, REPOSITORY, blocks_of, commands_on, follow, name_of, steps
+from tests.support.campaign import wait_for_turn
 
 UNSEEN = {"py", "python3", "pycon", "bash", "shell", "shell-session"}
 """Languages that the tests would not run."""
@@ -53,10 +54,18 @@ SHORTER = {
 """Options that make a command of a page shorter, by a word of it; of one given twice the last counts."""
 
 
+SELDOM = {"docs/tutorials/optimise.md": 3}
+"""Pages that run for minutes: one usual run in so many plays them."""
+
+
 def _showing() -> list[str]:
     pages = {name_of(p) for p in PAGES if any(b.language in ("console", "python") for b in blocks_of(p))}
     assert pages >= {*RUN_ELSEWHERE, *NOT_RUN, *FAST, *NEEDS, *SHORTER}
     return sorted(pages - {*RUN_ELSEWHERE, *NOT_RUN})
+
+
+def _marks(name: str) -> tuple[pytest.MarkDecorator, ...]:
+    return () if name in FAST else (pytest.mark.slow, wait_for_turn(name, SELDOM.get(name, 1)))
 
 
 @cache
@@ -129,9 +138,7 @@ def test_shown_commands_and_their_options_exist() -> None:
     assert "frezze" in _problem("fdvv study frezze x")
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=() if name in FAST else pytest.mark.slow) for name in _showing()]
-)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=_marks(name)) for name in _showing()])
 def test_a_page_runs_as_shown(name: str, tmp_path: Path) -> None:
     for package in NEEDS.get(name, ()):
         pytest.importorskip(package)

@@ -31,6 +31,7 @@ from fdvv.twin.quantity import about
 from fdvv.twin.rig import Rig
 from tests.docs.pages import DOCS, REPOSITORY
 from tests.formats.conftest import TEXTS
+from tests.support.campaign import in_turn
 
 BY_HAND = {
     "model-file.md": "Model",
@@ -195,6 +196,7 @@ class Page(HTMLParser):
 
 
 @pytest.mark.slow
+@in_turn(3)
 def test_the_site_builds_without_warnings_its_links_resolve_and_it_loads_nothing_from_outside(
     tmp_path: Path,
 ) -> None:

@@ -8,6 +8,7 @@ from benchmarks import core_cost, m0
 
 from tests.firmware import _m0
 from tests.firmware._simavr import say
+from tests.support.campaign import in_turn
 
 pytestmark = pytest.mark.firmware
 
@@ -42,6 +43,7 @@ def test_a_transition_that_does_not_hold_stays_within_its_cycles(built: tuple[by
 
 
 @pytest.mark.slow
+@in_turn(3)
 def test_no_tick_is_late_in_uploading_and_pressing_for_long() -> None:
     load = m0.run_load(_m0.build(_m0.CONTROLLER), LOAD_TICKS, m0.rate_settings(250, 25))
     say(f"{load}")

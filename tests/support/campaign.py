@@ -46,12 +46,16 @@ def in_turn(every: int) -> Callable[[Test], Test]:
     """Mark a test as a campaign that one usual run in `every` plays, for what cannot be divided."""
 
     def mark(test: Test) -> Test:
-        waits = not IS_WHOLE and random.Random(f"{SEED} {test.__qualname__}").randrange(every)
-        reason = f"one run in {every} plays this, make campaign each time"
-        marked: Test = pytest.mark.campaign(pytest.mark.skipif(bool(waits), reason=reason)(test))
+        marked: Test = pytest.mark.campaign(wait_for_turn(test.__qualname__, every)(test))
         return marked
 
     return mark
+
+
+def wait_for_turn(name: str, every: int) -> pytest.MarkDecorator:
+    """Return the mark that skips a case in all usual runs but one in `every`. name : of the case."""
+    waits = not IS_WHOLE and random.Random(f"{SEED} {name}").randrange(every)
+    return pytest.mark.skipif(bool(waits), reason=f"one run in {every} plays this, make campaign each time")
 
 
 def pick(usual: int, whole: int) -> int:

@@ -109,6 +109,7 @@ def right_of(adversary: Adversary, finished: Finished) -> np.ndarray:
     return np.asarray(guesses == truth)
 
 
+@pytest.mark.slow
 def test_who_has_every_file_every_message_and_all_codes_guesses_like_a_coin(finished: Finished) -> None:
     right = right_of(Adversary(finished), finished)
     assert abs(right.mean() - 0.5) <= 0.03

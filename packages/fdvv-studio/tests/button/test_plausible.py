@@ -126,6 +126,7 @@ def test_the_noise_of_a_clean_signal_is_found_and_a_step_is_none(sigma_cN: float
     assert noise_cN(known_cN(np.linspace(0, 4.3, 4000)) + noise) == pytest.approx(sigma_cN, rel=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.shared
 def test_no_real_file_is_doubted_but_an_excerpt_of_35_um_and_a_release_that_snaps(shared_data: Path) -> None:
     doubted, read = set(), 0

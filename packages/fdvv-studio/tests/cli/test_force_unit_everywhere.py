@@ -12,6 +12,7 @@ import pytest
 from fdvv.cli.device.device import line_of
 from fdvv.device.telemetry import TickColumns
 from fdvv.force_text import shown_in
+from tests.support.campaign import campaign
 from tests.support.command_line import Run, tactile_csv
 
 CN = re.compile(r"(?<![-\w])cN(?!\w)|_cN\b")
@@ -104,7 +105,7 @@ def test_a_refusal_names_the_force_in_the_unit(fdvv: Run, switch: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("unit", ["gf", "N"])
+@campaign("unit", ["gf", "N"], part=1)
 def test_the_demonstration_and_a_capture(fdvv: Run, unit: str, tmp_path: Path) -> None:
     shown(fdvv, unit, "demo", "--output", "demo")
     assert f"({unit})" in page(tmp_path / "demo" / "report.html")

@@ -59,6 +59,7 @@ def test_the_loop_beats_the_tables_on_the_same_rig(learned: CompensationResult) 
     assert max(means(judged(learned))) < 0.5 * min(means(tables))
 
 
+@pytest.mark.slow
 def test_the_firmware_over_the_wire_learns_what_the_twin_learns(learned: CompensationResult) -> None:
     def linked(seed: int) -> LinkedDevice:
         return LinkedDevice(LibraryBoard(), SimulatedPerson(RIG, seed=seed))

@@ -14,6 +14,7 @@ from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture, plan
 from fdvv.twin.rig import ForceSensor
 from fdvv.twin.simulate_button import ButtonNoise, ButtonTrace, draw_button_noise, simulate_button
+from tests.support.campaign import campaign
 from tests.support.drawn_button import draw_button
 from tests.support.reference.button import reference_button
 from tests.support.reference.cell_press import rms
@@ -44,14 +45,14 @@ def test_a_fast_press_agrees_with_the_adaptive_solver(name: str, sensor: ForceSe
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", button_names())
+@campaign("name", button_names(), part=3)
 @pytest.mark.parametrize(("method", "rtol"), [("DOP853", 1e-8), ("Radau", 1e-7)])
 def test_every_button_agrees_with_two_adaptive_solvers(name: str, method: str, rtol: float) -> None:
     agrees(a_plan(name, 0.05, ForceSensor()), method, rtol)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", button_names())
+@campaign("name", button_names(), part=3)
 def test_every_button_under_a_bare_finger_agrees_with_the_adaptive_solver(name: str) -> None:
     agrees(a_plan(name, 0.12, None))
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from fdvv.twin.gesture import Gesture
+from tests.support.campaign import campaign, in_turn
 from tests.support.reference.cell_press import (
     Departure,
     compiled_press,
@@ -43,7 +44,7 @@ def test_a_replayed_press_agrees_with_the_reference_between_and_at_the_stops() -
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("velocity_mm_s", [50.0, 100.0, 200.0])
+@campaign("velocity_mm_s", [50.0, 100.0, 200.0], part=1)
 def test_whole_replayed_presses_agree_too(velocity_mm_s: float) -> None:
     check(replayed(gesture_at(velocity_mm_s), velocity_mm_s))
 
@@ -54,12 +55,13 @@ def test_a_finger_that_comes_from_above_and_leaves_agrees_too() -> None:
 
 
 @pytest.mark.slow
+@in_turn(3)
 def test_an_implicit_solver_finds_the_same_press() -> None:
     check(replayed(gesture_at(200.0), 200.0, "Radau"))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("velocity_mm_s", [50.0, 100.0, 200.0])
+@campaign("velocity_mm_s", [50.0, 100.0, 200.0], part=1)
 def test_presses_whose_loop_closes_on_their_own_readings_agree(velocity_mm_s: float) -> None:
     gesture = gesture_at(velocity_mm_s)
     # a converter step that falls the other way leads the two apart, as far as the loop lets them

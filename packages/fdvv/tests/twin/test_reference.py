@@ -16,6 +16,7 @@ from fdvv.twin.noise import draw_noise
 from fdvv.twin.pace import solve_program_pace
 from fdvv.twin.rig import Controller, Rig
 from fdvv.twin.rig_moves import Coil, Mover
+from tests.support.campaign import campaign
 from tests.support.reference.cell_press import rms
 from tests.support.reference.reference import reference_simulate
 from tests.support.table_press import simulate
@@ -63,7 +64,7 @@ def test_a_current_driven_press_that_hits_the_cap_agrees_too(tactile: ForceSurfa
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("speed", [50.0, 100.0, 150.0, 200.0])
+@campaign("speed", [50.0, 100.0, 150.0, 200.0], part=1)
 def test_a_press_agrees_with_an_implicit_solver(tactile: ForceSurface, speed: float) -> None:
     # an implicit solver steps over the corners of the friction: without it the two can be compared
     rig = Rig(mover=Mover(coulomb_N=0.0))
