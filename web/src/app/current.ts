@@ -1,6 +1,7 @@
 /** The button that a person works on: pages carry it to the next one. */
 
 import { type Signal, signal } from "../ui/signal.svelte";
+import { packageOf } from "./absent";
 import { address, route } from "./route";
 
 const KEPT = "fdvv-current";
@@ -81,3 +82,8 @@ export const TASKS: readonly Task[] = [
     at: (button) => address("studies", "", button ? { button } : {}),
   },
 ];
+
+/** The tasks whose pages are installed. */
+export function tasksHere(): readonly Task[] {
+  return TASKS.filter(({ page }) => !packageOf(page));
+}

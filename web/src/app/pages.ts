@@ -28,12 +28,14 @@ export const PAGES: readonly Entry[] = [
     name: "optimize",
     label: "Optimise",
     hint: "Find the button you play best with",
+    extra: true,
     load: () => import("../pages/optimize"),
   },
   {
     name: "studies",
     label: "Study",
     hint: "Compare buttons blind, with participants",
+    extra: true,
     load: () => import("../pages/studies"),
   },
   {

@@ -1,10 +1,31 @@
 /** Which page is shown. */
 
-import { type Cleanup, effect, scope } from "../ui/signal.svelte";
+import { mount, unmount } from "svelte";
+import Empty from "../ui/Empty.svelte";
+import { type Cleanup, effect, onCleanup, scope } from "../ui/signal.svelte";
 import { dismissNotices, tell } from "../ui/toast";
+import { askAbsent, packageOf } from "./absent";
 import { PAGES } from "./pages";
 import { address, type Route, route } from "./route";
 import type { Entry, Page } from "./types";
+
+function absentPage({ label }: Entry, name: string): Page {
+  return {
+    title: label,
+    mount(target) {
+      const title = `${label} is not installed`;
+      const text = `It comes with ${name}: pip install ${name}, then start the studio again.`;
+      const made = mount(Empty, { target, props: { title, text } });
+      onCleanup(() => void unmount(made));
+    },
+  };
+}
+
+async function pageOf(entry: Entry): Promise<Page> {
+  if (entry.extra) await askAbsent();
+  const name = packageOf(entry.name);
+  return name ? absentPage(entry, name) : (await entry.load()).page;
+}
 
 /** Mount the page of the route, and take it away when the route leads elsewhere. */
 export function showPages(host: HTMLElement): void {
@@ -17,7 +38,7 @@ export function showPages(host: HTMLElement): void {
     const key = now.id;
     if (shown?.entry === entry && (shown.page.followsRoute || shown.key === key)) return;
     try {
-      const { page } = await entry.load();
+      const page = await pageOf(entry);
       if (mine !== turn) return;
       dismissNotices(shown?.entry !== entry);
       leave();

@@ -18,5 +18,7 @@ export interface Entry {
   readonly hint: string;
   /** Reached by its address only, with nothing of the studio around it: no navigation, no keys that lead away. */
   readonly alone?: boolean;
+  /** Whether another package brings its part of the server. */
+  readonly extra?: boolean;
   readonly load: () => Promise<{ readonly page: Page }>;
 }

@@ -6,12 +6,16 @@ import subprocess
 import sys
 import threading
 import types
+from pathlib import Path
 
 import msgspec
 import pytest
 
-from fdvv_studio.studio.contract import Call
+from fdvv import extras
+from fdvv_studio.studio.api.about import about
+from fdvv_studio.studio.contract import Call, Empty
 from fdvv_studio.studio.parts import PartLoader
+from fdvv_studio.studio.studio import Studio
 
 RACE = """
 import sys, threading
@@ -78,3 +82,10 @@ def test_a_part_that_cannot_be_loaded_fails_for_all_that_wait(
     with pytest.raises(fault):
         loader.call("c.c")
     assert loader.call("a.a") is not None
+
+
+def test_the_page_hears_which_of_its_pages_are_not_installed(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(extras, "installed", lambda _kind: {})
+    assert about.function(Studio(tmp_path), Empty()).absent == {"fdvv-people": ["optimize", "studies"]}

@@ -49,6 +49,8 @@ KNOWN = MappingProxyType(
         ("devices", "odrive"): "fdvv-drives",
         ("devices", "simplefoc"): "fdvv-drives",
         ("presenters", "strip"): "fdvv-strip",
+        ("pages", "optimize"): "fdvv-people",
+        ("pages", "studies"): "fdvv-people",
         ("exchange_formats", "mjcf"): "fdvv-haptics",
         ("exchange_formats", "smartknob"): "fdvv-haptics",
         ("exchange_formats", "ahap"): "fdvv-haptics",

@@ -1,5 +1,6 @@
 /** What was worked on: own buttons, jobs, runs and studies, the newest of each. */
 
+import { askAbsent, packageOf } from "../../app/absent";
 import { address } from "../../app/route";
 import { call } from "../../net";
 
@@ -16,16 +17,17 @@ export interface Group {
 }
 
 const MANY = 4;
-const ASKED: readonly (readonly [string, () => Promise<readonly Entry[]>])[] = [
-  ["Your buttons", buttons],
-  ["Jobs on a rig", jobs],
-  ["Optimisations", runs],
-  ["Studies", studies],
+const ASKED: readonly (readonly [page: string, title: string, ask: () => Promise<readonly Entry[]>])[] = [
+  ["edit", "Your buttons", buttons],
+  ["live", "Jobs on a rig", jobs],
+  ["optimize", "Optimisations", runs],
+  ["studies", "Studies", studies],
 ];
 
 /** Return the groups that have something in them; what cannot be listed is reported by `wrong`. */
 export async function recent(wrong: (error: unknown) => void): Promise<Group[]> {
-  const found = ASKED.map(async ([title, ask]) => {
+  await askAbsent();
+  const found = ASKED.filter(([page]) => !packageOf(page)).map(async ([, title, ask]) => {
     const entries = await ask().catch((error: unknown) => {
       wrong(error);
       return [];

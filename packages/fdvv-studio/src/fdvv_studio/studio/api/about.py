@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fdvv import extras
 from fdvv._version import __version__
 from fdvv_studio.studio.contract import Empty, Message, call
 from fdvv_studio.studio.studio import Studio
@@ -11,14 +12,17 @@ class About(Message):
     """What this studio is.
 
     project : name of the project's folder. sources : names of the folders of measured switches.
+    absent : the pages that are not installed, by the package that brings them.
     """
 
     version: str
     project: str
     sources: list[str]
+    absent: dict[str, list[str]]
 
 
 @call("studio.about")
 def about(studio: Studio, _ask: Empty) -> About:
     """Return names only: the page needs no paths."""
-    return About(__version__, studio.project.resolve().name, [s.resolve().name for s in studio.sources])
+    sources = [source.resolve().name for source in studio.sources]
+    return About(__version__, studio.project.resolve().name, sources, extras.absent("pages"))

@@ -1,1 +1,1 @@
-import{Br as e,Dr as t,Ft as n,Jn as r,Or as i,ai as a,fi as o,ii as s,qr as c,vr as l}from"./shared.js";function u(u,d){a(d,!0);let f=r(d,`tooltip`,3,!1);n.create(e(()=>f()));var p=i(),m=c(p);l(m,()=>d.children??o),t(u,p),s()}export{u as t};
+import{Ar as e,Nt as t,Ur as n,Xr as r,Zn as i,ci as a,hi as o,jr as s,si as c,xr as l}from"./shared.js";function u(u,d){a(d,!0);let f=i(d,`tooltip`,3,!1);t.create(n(()=>f()));var p=s(),m=r(p);l(m,()=>d.children??o),e(u,p),c()}export{u as t};
