@@ -38,7 +38,7 @@ FAST = {
 }
 NEEDS = {
     "docs/how-to/drive-from-another-program.md": ("sklearn",),
-    "docs/how-to/work-in-a-notebook.md": ("matplotlib", "pandas"),
+    "docs/how-to/use-from-python.md": ("matplotlib",),
     "docs/how-to/from-a-model-to-a-switch.md": ("matplotlib", "ezdxf"),
     "docs/tutorials/first-button.md": ("matplotlib",),
 }

@@ -32,8 +32,6 @@ TIMING: dict[str, type[msgspec.Struct]] = {
     "Condition": timing.Condition,
     "Training": timing.TrainingPlan,
     "Claim": timing.TimingClaim,
-    "Page": plan.Page,
-    "Question": plan.Question,
 }
 
 
