@@ -18,7 +18,7 @@ from fdvv.device.twin import TwinDevice
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
-from fdvv.rendering.compensate import compensate, uncompensated
+from fdvv.rendering.compensate import compensate, start_surface
 from fdvv.rendering.probe import fd_only, probe
 
 SPEEDS_mm_s = (50.0, 100.0, 150.0, 200.0)
@@ -34,7 +34,7 @@ def plain(model: FDVVModel, _seed: int) -> ForceSurface:
 
 
 def held(model: FDVVModel, seed: int) -> ForceSurface:
-    return uncompensated(TwinDevice(seed=seed), model, SPEEDS_mm_s)
+    return start_surface(TwinDevice(seed=seed), model, SPEEDS_mm_s)
 
 
 def learned(law: PaperLaw | PerCurve) -> Learn:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fdvv.compensation.feasibility.limits import RigLimits, minimum_jerk, needed_cN
+from fdvv.compensation.feasibility.limits import RigLimits, inverse_dynamics_cN, minimum_jerk
 from fdvv.compensation.feasibility.stability import (
     NominalFinger,
     SampledLoop,
@@ -142,7 +142,7 @@ def saturates(drawn: Drawn, model: FDVVModel, cut: float) -> tuple[bool, bool]:
     for stroke in Stroke:
         motion = minimum_jerk(stroke, model.travel_mm, SPEED_mm_s, drawn.limits.tick_s)
         along = model.force_cN(motion.displacement_mm, SPEED_mm_s, stroke)
-        tables.append(motion.at_places(needed_cN(drawn.known, motion, along), x))
+        tables.append(motion.at_places(inverse_dynamics_cN(drawn.known, motion, along), x))
     limit_N = cut * 0.01 * max(float(np.abs(t).max()) for t in tables)
     rig = replace(drawn.rig, controller=replace(drawn.rig.controller, force_limit_N=min(4.9, limit_N)))
     surface = ForceSurface(x, np.array([SPEED_mm_s]), *(t[np.newaxis] for t in tables))
@@ -170,10 +170,10 @@ def learned_button(drawn: Drawn, model: FDVVModel) -> list[tuple[float, ...]]:
     for curve in predicted.curves:
         assert curve.measured
         reached, error_cN = curve.reached, float(np.median(curve.measured.mean_errors_cN))
-        place_mm = reached.displacement_mm[reached.judged]
+        place_mm = reached.displacement_mm[reached.inner_rows]
         row = learned.surface.table_cN(curve.stroke)[speeds.index(curve.velocity_mm_s)]
         command_cN = np.interp(place_mm, learned.surface.displacement_mm, row)
-        largest = [float(np.abs(c).max()) for c in (reached.command_cN[reached.judged], command_cN)]
+        largest = [float(np.abs(c).max()) for c in (reached.command_cN[reached.inner_rows], command_cN)]
         rows.append((curve.velocity_mm_s, curve.expected.mean_cN, error_cN, *largest))
     return rows
 

@@ -36,7 +36,7 @@ from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.twin import TwinDevice
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
-from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.compensate import CompensationResult, compensate, start_surface
 from fdvv.rendering.probe import probe
 from fdvv.twin.draw import draw_section
 from fdvv.twin.finger import Finger, stage_finger
@@ -102,7 +102,7 @@ def _rows(
     presses: int,
 ) -> FloatArray:
     probed = probe(fresh, model, learned.surface, speeds_mm_s, presses, tuning=learned.outcome.tuning)
-    without = probe(plain, model, uncompensated(plain, model, speeds_mm_s), speeds_mm_s, presses)
+    without = probe(plain, model, start_surface(plain, model, speeds_mm_s), speeds_mm_s, presses)
     rows = []
     for curve, bare in zip(probed.curves, without.curves, strict=True):
         found = curve.to_dict()

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from benchmarks.drawn_rigs import BUTTONS, FIRST_SEED, Case, run_all
 from benchmarks.force_loop import DESIGNS, RECOMMENDED, parts
 from benchmarks.ideal_button import IdealPress, Reversal, press_ideal
-from fdvv.compensation.force_loop.method import lifted_target_cN
+from fdvv.compensation.force_loop.method import lift_target_cN
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.twin import TwinDevice
 from fdvv.model.model import FDVVModel
@@ -140,7 +140,7 @@ def swings(ripple_cN: FloatArray, speed_mm_s: FloatArray) -> npt.NDArray[np.bool
 def hold_ideal(model: FDVVModel, presses: Sequence[HeldPress], reversal: Reversal) -> npt.NDArray[np.bool_]:
     """Return which of these presses swing where the target is rendered exactly, without any delay."""
     target = ForceSurface.of_model(model, SPEEDS_mm_s)
-    rows = (lifted_target_cN(target.displacement_mm, row) for row in (target.press_cN, target.release_cN))
+    rows = (lift_target_cN(target.displacement_mm, row) for row in (target.press_cN, target.release_cN))
     exact = ForceSurface(target.displacement_mm, target.velocity_mm_s, *rows)
     asked = [
         IdealPress(p.finger, p.gesture, SPEEDS_mm_s.index(p.speed_mm_s), p.noise.effort_ratio)

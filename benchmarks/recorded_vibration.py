@@ -17,7 +17,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from fdvv.bench.vibration import RecordedVibrations, recorded_vibrations
+from fdvv.bench.vibration import RecordedVibrations, find_vibrations
 from fdvv.model.curve import Stroke
 from fdvv.model.vibration import Vibration
 from fdvv.preprocess.process import process
@@ -68,7 +68,7 @@ def main(first_seed: int = FIRST_SEED, seeds: int = SEEDS) -> None:
             session = captured_session(name, seed)
             processed = process(session.recording)
             start = time.process_time()
-            estimated = recorded_vibrations(session.recording, processed)
+            estimated = find_vibrations(session.recording, processed)
             spent.append(time.process_time() - start)
             exponents += [s.scaling.exponent for s in estimated.scalings if s.stroke is Stroke.PRESS]
             for vibration in estimated.vibrations:

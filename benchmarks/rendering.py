@@ -31,7 +31,7 @@ from benchmarks.drawn_rigs import (
 from fdvv.compensation.paper import tuned_paper_law
 from fdvv.compensation.rig_aware import RigAware
 from fdvv.device.twin import TwinDevice
-from fdvv.rendering.compensate import compensate, uncompensated
+from fdvv.rendering.compensate import compensate, start_surface
 from fdvv.rendering.probe import probe
 from fdvv.units import FloatArray
 
@@ -46,7 +46,7 @@ def _judged(case: Case, method: str, speeds: tuple[float, ...]) -> tuple[FloatAr
     (rig, finger), model = case.parts(), case.model
     device, fresh = TwinDevice(rig, finger, case.seed), TwinDevice(rig, finger, case.seed + JUDGE)
     if method == "none":
-        probed = probe(fresh, model, uncompensated(device, model, speeds), speeds, 4)
+        probed = probe(fresh, model, start_surface(device, model, speeds), speeds, 4)
         presses = 0
     else:
         law = (

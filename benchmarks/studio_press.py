@@ -21,7 +21,7 @@ import numpy as np
 
 from fdvv.model.file import load_builtin
 from fdvv_studio.live.press import LivePress
-from fdvv_studio.live.press_subject import PressMode, drawn_trace, model_subject
+from fdvv_studio.live.press_subject import PressMode, model_subject, trace_by_name
 from fdvv_studio.live.run import LiveFrame, LiveRun
 
 STEP_s, SIMULATED_s = 0.004, 10.0
@@ -42,7 +42,7 @@ def real_time_factor(mode: PressMode, rig: str) -> float:
     began = time.process_time()
     for step in range(round(SIMULATED_s / STEP_s)):
         if step % 350 == 0:
-            press.replay(drawn_trace("drumming"))
+            press.replay(trace_by_name("drumming"))
         press.advance(STEP_s)
     return SIMULATED_s / (time.process_time() - began)
 
@@ -55,7 +55,7 @@ def dropped(seconds: float) -> tuple[float, float, float]:
     run = LiveRun(press, frames.append, print, print)
     over = threading.Event()
     while time.monotonic() - began < seconds:
-        run.ask(lambda one: one.replay(drawn_trace("drumming")))
+        run.ask(lambda one: one.replay(trace_by_name("drumming")))
         over.wait(1.4)
     run.close()
     busy = float(np.median([frame.busy_ratio for frame in frames]))

@@ -22,7 +22,7 @@ from scipy.optimize import brentq
 from scipy.special import ndtr
 
 from fdvv.model.file import load_builtin
-from fdvv.model.grown import grown
+from fdvv.model.magnify import magnify
 from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import AT_JND, DIMENSIONS
 from fdvv.units import FloatArray
@@ -126,12 +126,12 @@ def _proxy(random: np.random.Generator) -> Observer:
 @lru_cache(maxsize=100_000)
 def _difference(force: float, snap: float, vibration: float) -> PerceivedDifference:
     model, features = _standard()
-    return perceived_difference(features, haptic_features(grown(model, 1 + force, 1 + snap, 1 + vibration)))
+    return perceived_difference(features, haptic_features(magnify(model, 1 + force, 1 + snap, 1 + vibration)))
 
 
 @lru_cache(maxsize=1)
 def _standard() -> tuple[FDVVModel, HapticFeatures]:
-    loud = grown(load_builtin("mx-clear"), vibration_ratio=LOUD)
+    loud = magnify(load_builtin("mx-clear"), vibration_ratio=LOUD)
     model = replace(load_builtin("rubber-dome"), vibrations=loud.vibrations)
     return model, haptic_features(model)
 

@@ -42,7 +42,7 @@ IN_CODE = {
     r"_meet|meet_most|meet": "identify, identification_presses",
     r"KnownRig|RigMemory": "RigModel, LearnedRig",
     r"believed|held_up": "prior_table, minimum_lift_surface",
-    r"felt_cN|felt_press|FeltPress": "rendered_cN, rendered_press, RenderedPress",
+    r"felt_cN|felt_press|FeltPress": "rendered_cN, bin_press, RenderedPress",
 }
 
 

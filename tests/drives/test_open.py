@@ -10,7 +10,7 @@ from types import MappingProxyType
 import pytest
 
 from fdvv import extras
-from fdvv.device.open import KINDS, open_board, open_device, pressed_by_person
+from fdvv.device.open import KINDS, is_manual, open_board, open_device
 from fdvv.errors import BuildError, DeviceError, InputError
 from tests.drives.conftest import LIBRARIES, need
 
@@ -27,8 +27,8 @@ PARTS = {
 @pytest.mark.parametrize("kind", DRIVES)
 def test_a_drive_is_a_known_device_that_a_person_presses(kind: str) -> None:
     assert f"{kind}:FILE.toml" in KINDS
-    assert pressed_by_person(f"{kind}:stage.toml")
-    assert not pressed_by_person(kind)
+    assert is_manual(f"{kind}:stage.toml")
+    assert not is_manual(kind)
     assert extras.installed("devices")[kind].load() is not None
 
 

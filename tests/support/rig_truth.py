@@ -62,7 +62,7 @@ def missed_cN(known: RigModel, rig: Rig, traces: Sequence[Trace], travel_mm: flo
     for t in traces:
         motion = (t.displacement_mm, t.cap_velocity_mm_s, t.cap_acceleration_m_s2)
         command = np.interp(t.t_s, t.t_s[t.tick], t.commanded_cN[t.tick])
-        predicted_cN = known.rendered_cN(t.t_s, *motion, command)
+        predicted_cN = known.finger_force_cN(t.t_s, *motion, command)
         stop = min(travel_mm, float(t.stop_mm.min())) - ROOM_mm
         between = (t.displacement_mm > 0.1) & (t.displacement_mm < stop) & (t.force_cN > 1.0)
         moving = between & (np.abs(t.cap_velocity_mm_s) > SLIDING_mm_s)

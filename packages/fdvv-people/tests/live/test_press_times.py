@@ -14,12 +14,12 @@ from fdvv_studio.live.press_subject import model_subject
 
 def test_an_activation_is_as_long_after_the_hand_as_after_its_lead() -> None:
     times = PressTimes()
-    times.activated(0.5)
-    times.led(1.0, 501.25)
-    times.activated(1.04)
-    times.led(2.0, 502.5)
-    times.activated(2.06)
-    times.activated(2.09)
+    times.note_activation(0.5)
+    times.note_lead(1.0, 501.25)
+    times.note_activation(1.04)
+    times.note_lead(2.0, 502.5)
+    times.note_activation(2.06)
+    times.note_activation(2.09)
     assert times.between(0.0, 1e9) == pytest.approx((501.29, 502.56, 502.59))
     assert times.between(502.0, 502.57) == pytest.approx((502.56,))
     assert times.between(503.0, 504.0) == ()
@@ -31,8 +31,8 @@ def test_what_lies_between_hand_and_simulation_changes_no_time() -> None:
         times = PressTimes()
         for number, delay_s in enumerate(delays_s):
             hand_s = 10.0 + number
-            times.led(hand_s + delay_s, hand_s)
-            times.activated(hand_s + delay_s + 0.05)
+            times.note_lead(hand_s + delay_s, hand_s)
+            times.note_activation(hand_s + delay_s + 0.05)
         found.append(times.between(0.0, 99.0))
     assert found[0] == pytest.approx((10.05, 11.05))
     assert found[1] == pytest.approx(found[0])

@@ -13,10 +13,10 @@ from fdvv.model.press import Press
 from fdvv.recording.types import Quantity
 from fdvv_people.optimize.experiment.winner import (
     Winner,
+    method_curves,
     open_winner_devices,
     recording_of,
     render_winner,
-    rendered_curves,
     winners_of,
 )
 from tests.support.experiments import invented
@@ -74,5 +74,5 @@ def test_a_design_is_rendered_measured_and_captured_back_near_itself() -> None:
     assert captured.provenance.simulated
     assert captured.travel_mm == pytest.approx(6.0, abs=0.1)
     assert captured.force_cN(2.0, 100.0, Stroke.PRESS) == pytest.approx(110.0, abs=6.0)
-    curves = rendered_curves(replace(found, refused=("person 2, hard: no",)))
+    curves = method_curves(replace(found, refused=("person 2, hard: no",)))
     assert [len(curve.bands) for curve in curves] == [2, 2]

@@ -41,7 +41,7 @@ def test_a_rig_bears_the_button_and_not_one_with_far_too_much_force(rig: Availab
 def test_slacks_are_those_of_a_report(rig: AvailableRig) -> None:
     design = {"force_ratio": 1.5, "snap_mm": 0.3}
     report = feasibility(model_of(CLEAR, design), rig.known, rig.settings, [100.0], info=rig.info)
-    ratios = [c.reached.missed_cN / np.abs(c.reached.intended_cN).mean() for c in report.curves]
+    ratios = [c.reached.shortfall_cN / np.abs(c.reached.intended_cN).mean() for c in report.curves]
     force, stability = held(rig).constraints
     kept = min(c.reached.kept_ratio or 1.0 for c in report.curves)
     assert force.slack(design) == pytest.approx(min(0.25 - max(ratios), kept - 0.5))

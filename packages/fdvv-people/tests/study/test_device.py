@@ -35,7 +35,7 @@ from fdvv_people.study.plan.plan import Exclusion, Stimulus
 from fdvv_people.study.stimulus.device import DeviceRenderer
 from fdvv_people.study.stimulus.open import open_screen_renderer
 from fdvv_people.study.stimulus.program import trial_program
-from fdvv_studio.live.press_subject import learned_rig
+from fdvv_studio.live.press_subject import identify_shipped_rig
 from tests.support.buttons import line_model
 from tests.support.pressed_rig import SETTINGS, Rig
 from tests.support.scripted_person import ScriptedPerson
@@ -166,7 +166,7 @@ def test_actuations_under_different_tunings_are_refused_together(tmp_path: Path)
 
 @pytest.mark.slow
 def test_labels_that_the_paper_s_rig_was_compensated_with_are_felt_as_intended(tmp_path: Path) -> None:
-    model, law = load_builtin("mx-clear"), RigAware(rounds=0, learned_rig=learned_rig("paper"))
+    model, law = load_builtin("mx-clear"), RigAware(rounds=0, learned_rig=identify_shipped_rig("paper"))
     for name, one in (("FD", fd_only(model)), ("FDVV", model)):
         result = compensate(TwinDevice(load_rig("paper")), one, (50.0, 100.0, 150.0), law)
         save_actuation(result, tmp_path / f"{name}.actuation.json")

@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 
 from fdvv.errors import InputError
 from fdvv.model.file import load_builtin
-from fdvv.model.grown import grown
 from fdvv.model.jnd_file import JndRecord, jnds_of
+from fdvv.model.magnify import magnify
 from fdvv.model.noticeable import LITERATURE
 from fdvv_people.study.admin.study import Study
 from fdvv_people.study.analysis.analyse import analyse
@@ -95,7 +95,7 @@ def test_people_who_notice_a_whole_button_are_taken_for_a_little_duller_than_the
     felt = haptic_features(standard)
 
     def away(change: float) -> float:
-        return perceived_difference(felt, haptic_features(grown(standard, 1 + change))).total_JND - 1
+        return perceived_difference(felt, haptic_features(magnify(standard, 1 + change))).total_JND - 1
 
     ratio = brentq(away, 0.01, 1.0)
     found = jnds_of(record_of(measured("force", ratio, standard_sizes(standard)["force"])))

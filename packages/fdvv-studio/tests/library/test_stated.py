@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fdvv_studio.library.stated import stated_type
+from fdvv_studio.library.stated import find_type
 
 
 @pytest.mark.parametrize(
@@ -22,7 +22,7 @@ from fdvv_studio.library.stated import stated_type
     ],
 )
 def test_a_name_or_a_make_states_a_type(name: str, folder: str, expected: str) -> None:
-    assert str(stated_type(name, folder)) == expected
+    assert str(find_type(name, folder)) == expected
 
 
 @pytest.mark.parametrize(
@@ -35,25 +35,25 @@ def test_a_name_or_a_make_states_a_type(name: str, folder: str, expected: str) -
     ],
 )
 def test_what_is_unknown_or_contradicts_itself_states_nothing(name: str, folder: str) -> None:
-    assert stated_type(name, folder) is None
+    assert find_type(name, folder) is None
 
 
 def test_a_table_beside_the_file_or_above_it_comes_first(tmp_path: Path) -> None:
     path = tmp_path / "curves" / "Cherry MX Blue.downstroke.csv"
     path.parent.mkdir()
     (tmp_path / "switchmeta.csv").write_text('cherry mx blue,tactile\n"odd, one",special\n')
-    assert str(stated_type("Cherry MX Blue", "", path)) == "tactile by switchmeta.csv"
+    assert str(find_type("Cherry MX Blue", "", path)) == "tactile by switchmeta.csv"
     (path.parent / "types.csv").write_text("name,type\nCherry MX Blue,linear\n")
-    assert str(stated_type("Cherry MX Blue", "", path)) == "linear by types.csv"
+    assert str(find_type("Cherry MX Blue", "", path)) == "linear by types.csv"
     (path.parent / "types.csv").write_bytes(b"\xff\x00broken")
-    assert str(stated_type("Cherry MX Blue", "", path)) == "tactile by switchmeta.csv"
+    assert str(find_type("Cherry MX Blue", "", path)) == "tactile by switchmeta.csv"
 
 
 @pytest.mark.shared
 def test_makes_agree_with_what_a_measurer_states(shared_data: Path) -> None:
     lines = (shared_data / "tg-strokes" / "switchmeta.csv").read_text().splitlines()
     measurer = dict(line.rsplit(",", 1) for line in lines if "," in line)
-    makes = {name: stated_type(name) for name in measurer}
+    makes = {name: find_type(name) for name in measurer}
     known = {name: one.type for name, one in makes.items() if one and one.by == "its maker"}
     assert len(known) >= 15
     assert [name for name, kind in known.items() if kind != measurer[name]] == []

@@ -12,7 +12,7 @@ from fdvv.twin.interactive import InteractiveTicks
 from fdvv.units import FloatArray
 from fdvv_studio.live.press import LiveEvent, LiveEventKind, LivePress
 from fdvv_studio.live.press_replay import KeyFollower
-from fdvv_studio.live.press_subject import drawn_trace, model_subject
+from fdvv_studio.live.press_subject import model_subject, trace_by_name
 from fdvv_studio.live.press_trace import PressTrace, read_press_trace
 
 STEP_s, FITTED_s = 0.004, 0.012
@@ -56,7 +56,7 @@ def crossings_s(key: PressTrace, place_mm: float, until_s: float) -> list[float]
 @pytest.mark.parametrize("name", ["firm press", "drumming", "slow press"])
 def test_the_cap_goes_where_the_key_is_and_actuates_as_often(button: str, name: str) -> None:
     press = LivePress(model_subject(load_builtin(button)), seed=None)
-    key = read_every_ms(drawn_trace(name))
+    key = read_every_ms(trace_by_name(name))
     t, x, events = followed(press, key, key.duration_s)
     wanted = np.minimum(np.interp(t, key.t_s, key.displacement_mm), press.subject.travel_mm)
     assert np.abs(x - wanted).mean() < 0.25, "as a trace is replayed"
@@ -96,7 +96,7 @@ def test_a_turn_of_the_key_moves_the_finger_evenly() -> None:
 
 def test_the_mouse_takes_over_and_the_key_again() -> None:
     press = LivePress(model_subject(load_builtin("mx-red")), seed=None)
-    press.replay(drawn_trace("long hold"))
+    press.replay(trace_by_name("long hold"))
     press.follow(2.0, 0.0)
     assert not press.replaying
     press.advance(0.3)

@@ -17,9 +17,9 @@ from fdvv_studio.live.press import LiveEvent, LiveEventKind, LivePress
 from fdvv_studio.live.press_subject import (
     PressMode,
     PressSubject,
-    drawn_trace,
     model_subject,
     program_subject,
+    trace_by_name,
 )
 
 
@@ -37,7 +37,7 @@ def error_cN(
 ) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     x = ticks.displacement_mm
     inside = (x > 0.2) & (x < subject.travel_mm - 0.1)
-    meant = subject.meant_cN(0.0)[list(Stroke).index(stroke)]
+    meant = subject.target_cN(0.0)[list(Stroke).index(stroke)]
     return np.abs(ticks.force_cN[inside] - np.interp(x[inside], subject.displacement_mm, meant))
 
 
@@ -81,7 +81,7 @@ def test_a_rig_with_a_cell_holds_the_force_with_its_loop_closed() -> None:
 def test_a_program_on_a_rig_with_a_cell_is_pressed_with_its_loop_sound(name: str) -> None:
     subject = program_subject(load_shipped(name), PressMode.COMPENSATED)
     press = LivePress(subject)
-    press.replay(drawn_trace("drumming"))
+    press.replay(trace_by_name("drumming"))
     ticks, events = press.advance(1.5)
     assert ticks.displacement_mm.max() > 2.0
     assert not [event.message for event in events if event.message]
@@ -186,7 +186,7 @@ def test_the_same_seed_and_hand_give_the_same_press() -> None:
     found = []
     for cuts in (1, 50):
         press = LivePress(subject, seed=3)
-        press.replay(drawn_trace("fast double tap"))
+        press.replay(trace_by_name("fast double tap"))
         parts = [press.advance(1.0 / cuts) for _ in range(cuts)]
         found.append((np.concatenate([p[0].force_cN for p in parts]), [e for p in parts for e in p[1]]))
     assert np.array_equal(found[0][0], found[1][0])
@@ -195,7 +195,7 @@ def test_the_same_seed_and_hand_give_the_same_press() -> None:
 
 def test_a_press_is_reported_with_its_depth_and_speed() -> None:
     press = LivePress(model_subject(load_builtin("mx-red")))
-    press.replay(drawn_trace("slow press"))
+    press.replay(trace_by_name("slow press"))
     ticks, events = press.advance(5.5)
     presses = [event for event in events if event.kind is LiveEventKind.PRESSED]
     assert len(presses) == 1
@@ -207,7 +207,7 @@ def test_a_press_is_reported_with_its_depth_and_speed() -> None:
 
 @pytest.mark.parametrize("name", ["slow press", "firm press", "hesitant press", "drumming"])
 def test_a_replayed_trace_moves_the_cap_along_it(name: str) -> None:
-    trace = drawn_trace(name)
+    trace = trace_by_name(name)
     press = LivePress(model_subject(load_builtin("mx-red")), None)
     press.replay(trace)
     ticks = press.advance(trace.duration_s)[0]
@@ -222,7 +222,7 @@ def test_a_replayed_trace_moves_the_cap_along_it(name: str) -> None:
 def test_every_shipped_program_can_be_pressed_and_comes_back(recipe: str) -> None:
     subject = program_subject(load_shipped(recipe))
     press = LivePress(subject)
-    press.replay(drawn_trace("firm press"))
+    press.replay(trace_by_name("firm press"))
     ticks, events = press.advance(4.0)
     assert ticks.displacement_mm.max() > 3.5
     assert LiveEventKind.ACTUATION in kinds(events)
@@ -234,7 +234,7 @@ def test_every_shipped_program_can_be_pressed_and_comes_back(recipe: str) -> Non
 
 def test_levels_are_reported_in_their_order() -> None:
     press = LivePress(program_subject(load_shipped("multi-level")))
-    press.replay(drawn_trace("slow press"))
+    press.replay(trace_by_name("slow press"))
     events = press.advance(5.5)[1]
     keys = [event.number for event in events if event.kind.value in ("actuation", "level", "reset")]
     assert keys == [1, 2, 3, 2, 1, 0]
@@ -246,7 +246,7 @@ def test_a_host_event_lets_a_spent_button_come_back_at_once() -> None:
     backs = []
     for sends_event in (False, True):
         press = LivePress(program_subject(load_shipped("returning-later")))
-        press.replay(drawn_trace("firm press"))
+        press.replay(trace_by_name("firm press"))
         press.advance(0.6)
         if sends_event:
             press.event(0)

@@ -12,11 +12,11 @@ from fdvv.errors import InputError
 from fdvv.model.file import load_builtin
 from fdvv_studio.live.press import LiveEventKind, LivePress
 from fdvv_studio.live.press_subject import model_subject
-from fdvv_studio.live.press_trace import drawn_traces, read_press_trace
+from fdvv_studio.live.press_trace import read_press_trace, synthetic_traces
 
 
 def test_drawn_traces_begin_and_end_with_the_key_up_and_have_names_of_their_own() -> None:
-    traces = drawn_traces()
+    traces = synthetic_traces()
     assert len({trace.name for trace in traces}) == len(traces)
     for trace in traces:
         assert trace.displacement_mm[[0, -1]] == pytest.approx([0.0, 0.0])

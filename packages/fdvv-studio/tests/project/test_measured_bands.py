@@ -11,15 +11,15 @@ import pytest
 from fdvv.device.twin import TwinDevice
 from fdvv.errors import InputError
 from fdvv.model.file import load_builtin
-from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.compensate import start_surface
 from fdvv.rendering.probe import ProbeResult, probe
-from fdvv_studio.project.measured_bands import measured_button
+from fdvv_studio.project.measured_bands import load_measured_button
 
 
 @pytest.fixture(scope="module")
 def probed() -> ProbeResult:
     device, model = TwinDevice(seed=3), load_builtin("mx-clear")
-    return probe(device, model, uncompensated(device, model, [50.0, 100.0]), [50.0, 100.0], presses=3)
+    return probe(device, model, start_surface(device, model, [50.0, 100.0]), [50.0, 100.0], presses=3)
 
 
 def kept(project: Path, text: str) -> Path:
@@ -31,7 +31,7 @@ def kept(project: Path, text: str) -> Path:
 
 def test_the_bands_are_the_quartiles_of_the_presses(tmp_path: Path, probed: ProbeResult) -> None:
     kept(tmp_path, json.dumps(probed.to_dict()))
-    found = measured_button(tmp_path, "my-button")
+    found = load_measured_button(tmp_path, "my-button")
     assert found is not None
     assert (found.device_name, found.presses, found.simulated) == (probed.device_name, 6, True)
     assert len(found.curves) == 4
@@ -45,15 +45,15 @@ def test_the_bands_are_the_quartiles_of_the_presses(tmp_path: Path, probed: Prob
 @pytest.mark.parametrize("name", ["other", "../measured/my-button", "my-button.json", ""])
 def test_a_button_without_a_file_has_no_bands(tmp_path: Path, probed: ProbeResult, name: str) -> None:
     kept(tmp_path, json.dumps(probed.to_dict()))
-    assert measured_button(tmp_path, name) is None
+    assert load_measured_button(tmp_path, name) is None
 
 
 def test_a_broken_file_is_named_with_its_remedy(tmp_path: Path, probed: ProbeResult) -> None:
     kept(tmp_path, "{}")
     with pytest.raises(InputError, match=r"my-button\.json.*probe the button again"):
-        measured_button(tmp_path, "my-button")
+        load_measured_button(tmp_path, "my-button")
     document = probed.to_dict()
     document["curves"][1]["displacement_mm"].pop()
     kept(tmp_path, json.dumps(document))
     with pytest.raises(InputError, match=r"\$\.curves\[1\].*different length"):
-        measured_button(tmp_path, "my-button")
+        load_measured_button(tmp_path, "my-button")

@@ -16,7 +16,7 @@ from fdvv.program.file import program_to_json
 from fdvv.program.library import load_shipped, programs
 from fdvv.program.program import Program, State
 from fdvv.program.surface import flat, line
-from fdvv_studio.project.program_check import PlacedFinding, checked_program
+from fdvv_studio.project.program_check import PlacedFinding, check_program_text
 
 PUSH = flat("push", 40.0)
 
@@ -28,13 +28,13 @@ def plain(**changes: Any) -> Program:
 
 
 def findings(program: Program) -> tuple[PlacedFinding, ...]:
-    return checked_program(program_to_json(program)).findings
+    return check_program_text(program_to_json(program)).findings
 
 
 def broken(change: Callable[[dict[str, Any]], object]) -> PlacedFinding:
     document = json.loads(program_to_json(plain()))
     change(document)
-    (finding,) = checked_program(json.dumps(document)).findings
+    (finding,) = check_program_text(json.dumps(document)).findings
     assert finding.severity is Severity.REFUSED
     assert finding.remedy
     return finding
@@ -43,7 +43,7 @@ def broken(change: Callable[[dict[str, Any]], object]) -> PlacedFinding:
 @pytest.mark.parametrize("recipe", programs(), ids=lambda r: r.name)
 def test_a_shipped_program_stands_well_and_its_sizes_are_those_of_its_image(recipe: Any) -> None:
     program = load_shipped(recipe.name)
-    standing = checked_program(program_to_json(program))
+    standing = check_program_text(program_to_json(program))
     assert standing.accepted
     assert standing.findings == ()
     compiled = compile_program(program)
@@ -113,7 +113,7 @@ def test_a_missing_target_state_is_reported_at_its_transition() -> None:
     ids=["empty", "null", "list", "half", "surrogate", "deep", "wrong"],
 )
 def test_a_text_that_is_no_program_is_one_finding(text: str) -> None:
-    standing = checked_program(text)
+    standing = check_program_text(text)
     assert len(standing.findings) == 1
     assert not standing.accepted
     assert standing.sizes == ()
@@ -121,7 +121,7 @@ def test_a_text_that_is_no_program_is_one_finding(text: str) -> None:
 
 def test_a_program_beyond_every_device_is_refused_without_the_proof() -> None:
     states = tuple(State(f"s{i}", "push", "push") for i in range(5000))
-    standing = checked_program(program_to_json(plain(states=states, start="s0")))
+    standing = check_program_text(program_to_json(plain(states=states, start="s0")))
     assert (standing.return_s, standing.stiffness_cN_mm) == (None, None)
     assert [f.place for f in standing.findings] == ["states"]
     assert {s.what: s.taken for s in standing.sizes}["states"] == 5000

@@ -12,7 +12,7 @@ from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from fdvv.errors import InputError
-from fdvv_studio.studio.auth import opening_file, saved_token
+from fdvv_studio.studio.auth import opening_file, project_token
 from tests.studio.conftest import LIVE, ORIGIN, TOKEN
 from tests.studio.running import RunningStudio
 
@@ -122,29 +122,29 @@ def test_the_live_connection_is_refused_without_the_token(stranger: TestClient) 
 
 
 def test_a_token_is_drawn_once_and_for_its_owner_alone(tmp_path: Path) -> None:
-    token = saved_token(tmp_path / "project")
+    token = project_token(tmp_path / "project")
     assert len(token) == 32
-    assert saved_token(tmp_path / "project") == token
-    assert saved_token(tmp_path / "other") != token
+    assert project_token(tmp_path / "project") == token
+    assert project_token(tmp_path / "other") != token
     mode = (tmp_path / "project" / ".studio-token").stat().st_mode
     assert stat.S_IMODE(mode) == 0o600
     assert (tmp_path / "project" / ".gitignore").read_text() == ".studio-token\n"
 
 
 def test_a_token_that_others_can_read_or_that_is_none_is_refused(tmp_path: Path) -> None:
-    saved_token(tmp_path)
+    project_token(tmp_path)
     path = tmp_path / ".studio-token"
     path.chmod(0o640)
     with pytest.raises(InputError, match="others on this machine can read it"):
-        saved_token(tmp_path)
+        project_token(tmp_path)
     path.chmod(0o600)
     path.write_text("")
     with pytest.raises(InputError, match="holds no token"):
-        saved_token(tmp_path)
+        project_token(tmp_path)
     path.unlink()
     path.symlink_to(tmp_path / "elsewhere")
     with pytest.raises(InputError, match="no plain file"):
-        saved_token(tmp_path)
+        project_token(tmp_path)
 
 
 @pytest.mark.slow

@@ -92,10 +92,10 @@ def test_a_learned_table_closes_the_loop_of_its_rig_and_a_buttons_own_force_open
     session, model = studio.part(DeviceSession), load_builtin("mx-clear")
     part.connect.function(studio, DeviceConnect("host"))
     session.upload(CLEAR, model, learned)
-    assert session.held().device.loop == learned.outcome.tuning.loop  # type: ignore[attr-defined]
+    assert session.thread().device.loop == learned.outcome.tuning.loop  # type: ignore[attr-defined]
     assert part.press.function(studio, DevicePress(100.0)).fault == ""
     session.upload(CLEAR, model, None)
-    assert session.held().device.loop is None  # type: ignore[attr-defined]
+    assert session.thread().device.loop is None  # type: ignore[attr-defined]
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from starlette.testclient import TestClient
 
 from fdvv.device.twin import TwinDevice
 from fdvv.model.file import load_builtin, model_from_json, model_to_json
-from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.compensate import start_surface
 from fdvv.rendering.probe import probe
 from fdvv_studio.studio.studio import Studio
 
@@ -73,7 +73,7 @@ def test_a_button_of_the_shelf_is_given_as_in_its_file(client: TestClient) -> No
 def test_measured_presses_are_listed_once_there_is_a_file(client: TestClient, own_studio: Studio) -> None:
     assert post(client, "measured", {"name": "mine"}) == {"found": None}
     device, model = TwinDevice(seed=3), load_builtin("mx-clear")
-    probed = probe(device, model, uncompensated(device, model, [50.0]), [50.0], presses=2)
+    probed = probe(device, model, start_surface(device, model, [50.0]), [50.0], presses=2)
     folder = own_studio.project / "measured"
     folder.mkdir(parents=True)
     (folder / "mine.json").write_text(json.dumps(probed.to_dict()))

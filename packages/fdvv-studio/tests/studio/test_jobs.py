@@ -22,7 +22,7 @@ from fdvv_studio.studio.jobs.file import JOB, JobResult
 from fdvv_studio.studio.jobs.jobs import BROKEN_OFF, Jobs
 from fdvv_studio.studio.jobs.orders import CaptureOrder, CompensateOrder
 from fdvv_studio.studio.jobs.process import PATIENCE_s as LETTING_GO_s
-from fdvv_studio.studio.jobs.time_left import left_s
+from fdvv_studio.studio.jobs.time_left import remaining_s
 from fdvv_studio.studio.studio import Studio
 from tests.studio.jobs import DEVICES, PRESSES, Follower, PATIENCE_s, learning, long_learning, tuning
 
@@ -52,7 +52,7 @@ def begin(jobs: Jobs, order: CompensateOrder) -> Follower:
 def test_work_tells_every_press_and_leaves_its_results_in_the_project(studio: Studio, jobs: Jobs) -> None:
     row = jobs.start(learning(), DEVICES)
     assert row.button == "builtin:mx-clear"
-    assert row.left_s == pytest.approx(left_s(learning(), "", 0.0, 0.0), abs=0.5)
+    assert row.left_s == pytest.approx(remaining_s(learning(), "", 0.0, 0.0), abs=0.5)
     follower = Follower(jobs, row.job)
     row = follower.over()
     assert (row.state, row.line, row.simulated) == ("done", "", True)

@@ -119,7 +119,7 @@ def test_forces_are_listed_at_speeds_close_enough_to_interpolate(
     subject = subject_of(own_studio, asked)
     velocities = [one["velocity_mm_s"] for one in speeds]
     for speed in (6.0, 37.0, 85.0, 120.0, 260.0, 380.0):
-        for name, wanted in zip(("press_cN", "release_cN"), subject.meant_cN(speed), strict=True):
+        for name, wanted in zip(("press_cN", "release_cN"), subject.target_cN(speed), strict=True):
             rows = np.array([one[name] for one in speeds])
             found = [np.interp(speed, velocities, column) for column in rows.T]
             assert np.abs(found - wanted).max() < 2.0

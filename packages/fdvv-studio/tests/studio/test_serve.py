@@ -17,7 +17,7 @@ from starlette.requests import Request
 
 from fdvv.errors import InputError
 from fdvv_studio.studio.contract import Call
-from fdvv_studio.studio.server import address_of, answer_call, bound_socket, reachable_hosts
+from fdvv_studio.studio.server import address_of, answer_call, bind_socket, reachable_hosts
 from fdvv_studio.studio.studio import Studio
 from tests.studio.running import RunningStudio
 
@@ -111,7 +111,7 @@ def test_a_studio_for_other_machines_prints_addresses_that_they_can_open() -> No
     assert first == "127.0.0.1"
     for name in others:
         # what others can reach is an address of this machine
-        bound_socket(name, 0).close()
+        bind_socket(name, 0).close()
         assert f"{name}:8377" in address_of((first, *others), 8377, "").hosts
     assert reachable_hosts("127.0.0.1") == ("127.0.0.1",)
 
@@ -126,7 +126,7 @@ def test_what_is_answered_is_sent_at_once() -> None:
             )
             writer.close()
 
-        taken = bound_socket("127.0.0.1", 0)
+        taken = bind_socket("127.0.0.1", 0)
         async with await asyncio.start_server(met, sock=taken):
             with socket.create_connection(taken.getsockname()):
                 return int(await found)

@@ -19,7 +19,7 @@ from fdvv_studio.studio.jobs.events import QuestionAnswered
 from fdvv_studio.studio.jobs.file import RESULT_FOLDERS, JobFolder, JobRecord, publish, utc_now
 from fdvv_studio.studio.jobs.jobs import Jobs
 from fdvv_studio.studio.jobs.orders import CaptureOrder, Order, ProbeOrder
-from fdvv_studio.studio.jobs.process import ended
+from fdvv_studio.studio.jobs.process import run_work
 from fdvv_studio.studio.jobs.work import Work
 from fdvv_studio.studio.studio import Studio
 from tests.studio.jobs import DEVICES, learning, tuning
@@ -82,7 +82,7 @@ def refusal_of_resume(project: Path) -> str:
 
 def refusal_of_work(project: Path) -> str:
     """Return the line with which a worker ends that is started by hand in the folder of the only job."""
-    end = ended(Work(JobFolder(project / "jobs" / "0001"), 1, lambda _event: None, lambda _number: ""))
+    end = run_work(Work(JobFolder(project / "jobs" / "0001"), 1, lambda _event: None, lambda _number: ""))
     assert end.state == "failed"
     return end.line
 

@@ -12,15 +12,15 @@ from fdvv.device.twin import TwinDevice
 from fdvv.model.file import load_builtin, save_model
 from fdvv.model.jnd_file import save_jnds
 from fdvv.model.noticeable import LITERATURE
-from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.compensate import start_surface
 from fdvv.rendering.probe import probe
 from fdvv.rendering.settings import ProbeSettings
 from fdvv.twin.files import load_rig, rig_to_toml
-from fdvv_studio.project.measured_bands import measured_button
+from fdvv_studio.project.measured_bands import load_measured_button
 from fdvv_studio.studio.jobs.events import CurveIntended, JobEvent, JobOutcome, PressEvent
 from fdvv_studio.studio.jobs.file import JobFolder, JobRecord, publish, utc_now
 from fdvv_studio.studio.jobs.orders import Order, ProbeOrder
-from fdvv_studio.studio.jobs.process import ended
+from fdvv_studio.studio.jobs.process import run_work
 from fdvv_studio.studio.jobs.work import Work
 from fdvv_studio.studio.jobs.work_learn import PROBE_SEED
 from tests.studio.jobs import learning, tuning
@@ -42,9 +42,9 @@ def test_measured_presses_are_reported_and_stored_as_the_editor_reads_them(tmp_p
     events: list[JobEvent] = []
     order = learning(probe_presses=2)
     work = work_of(order, tmp_path / "job", events.append)
-    assert ended(work).state == "done"
+    assert run_work(work).state == "done"
     publish(tmp_path, work.folder, order)
-    found = measured_button(tmp_path, order.name)
+    found = load_measured_button(tmp_path, order.name)
     assert found is not None
     assert (found.presses, found.simulated) == (2, True)
     measured = json.loads(work.folder.result("measured").read_text())
@@ -65,13 +65,13 @@ def test_what_was_learned_is_judged_beside_the_same_presses_without_compensation
     order = learning({"rounds": 2}, probe_presses=3)
     work = work_of(order, tmp_path / "job", events.append)
     work.folder.rig.write_text(rig_to_toml(load_rig("recommended")))
-    assert ended(work).state == "done"
+    assert run_work(work).state == "done"
     stages = [e.stage for e in events if isinstance(e, PressEvent)]
     assert [stages.count(stage) for stage in ("baseline", "probe")] == [3, 3]
     outcome = next(e for e in events if isinstance(e, JobOutcome) and e.stage == "probe")
     device = TwinDevice(load_rig("recommended"), seed=order.settings.seed + PROBE_SEED)
     model = load_builtin("mx-clear")
-    alone = probe(device, model, uncompensated(device, model, [100.0]), [100.0], 3).curves
+    alone = probe(device, model, start_surface(device, model, [100.0]), [100.0], 3).curves
     for found, bare in zip(outcome.noticed, alone, strict=True):
         assert found.before_mean_cN == pytest.approx(bare.outcome.mean_error_cN, abs=1e-3)
         assert found.mean_cN is not None
@@ -88,7 +88,7 @@ def test_a_job_judges_by_the_jnds_that_lie_in_its_folder_and_says_whose(tmp_path
     order = ProbeOrder("builtin:mx-clear", "clear", settings=ProbeSettings(velocities_mm_s=AT_100, presses=2))
     work = work_of(order, tmp_path / "job", events.append)
     save_jnds(record_of(as_literature("force", 50.0)), work.folder.jnds)
-    assert ended(work).state == "done"
+    assert run_work(work).state == "done"
     origin = "JNDs of force of 12 people of study weights"
     intended = next(e for e in events if isinstance(e, CurveIntended))
     wanted = 50 * LITERATURE.force_cN(intended.press_cN)
@@ -112,7 +112,7 @@ def test_every_path_says_what_a_finger_feels_without_compensation(
     tmp_path: Path, order: Order, stages: list[str]
 ) -> None:
     events: list[JobEvent] = []
-    assert ended(work_of(order, tmp_path / "job", events.append)).state == "done"
+    assert run_work(work_of(order, tmp_path / "job", events.append)).state == "done"
     pressed = list(dict.fromkeys(e.stage for e in events if isinstance(e, PressEvent)))
     assert pressed == stages
     headline = next(e.headline for e in events if isinstance(e, JobOutcome) and e.stage == "probe")
@@ -123,11 +123,11 @@ def test_every_path_says_what_a_finger_feels_without_compensation(
 def test_a_table_that_is_judged_is_compared_with_none(tmp_path: Path) -> None:
     events: list[JobEvent] = []
     learned = work_of(learning(), tmp_path / "learned", lambda _event: None)
-    assert ended(learned).state == "done"
+    assert run_work(learned).state == "done"
     order = ProbeOrder("builtin:mx-clear", "clear", settings=JUDGED_ONCE, actuation="clear")
     work = work_of(order, tmp_path / "job", events.append)
     work.folder.actuation.write_bytes(learned.folder.result("actuation").read_bytes())
-    assert ended(work).state == "done"
+    assert run_work(work).state == "done"
     pressed = list(dict.fromkeys(e.stage for e in events if isinstance(e, PressEvent)))
     assert pressed == ["baseline", "probe"]
 
@@ -137,16 +137,16 @@ def test_work_that_is_interrupted_ends_as_cancelled_and_goes_on(tmp_path: Path) 
         if isinstance(event, PressEvent):
             raise KeyboardInterrupt
 
-    end = ended(work_of(learning(probe_presses=2), tmp_path, stop))
+    end = run_work(work_of(learning(probe_presses=2), tmp_path, stop))
     assert (end.state, "kept" in end.line) == ("cancelled", True)
     events: list[JobEvent] = []
-    assert ended(work_of(learning(probe_presses=2), tmp_path, events.append)).state == "done"
+    assert run_work(work_of(learning(probe_presses=2), tmp_path, events.append)).state == "done"
     assert next(e.done for e in events if isinstance(e, PressEvent)) == 2
 
 
 def test_one_mistake_is_one_line_without_a_path(tmp_path: Path) -> None:
     work = work_of(tuning(), tmp_path, lambda _event: None)
     work.folder.button.write_text("{}")
-    end = ended(work)
+    end = run_work(work)
     assert end.state == "failed"
     assert str(tmp_path) not in end.line

@@ -12,11 +12,11 @@ import pytest
 from fdvv.bench.model import (
     assumptions_of,
     capture_report,
+    explain_rejections,
     method_of,
     model_of_recording,
     process_recording,
     source_of,
-    used_and_left_out,
 )
 from fdvv.bench.vibration import RecordedVibrations
 from fdvv.button.fit import FitSettings
@@ -202,7 +202,7 @@ def test_takes_that_are_left_out_are_grouped_by_reason_and_many_are_counted() ->
         replace(one, reason=Reason.OFF_PACE if i < 8 else Reason.TWO if i == 8 else None)
         for i, one in enumerate(recorded().processed.judged)
     )
-    said = used_and_left_out(replace(recorded().processed, judged=judged))
+    said = explain_rejections(replace(recorded().processed, judged=judged))
     assert said.startswith("3 of 12 presses averaged")
     assert "far off the pace of the others (takes 4, 5, 6, 7, 8, 9 and 2 more)" in said
     assert "two presses where one was asked for (take 12)" in said

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fdvv.bench.model import model_of_recording
-from fdvv.bench.vibration import RecordedVibrations, StrokeVibration, missing_words, recorded_vibrations
+from fdvv.bench.vibration import RecordedVibrations, StrokeVibration, find_vibrations, missing_words
 from fdvv.model.curve import Stroke
 from fdvv.model.vibration import Vibration
 from fdvv.preprocess.process import Processed, process
@@ -28,7 +28,7 @@ def session(
 ) -> tuple[CapturedSession, Processed, RecordedVibrations]:
     made = captured_session(name, seed, presses=presses, paces_mm_s=paces)
     processed = process(made.recording)
-    return made, processed, recorded_vibrations(made.recording, processed)
+    return made, processed, find_vibrations(made.recording, processed)
 
 
 def without(recording: Recording, quantity: Quantity, pace_mm_s: float | None = None) -> Recording:
@@ -110,11 +110,11 @@ def test_a_law_over_speed_has_its_exponent_and_fills_a_missing_pace_only_if_aske
     assert law.report()["exponent_error"] is not None
     assert law.scaling.exponent > 0
     recording = without(made.recording, Quantity.ACCELERATION, 100.0)
-    left = recorded_vibrations(recording, processed)
+    left = find_vibrations(recording, processed)
     assert [v.velocity_mm_s for v in pressed(left)] == [50.0, 200.0]
     assert any("--extrapolate-vibration" in line for line in left.warnings)
     assert not any("scaled" in line for line in left.assumptions)
-    asked = recorded_vibrations(recording, processed, extrapolate=True)
+    asked = find_vibrations(recording, processed, extrapolate=True)
     assert [v.velocity_mm_s for v in pressed(asked)] == [50.0, 100.0, 200.0]
     slow, scaled, fast = (v.modes[0].amplitude_m_s2 for v in pressed(asked))
     assert min(slow, fast) < scaled < max(slow, fast)
@@ -132,7 +132,7 @@ def test_a_linear_button_has_no_vibration_and_the_reason_is_said_once() -> None:
 
 def test_the_microphone_alone_tells_none_and_why() -> None:
     made, processed, _ = session()
-    recorded = recorded_vibrations(without(made.recording, Quantity.ACCELERATION), processed)
+    recorded = find_vibrations(without(made.recording, Quantity.ACCELERATION), processed)
     assert recorded.vibrations == ()
     assert {(h.stroke, h.velocity_mm_s) for h in recorded.strokes} == {
         (c.stroke, c.velocity_mm_s) for c in processed.curves
@@ -144,7 +144,7 @@ def test_the_microphone_alone_tells_none_and_why() -> None:
 def test_without_anything_that_listened_that_is_said_once() -> None:
     made, processed, _ = session()
     deaf = without(without(made.recording, Quantity.ACCELERATION), Quantity.SOUND)
-    recorded = recorded_vibrations(deaf, processed)
+    recorded = find_vibrations(deaf, processed)
     assert (recorded.vibrations, recorded.strokes) == ((), ())
     assert recorded.warnings == ("no vibration: nothing listened, neither microphone nor accelerometer",)
 

@@ -12,11 +12,11 @@ from fdvv.compensation.feasibility.limits import (
     Motion,
     RigLimits,
     achievable_stroke,
+    finger_force_cN,
+    inverse_dynamics_cN,
     minimum_jerk,
-    needed_cN,
-    rendered_cN,
 )
-from fdvv.compensation.feasibility.verdict import acceleration_spread_m_s2, expected_error
+from fdvv.compensation.feasibility.verdict import acceleration_spread_m_s2, estimate_error
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
@@ -60,8 +60,8 @@ def test_a_motion_that_turns_back_is_refused() -> None:
 def test_the_command_that_a_force_needs_makes_the_rig_feel_that_force() -> None:
     """Against the rig's own equation, at a steady speed, once its lags have passed."""
     motion, even = steady(80.0), replace(RIG, gain=(0.9, 0.0, 0.0))
-    command = needed_cN(even, motion, np.full(motion.t_s.size, 60.0))
-    rendered = even.rendered_cN(
+    command = inverse_dynamics_cN(even, motion, np.full(motion.t_s.size, 60.0))
+    rendered = even.finger_force_cN(
         motion.t_s,
         motion.displacement_mm,
         motion.velocity_mm_s,
@@ -103,7 +103,7 @@ def test_a_cap_that_pulls_loses_the_finger() -> None:
 def test_a_sine_in_time_shrinks_as_hold_and_lag_say() -> None:
     motion, omega, lag_s = steady(100.0), 2 * np.pi * 250.0, 5e-4
     sine = np.sin(omega * motion.t_s)
-    rendered = rendered_cN(RigModel(electric_lag_s=lag_s), motion, 100.0 + 50.0 * sine, TICK_s)
+    rendered = finger_force_cN(RigModel(electric_lag_s=lag_s), motion, 100.0 + 50.0 * sine, TICK_s)
     middle = slice(200, -200)
     size = 0.5 * np.ptp(rendered[middle])
     x = 0.5 * omega * TICK_s
@@ -113,7 +113,7 @@ def test_a_sine_in_time_shrinks_as_hold_and_lag_say() -> None:
 def test_a_ramp_in_time_is_led_and_not_late() -> None:
     motion = steady(100.0)
     ramp = 20.0 + 1000.0 * motion.t_s
-    rendered = rendered_cN(RigModel(electric_lag_s=5e-4), motion, ramp, TICK_s)
+    rendered = finger_force_cN(RigModel(electric_lag_s=5e-4), motion, ramp, TICK_s)
     assert_allclose(rendered[200:-200], ramp[200:-200], atol=0.02)
 
 
@@ -150,12 +150,12 @@ def test_a_slew_limit_lets_a_force_rise_no_faster() -> None:
 def test_a_gain_that_vanishes_is_refused() -> None:
     motion = minimum_jerk(Stroke.PRESS, 4.0, 100.0, TICK_s)
     with pytest.raises(ModelError, match="identify it again"):
-        needed_cN(RigModel(gain=(1.0, -0.25, 0.0)), motion, np.zeros(motion.t_s.size))
+        inverse_dynamics_cN(RigModel(gain=(1.0, -0.25, 0.0)), motion, np.zeros(motion.t_s.size))
 
 
 def test_the_expected_error_of_a_rig_that_only_has_mass_is_its_spread() -> None:
     motion = minimum_jerk(Stroke.PRESS, 4.0, 150.0, TICK_s)
-    found = expected_error(IDEAL, achievable_stroke(IDEAL, LIMITS, motion, X_mm, 40.0 + X_mm), motion, 150.0)
+    found = estimate_error(IDEAL, achievable_stroke(IDEAL, LIMITS, motion, X_mm, 40.0 + X_mm), motion, 150.0)
     assert found.inertia_cN == pytest.approx(0.1 * 20.0 * 3.0)
     assert found.mean_cN == pytest.approx(found.limits_cN + found.inertia_cN)
     assert (found.pace_cN, found.model_cN, found.play_cN) == (0.0, 0.0, 0.0)
@@ -165,7 +165,7 @@ def test_the_expected_error_of_a_rig_that_only_has_mass_is_its_spread() -> None:
 def test_parts_that_are_chance_add_as_squares() -> None:
     known = replace(IDEAL, drag_N_s_m=4.0, residual_cN=2.0, play_cN=3.0)
     motion = minimum_jerk(Stroke.PRESS, 4.0, 100.0, TICK_s)
-    found = expected_error(known, achievable_stroke(known, LIMITS, motion, X_mm, 40.0 + X_mm), motion, 100.0)
+    found = estimate_error(known, achievable_stroke(known, LIMITS, motion, X_mm, 40.0 + X_mm), motion, 100.0)
     chance = np.sqrt(found.inertia_cN**2 + found.pace_cN**2 + found.model_cN**2)
     assert found.mean_cN == pytest.approx(found.limits_cN + chance)
     mean_speed = np.abs(motion.at_places(motion.velocity_mm_s, X_mm)).mean()

@@ -11,10 +11,10 @@ import pytest
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.compensation.method import Tuning
 from fdvv.compensation.rig_learning import (
-    added_cN,
     command_cN,
+    feedforward_cN,
     inertia_cN,
-    required_change,
+    table_change,
     tuning_of,
     unrepeatable_cN,
 )
@@ -47,7 +47,7 @@ def fed_back_cN(plant: Plant, velocity_mm_s: float, down: bool) -> float:
     stroke = StrokeSample(
         x[rows], v[rows], a[rows] / 1000, (coil + own)[rows], own[rows], 1e-3, velocity_mm_s
     )
-    place, more = required_change(known, tuning, stroke, UNCHANGED, (GRID_mm, TARGET_cN))
+    place, more = table_change(known, tuning, stroke, UNCHANGED, (GRID_mm, TARGET_cN))
     np.testing.assert_array_equal(place, x[rows])
     order = np.argsort(place)
     table = command_cN(known, GRID_mm, TARGET_cN) + np.interp(GRID_mm, place[order], more[order])
@@ -57,7 +57,7 @@ def fed_back_cN(plant: Plant, velocity_mm_s: float, down: bool) -> float:
         np.interp(t + lead_s - late_s, t, column)
         for lead_s, column in ((tuning.lead_s, x), (tuning.brake_lead_s, v))
     )
-    rendered = sum(plant.forces_cN(motion, np.interp(soon, GRID_mm, table) - added_cN(tuning, speed)))
+    rendered = sum(plant.forces_cN(motion, np.interp(soon, GRID_mm, table) - feedforward_cN(tuning, speed)))
     off = (rendered - np.interp(x, GRID_mm, TARGET_cN))[rows]
     return float(np.abs(off[(x[rows] > 0.6) & (x[rows] < 3.4)]).max())
 
@@ -88,10 +88,10 @@ def test_without_lag_the_identity_is_exact_also_for_a_changed_motion(velocity_mm
     own = known.opposing_cN(v, a, x) - 0.1 * known.back_emf_N_s_m * known.gain_at(x) ** 2 * v
     change = (0.05 * random.normal(size=40), 0.1 * random.normal(size=40), random.normal(size=40))
     stroke = StrokeSample(x, v, a, np.zeros(40), own, 1e-3, abs(velocity_mm_s))
-    place, more = required_change(known, tuning, stroke, change, (GRID_mm, TARGET_cN))
+    place, more = table_change(known, tuning, stroke, change, (GRID_mm, TARGET_cN))
     wanted_cN = np.interp(place, GRID_mm, TARGET_cN)
     v2, a2 = v + change[1], a + change[2]
-    command = command_cN(known, place, wanted_cN) + more - added_cN(tuning, v2)
+    command = command_cN(known, place, wanted_cN) + more - feedforward_cN(tuning, v2)
     rendered = known.gain_at(place) * command + known.opposing_cN(v2, a2, place)
     np.testing.assert_allclose(rendered, wanted_cN, atol=1e-9)
 
@@ -115,7 +115,7 @@ def test_a_drag_or_friction_found_below_zero_is_not_pushed_against() -> None:
 
 def test_what_the_controller_adds_is_drag_and_friction_that_turns_within_its_band() -> None:
     tuning = Tuning(100.0, drag_N_s_m=2.0, friction_cN=4.0, friction_mm_s=10.0)
-    added = added_cN(tuning, np.array([-100.0, -5.0, 0.0, 5.0, 10.0, 100.0]))
+    added = feedforward_cN(tuning, np.array([-100.0, -5.0, 0.0, 5.0, 10.0, 100.0]))
     np.testing.assert_allclose(added, [-24.0, -3.0, 0.0, 3.0, 6.0, 24.0])
 
 

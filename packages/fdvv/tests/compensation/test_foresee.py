@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from fdvv.compensation.rig_learning import FingerJoint, predicted_change
+from fdvv.compensation.rig_learning import FingerJoint, predict_change
 from fdvv.compensation.stroke_samples import StrokeSample
 from fdvv.units import FloatArray
 
@@ -52,7 +52,7 @@ def test_it_solves_the_equation_it_states(finger: FingerJoint, slope_cN_mm: floa
     target, tick_s = 60.0 + slope_cN_mm * GRID_mm, 2.5e-5
     one = stroke(wave(1400, tick_s), target, tick_s)
     for mine, true in zip(
-        predicted_change(one, target, GRID_mm, finger), solved(one, target, finger), strict=True
+        predict_change(one, target, GRID_mm, finger), solved(one, target, finger), strict=True
     ):
         assert np.abs(mine - true).max() < 0.03 * np.abs(true).max()
 
@@ -62,7 +62,7 @@ def test_a_board_s_tick_is_fine_enough() -> None:
     for tick_s in (2.5e-4, 1e-3):
         one = stroke(wave(round(0.035 / tick_s), tick_s), target, tick_s)
         true = solved(one, target, FINGER)
-        q = predicted_change(one, target, GRID_mm, FINGER)[0]
+        q = predict_change(one, target, GRID_mm, FINGER)[0]
         assert np.abs(q - true[0]).max() < 0.1 * np.abs(true[0]).max()
 
 
@@ -70,13 +70,13 @@ def test_over_a_bump_it_stays_close_though_the_slope_is_taken_where_the_stroke_w
     target, tick_s = 60.0 + 15.0 * np.exp(-(((GRID_mm - 1.5) / 0.4) ** 2)), 2.5e-5
     one = stroke(wave(1400, tick_s), target, tick_s)
     true = solved(one, target, FINGER)
-    q = predicted_change(one, target, GRID_mm, FINGER)[0]
+    q = predict_change(one, target, GRID_mm, FINGER)[0]
     assert np.abs(q - true[0]).max() < 0.15 * np.abs(true[0]).max()
 
 
 def test_nothing_changes_where_the_target_was_felt() -> None:
     target = 60.0 + 15.0 * np.sin(3.0 * GRID_mm)
-    for change in predicted_change(stroke(np.zeros(140), target, 2.5e-4), target, GRID_mm, FINGER):
+    for change in predict_change(stroke(np.zeros(140), target, 2.5e-4), target, GRID_mm, FINGER):
         np.testing.assert_allclose(change, 0.0, atol=1e-9)
 
 
@@ -84,6 +84,6 @@ def test_nothing_changes_where_the_target_was_felt() -> None:
 def test_a_constant_excess_ends_at_what_the_springs_give(slope_cN_mm: float) -> None:
     target = 60.0 + slope_cN_mm * GRID_mm
     slow = stroke(np.full(3000, 12.0), target, 2.5e-4, 5.0)
-    q, dv, da = (change[-1] for change in predicted_change(slow, target, GRID_mm, FINGER))
+    q, dv, da = (change[-1] for change in predict_change(slow, target, GRID_mm, FINGER))
     assert q == pytest.approx(12.0 / (60.0 + slope_cN_mm), rel=1e-3)
     assert (dv, da) == pytest.approx((0.0, 0.0), abs=1e-3)

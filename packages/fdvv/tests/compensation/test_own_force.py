@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from fdvv.compensation.feasibility.limits import minimum_jerk, needed_cN, rendered_cN
+from fdvv.compensation.feasibility.limits import finger_force_cN, inverse_dynamics_cN, minimum_jerk
 from fdvv.compensation.identification.drift import detect_drift
 from fdvv.compensation.identification.excitation import identification_surface
 from fdvv.compensation.identification.identify import identify
@@ -140,7 +140,7 @@ def test_the_command_of_a_sliding_cap_renders_the_target(direction: float) -> No
     plain = replace(OWN, friction_cN=0.0, stick_cN=0.0)
     speed = np.full(9, 20.0 * direction)
     felt = [
-        plain.rendered_cN(
+        plain.finger_force_cN(
             np.array([0.0, 1e-3]), here * np.ones(2), s * np.ones(2), np.zeros(2), u * np.ones(2)
         )
         for here, s, u in zip(x, speed, command, strict=True)
@@ -152,7 +152,7 @@ def test_the_command_of_a_sliding_cap_renders_the_target(direction: float) -> No
 def test_feasibility_needs_what_it_renders(stroke: Stroke) -> None:
     motion = minimum_jerk(stroke, 4.0, 80.0, 2.5e-4)
     wanted = 40.0 + 10.0 * np.sin(motion.displacement_mm)
-    rendered = rendered_cN(OWN, motion, needed_cN(OWN, motion, wanted), 1e-9)
+    rendered = finger_force_cN(OWN, motion, inverse_dynamics_cN(OWN, motion, wanted), 1e-9)
     np.testing.assert_allclose(rendered, wanted, atol=1e-6)
 
 

@@ -75,7 +75,7 @@ def test_the_table_kept_is_never_worse_than_the_first_one_it_measured() -> None:
 def test_a_round_keeps_its_best_command_and_the_table_is_their_mean() -> None:
     law = plain(0.3, rounds=2, presses_per_round=5)
     state = run(law, lambda u: u + 10.0, 10)[-1]
-    assert law.finished(state)
+    assert law.is_finished(state)
     best = TARGET - 10.0 * (1 - 0.7**4)
     for kept in state.rounds:
         np.testing.assert_allclose(kept.command_cN, best)

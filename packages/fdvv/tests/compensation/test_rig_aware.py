@@ -235,8 +235,8 @@ def test_a_press_far_off_its_pace_tells_the_rig_but_not_the_tables() -> None:
 
     on, off = met(150.0), met(50.0)
     assert on.rig == off.rig
-    assert np.abs(on.identified[1][0].rows_cN).max() > 0.5
-    np.testing.assert_array_equal(off.identified[1][0].rows_cN, 0.0)
+    assert np.abs(on.rig_and_tables[1][0].rows_cN).max() > 0.5
+    np.testing.assert_array_equal(off.rig_and_tables[1][0].rows_cN, 0.0)
 
 
 @pytest.mark.parametrize(

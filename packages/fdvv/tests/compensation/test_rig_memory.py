@@ -23,7 +23,7 @@ def test_on_its_own_grid_and_speeds_it_is_what_was_learned() -> None:
     press, release = MEMORY.rows_cN(GRID_mm, SPEEDS_mm_s, 4.0)
     np.testing.assert_allclose(press, ROWS_cN)
     np.testing.assert_allclose(release, -ROWS_cN)
-    np.testing.assert_array_equal(MEMORY.expected_cN(SPEEDS_mm_s), MEMORY.error_cN)
+    np.testing.assert_array_equal(MEMORY.error_at_cN(SPEEDS_mm_s), MEMORY.error_cN)
 
 
 def test_between_speeds_it_is_straight_in_their_square_and_the_last_row_holds() -> None:
@@ -40,7 +40,7 @@ def test_below_the_slowest_it_goes_to_one_level_at_rest() -> None:
 
 
 def test_the_error_to_expect_is_straight_between_speeds_and_holds_outside() -> None:
-    expected = MEMORY.expected_cN(np.array([20.0, 75.0, 400.0]))
+    expected = MEMORY.error_at_cN(np.array([20.0, 75.0, 400.0]))
     np.testing.assert_allclose(expected, [[1.0, 1.5, 5.0], [2.0, 2.5, 6.0]])
 
 

@@ -57,7 +57,7 @@ def test_any_sequence_ends_where_bayesian_regression_over_all_of_it_ends(
     truth = np.linalg.cholesky(spread) @ random.uniform(-0.3, 0.3, (4, GRID_mm.size))
     seen = rows @ truth + noises[:, np.newaxis] * random.uniform(-0.3, 0.3, (count, GRID_mm.size))
     for force, speed, noise in zip(seen, speeds.tolist(), noises.tolist(), strict=True):
-        table = table.updated(force, speed, noise, 0.0, fading)
+        table = table.update(force, speed, noise, 0.0, fading)
     mean, covariance = by_regression(spread, seen, rows, noises, fading)
     np.testing.assert_allclose(table.rows_cN, mean, atol=1e-8)
     np.testing.assert_allclose(table.covariance_cN2, covariance, atol=1e-8 * covariance.max())
@@ -69,7 +69,7 @@ def test_the_covariance_stays_symmetric_and_positive(seed: int, count: int, fadi
     random, table = np.random.default_rng(seed), fresh()
     for _ in range(count):
         force = random.normal(0.0, 30.0, GRID_mm.size)
-        table = table.updated(force, random.uniform(20, 300), random.uniform(0.1, 9), 0.0, fading)
+        table = table.update(force, random.uniform(20, 300), random.uniform(0.1, 9), 0.0, fading)
     np.testing.assert_array_equal(table.covariance_cN2, table.covariance_cN2.T)
     assert np.linalg.eigvalsh(table.covariance_cN2).min() > 0
 
@@ -79,14 +79,14 @@ def test_one_speed_is_the_scalar_filter() -> None:
     variance = float(table.covariance_cN2[0, 0])
     assert variance == pytest.approx(4.0**2 + 0.5**2 + 1.15**2)
     for pressed in (100.0, 80.0, 300.0):  # whatever the press was, there is one row
-        once = table.updated(even(3.0), pressed, 2.0, 0.0, 1.0)
+        once = table.update(even(3.0), pressed, 2.0, 0.0, 1.0)
         np.testing.assert_allclose(once.rows_cN, 3.0 * variance / (variance + 4.0))
         np.testing.assert_allclose(once.covariance_cN2, 1 / (1 / variance + 1 / 4.0))
 
 
 def test_a_press_moves_other_rows_by_what_the_covariance_says() -> None:
     before = fresh()
-    after = before.updated(even(5.0), 150.0, 2.0, 0.0, 1.0)
+    after = before.update(even(5.0), 150.0, 2.0, 0.0, 1.0)
     covariance = before.covariance_cN2
     np.testing.assert_allclose(after.rows_cN[:, 7], 5.0 * covariance[:, 2] / (covariance[2, 2] + 4.0))
     # 4 cN are common and inertia is shared: 200 mm/s moves more than 100, which moves more than 50
@@ -98,14 +98,14 @@ def test_a_press_moves_other_rows_by_what_the_covariance_says() -> None:
 def test_bins_that_tell_nothing_take_their_neighbours_surprise() -> None:
     force = np.where((np.arange(GRID_mm.size) > 9) & (np.arange(GRID_mm.size) < 20), 4.0, np.nan)
     force[14] = np.nan
-    holed = fresh().updated(force, 100.0, 2.0, 0.0, 1.0)
-    whole = fresh().updated(even(4.0), 100.0, 2.0, 0.0, 1.0)
+    holed = fresh().update(force, 100.0, 2.0, 0.0, 1.0)
+    whole = fresh().update(even(4.0), 100.0, 2.0, 0.0, 1.0)
     np.testing.assert_allclose(holed.rows_cN, whole.rows_cN)
 
 
 def test_a_stroke_that_tells_nothing_anywhere_is_refused() -> None:
     with pytest.raises(ModelError, match="within the guards"):
-        fresh().updated(even(np.nan), 100.0, 2.0, 0.0, 1.0)
+        fresh().update(even(np.nan), 100.0, 2.0, 0.0, 1.0)
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -113,7 +113,7 @@ def test_a_bounce_counts_as_two_standard_deviations(sign: float) -> None:
     before = fresh()
     force = even(1.0)
     force[10] = sign * 500.0
-    after = before.updated(force, 100.0, 2.0, 0.0, 1.0)
+    after = before.update(force, 100.0, 2.0, 0.0, 1.0)
     expected = before.covariance_cN2[1, 1] + 4.0
     weight = before.covariance_cN2[1, 1] / expected
     assert after.rows_cN[1, 10] == pytest.approx(sign * weight * GATE_sigma * np.sqrt(expected))
@@ -123,7 +123,7 @@ def test_a_bounce_counts_as_two_standard_deviations(sign: float) -> None:
 def test_smoothing_keeps_a_straight_correction_and_takes_what_is_short() -> None:
     line, ripple = 2.0 * GRID_mm, np.cos(np.pi * np.arange(GRID_mm.size))
     plain, smoothed, short = (
-        fresh().updated(force, 100.0, 2.0, sigma_mm, 1.0).rows_cN[1]
+        fresh().update(force, 100.0, 2.0, sigma_mm, 1.0).rows_cN[1]
         for force, sigma_mm in ((line, 0.0), (line, 0.1), (ripple, 0.1))
     )
     np.testing.assert_allclose(smoothed, plain, atol=1e-9)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fdvv.compensation.feasibility.limits import RigLimits
-from fdvv.compensation.feasibility.thermal import held_until_s, rise_K, thermal_dose
+from fdvv.compensation.feasibility.thermal import derating_onset_s, rise_K, thermal_dose
 from fdvv.protocol.tables import Settings
 
 LIMITS = RigLimits.of_settings(Settings())
@@ -55,7 +55,7 @@ def test_at_the_reported_presses_a_minute_derating_begins() -> None:
 def test_a_hold_derates_at_the_reported_time() -> None:
     hot = replace(LIMITS, full_duty_rise_K=2000.0)
     strong = 0.5 * hot.full_duty_cN
-    held_s = held_until_s(hot, rise_K(hot, strong**2))
+    held_s = derating_onset_s(hot, rise_K(hot, strong**2))
     _, found = settled_K(hot, [(1.0, strong)], 2 * hot.heat_s)
     assert held_s == pytest.approx(found, abs=0.1)
 

@@ -24,7 +24,7 @@ from fdvv.preprocess.fuse import (
     table_curve,
     undo_filter,
     undo_play,
-    unknown_curve,
+    zero_curve,
 )
 from fdvv.units import FloatArray
 
@@ -72,7 +72,7 @@ KNOWN, UNKNOWN = Fusion(MOVING_g), Fusion(MOVING_g, pieces=25, unknown_N=1e3)
 def error_mm(settings: Fusion) -> float:
     """Return the error of paths by a button that is known, or found with the paths."""
     made = presses(1)
-    curve = unknown_curve if settings is UNKNOWN else table_curve(PLACES_mm, button_cN(PLACES_mm))
+    curve = zero_curve if settings is UNKNOWN else table_curve(PLACES_mm, button_cN(PLACES_mm))
     paths, _ = fuse([seen for seen, _ in made], curve, settings)
     misses = [p.displacement_mm - x for p, (_, x) in zip(paths, made, strict=True)]
     return float(np.sqrt(np.mean(np.concatenate(misses) ** 2)))
@@ -91,7 +91,7 @@ def test_an_unknown_button_is_found_with_the_paths() -> None:
 
 
 def test_the_button_comes_back_as_a_curve() -> None:
-    _, curve = fuse([seen for seen, _ in presses(2)], unknown_curve, UNKNOWN)
+    _, curve = fuse([seen for seen, _ in presses(2)], zero_curve, UNKNOWN)
 
     x = np.linspace(0.3, 3.5, 60)
     force_cN, stiffness_cN_mm = curve(x)

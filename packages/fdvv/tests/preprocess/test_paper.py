@@ -16,7 +16,7 @@ from fdvv.preprocess.paper import (
     Gaussian,
     PaperRecipe,
     SigmaUnit,
-    filtered,
+    gaussian_smooth,
     paper_average,
     register,
 )
@@ -52,7 +52,7 @@ def test_a_real_clear_keeps_its_bump_or_loses_it_by_the_unit_of_sigma(
     x_mm, force_cN = table["x_mm"], table["Clear_stock_down_down"]
     whole = np.isfinite(force_cN) & (x_mm < 3.9)
     wide_mm = Gaussian(sigma, SigmaUnit(unit)).in_way_mm(0.05, 1.0)
-    kept = filtered(force_cN[whole], wide_mm / 0.05)
+    kept = gaussian_smooth(force_cN[whole], wide_mm / 0.05)
     assert drop_cN(x_mm[whole], kept) == pytest.approx(left_cN, abs=0.1)
 
 
@@ -123,7 +123,7 @@ def test_a_sigma_of_two_is_as_wide_as_its_unit_says(unit: str, time_s: float, wa
 def test_a_filter_has_the_sigma_that_it_is_given() -> None:
     spike = np.zeros(401)
     spike[200] = 1.0
-    spread = filtered(spike, 12.0)
+    spread = gaussian_smooth(spike, 12.0)
     place = np.arange(401) - 200.0
     assert float(spread.sum()) == pytest.approx(1.0)
     assert float(np.sqrt(np.sum(spread * place**2))) == pytest.approx(12.0, rel=0.01)

@@ -14,7 +14,7 @@ from fdvv.model.curve import ForceCurve, Stroke
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.rendering.feasibility import feasibility
-from fdvv.rendering.rig_catalog import AvailableRig, RigCatalog, achievable, limited_ranges
+from fdvv.rendering.rig_catalog import AvailableRig, RigCatalog, achievable, ranges_at_limit
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +105,7 @@ def test_a_force_beyond_the_limit_is_marked_where_it_is_cut_and_said(light: Avai
     strong = raised(load_builtin("mx-clear"), 600.0)
     first = achievable(strong, light, [50.0])[0]
     verdict, press = first.verdict, first.reached
-    cut = [r for r in limited_ranges(press) if r.limit == "force"]
+    cut = [r for r in ranges_at_limit(press) if r.limit == "force"]
     assert cut
     assert verdict.following == "cannot"
     assert verdict.reasons
@@ -114,7 +114,7 @@ def test_a_force_beyond_the_limit_is_marked_where_it_is_cut_and_said(light: Avai
         inside |= (press.displacement_mm >= part.start_mm) & (press.displacement_mm <= part.end_mm)
     missing = press.intended_cN - press.achievable_cN
     assert missing[inside].min() > 0
-    assert limited_ranges(achievable(load_builtin("mx-clear"), light, [50.0])[0].reached) == []
+    assert ranges_at_limit(achievable(load_builtin("mx-clear"), light, [50.0])[0].reached) == []
 
 
 def test_a_curve_of_unknown_velocity_is_judged_at_50_mm_s_and_speeds_are_listed_once(

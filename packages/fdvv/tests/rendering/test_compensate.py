@@ -16,7 +16,7 @@ from fdvv.errors import InputError
 from fdvv.model.file import load_builtin
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.actuation_file import load_actuation, save_actuation
-from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.compensate import CompensationResult, compensate, start_surface
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session_run import PressDone
 from fdvv.testing.scripted import ScriptedDevice
@@ -100,7 +100,7 @@ def test_speeds_that_cannot_be_learned_are_refused(speeds: list[float]) -> None:
 
 
 def test_the_start_is_the_model_with_the_cap_held_up() -> None:
-    start = uncompensated(ScriptedDevice(), MODEL, SPEEDS)
+    start = start_surface(ScriptedDevice(), MODEL, SPEEDS)
     target = ForceSurface.of_model(MODEL, SPEEDS)
     np.testing.assert_array_equal(start.press_cN, np.maximum(target.press_cN, PaperLaw().hold_cN))
 
@@ -153,7 +153,7 @@ def test_forty_presses_on_the_twin_cut_the_felt_error_threefold_on_fresh_presses
         curves = probe(TwinDevice(seed=seed), MODEL, surface, speeds, 10).curves
         return float(np.mean([np.median(c.mean_errors_cN) for c in curves]))
 
-    before = judge(uncompensated(TwinDevice(), MODEL, speeds), 9001)
+    before = judge(start_surface(TwinDevice(), MODEL, speeds), 9001)
     after = [judge(learned.surface, seed) for seed in (9001, 9002)]
     # the median of ten presses differs by a few tenths of a cN between seeds
     assert abs(after[0] - after[1]) < 0.2 * (before - max(after))

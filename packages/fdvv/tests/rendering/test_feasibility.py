@@ -20,7 +20,7 @@ from fdvv.model.edit import remove_curve
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
-from fdvv.rendering.compensate import uncompensated
+from fdvv.rendering.compensate import start_surface
 from fdvv.rendering.feasibility import FeasibilityReport, feasibility, feasible_curves
 from fdvv.rendering.probe import fd_only, probe
 from fdvv.twin.finger import Finger
@@ -64,7 +64,7 @@ def test_a_slow_press_of_a_good_rig_is_followed_and_meets_the_model(
     assert slow.verdict.following is Following.FOLLOWS
     x = slow.reached.displacement_mm
     np.testing.assert_allclose(slow.reached.intended_cN, model.force_cN(x, 50.0, "press"))
-    assert slow.reached.missed_cN < 0.3
+    assert slow.reached.shortfall_cN < 0.3
 
 
 def test_more_is_asked_of_a_rig_the_faster_the_press(report: FeasibilityReport) -> None:
@@ -137,7 +137,7 @@ def test_bad_speeds_and_a_model_without_a_press_are_refused(drawn: Drawn, model:
 def test_what_presses_measured_stands_beside_what_was_computed(drawn: Drawn, model: FDVVModel) -> None:
     rig, finger, known = drawn
     device = TwinDevice(rig, finger, 3)
-    found = probe(device, model, uncompensated(device, model, [50.0]), [50.0], 2)
+    found = probe(device, model, start_surface(device, model, [50.0]), [50.0], 2)
     report = feasibility(model, known, device.settings(), [50.0, 100.0], found, device.info())
     measured = [curve.measured for curve in report.curves]
     assert measured[0] is found.curves[0]

@@ -17,8 +17,8 @@ from fdvv.program.compile import compile_program
 from fdvv.program.library import MAKERS, make
 from fdvv.program.program import Program
 from fdvv.rendering.compensate import compensate
-from fdvv.rendering.evaluation.probe_curve import judged_curves
-from fdvv.rendering.evaluation.program_probe import StateError, all_errors_cN, intended_cN, judged_states
+from fdvv.rendering.evaluation.probe_curve import judge_curves
+from fdvv.rendering.evaluation.program_probe import StateError, all_errors_cN, judge_states, program_force_cN
 from fdvv.rendering.program_render import ProgramReport, render_program, rendering_of
 from fdvv.twin.files import load_rig
 from fdvv.twin.rig import LoadCell, Rig
@@ -83,8 +83,8 @@ def test_a_plain_button_is_judged_as_the_probe_judges_it(known: LearnedRig) -> N
     device, program = TwinDevice(RIG, seed=3), make("button")
     rendering_of(program, device, known).put_on(device)
     trace = device.press_trace(SPEED_mm_s)
-    curves = judged_curves(load_builtin("mx-red"), SPEED_mm_s, [trace.press(SPEED_mm_s)])
-    states = judged_states(program, [trace], SPEED_mm_s)
+    curves = judge_curves(load_builtin("mx-red"), SPEED_mm_s, [trace.press(SPEED_mm_s)])
+    states = judge_states(program, [trace], SPEED_mm_s)
     for curve in curves:
         own = all_errors_cN([s for s in states if s.stroke is curve.stroke])
         assert own.mean() == pytest.approx(float(curve.mean_errors_cN[0]), abs=0.15)
@@ -117,7 +117,7 @@ def test_a_step_to_a_pull_and_a_spring_back_neither_ring_nor_open_the_loop(known
     assert trace.cap_velocity_mm_s[spent].max() < 400.0
     # 20 ms after the spring has come back its force is there, and does not swing until the finger leaves
     back = np.flatnonzero((trace.state == 2) & (trace.displacement_mm < 3.7) & (trace.displacement_mm > 0.3))
-    meant = intended_cN(program, trace, SPEED_mm_s, np.ones(trace.t_s.size, dtype=np.bool_))
+    meant = program_force_cN(program, trace, SPEED_mm_s, np.ones(trace.t_s.size, dtype=np.bool_))
     assert np.abs(trace.force_cN - meant)[back[200:]].max() < 5.0
 
 
@@ -128,7 +128,7 @@ def test_a_program_of_a_learned_button_gets_what_was_learned_for_it(known: Learn
         device = TwinDevice(RIG, seed=8)
         rendering_of(program, device, known, *given).put_on(device)
         traces = [device.press_trace(50.0) for _ in range(4)]
-        means.append(float(all_errors_cN(judged_states(program, traces, 50.0)).mean()))
+        means.append(float(all_errors_cN(judge_states(program, traces, 50.0)).mean()))
     assert means[1] < 0.5 * means[0]
 
 
@@ -144,7 +144,7 @@ def test_a_pull_is_meant_to_be_felt_as_nothing() -> None:
     device, program = TwinDevice(RIG, seed=4), shipped("fast-tapping")
     device.upload_program(compile_program(program).image)
     trace = device.press_trace(SPEED_mm_s)
-    meant = intended_cN(program, trace, SPEED_mm_s, np.zeros(trace.t_s.size, dtype=np.bool_))
+    meant = program_force_cN(program, trace, SPEED_mm_s, np.zeros(trace.t_s.size, dtype=np.bool_))
     names = np.array([state.name for state in program.states])[trace.state]
     assert set(meant[names == "dropping"]) == {0.0}
     assert set(meant[names == "returning"]) == {120.0}

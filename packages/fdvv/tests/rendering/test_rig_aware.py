@@ -21,7 +21,7 @@ from fdvv.model.model import FDVVModel
 from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.protocol.tables import Settings
-from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.compensate import CompensationResult, compensate, start_surface
 from fdvv.rendering.probe import probe
 from fdvv.rendering.session import Session
 from fdvv.rendering.session_log import PRESSES, PressLog
@@ -66,7 +66,7 @@ class Learned:
 
     def before_cN(self, model: FDVVModel) -> float:
         device = TwinDevice(self.rig, self.finger)
-        surface = uncompensated(device, model, SPEEDS)
+        surface = start_surface(device, model, SPEEDS)
         return judged_cN(self.rig, self.finger, model, surface, Tuning())
 
 

@@ -17,7 +17,7 @@ from fdvv.rendering.actuation_file import open_run_summary
 from fdvv.rendering.session import Session
 from fdvv.rendering.session_log import ANSWERS
 from fdvv.rendering.session_run import Guide
-from fdvv.rendering.tune_candidates import candidates_for, simulated_observer, tuned_model
+from fdvv.rendering.tune_candidates import candidates_for, replace_vibrations, simulated_observer
 from fdvv.rendering.tune_vibration import AnswerEvent, TuneResult, TuneSetup, tune_vibration
 from fdvv.testing.conformance import plain_surface
 from fdvv.testing.scripted import ScriptedDevice
@@ -229,5 +229,5 @@ def test_vibrations_of_other_velocities_stay_and_one_for_all_is_replaced() -> No
 
     model: FDVVModel = replace(MODEL, vibrations=(at(50.0), at(100.0)))
     fresh = replace(at(100.0), duration_s=0.02)
-    assert tuned_model(model, [fresh]).vibrations == (at(50.0), fresh)
-    assert tuned_model(replace(MODEL, vibrations=(at(None),)), [fresh]).vibrations == (fresh,)
+    assert replace_vibrations(model, [fresh]).vibrations == (at(50.0), fresh)
+    assert replace_vibrations(replace(MODEL, vibrations=(at(None),)), [fresh]).vibrations == (fresh,)

@@ -77,7 +77,7 @@ def test_led_along_a_gesture_the_press_is_that_of_the_gesture(tactile: ForceSurf
             down, speed = way - up, -back
         live.lead(down - LIFTED_mm, speed, near_1_s=1000.0)
         pieces.append(live.advance(1))
-    ticks = InteractiveTicks.joined(pieces)
+    ticks = InteractiveTicks.concatenate(pieces)
     assert ticks.displacement_mm == pytest.approx(whole.displacement_mm[whole.tick], abs=0.05)
     off = np.abs(ticks.force_cN - whole.force_cN[whole.tick])
     assert off.mean() < 1.0
@@ -109,7 +109,7 @@ def test_the_speed_of_the_finger_does_not_jump_when_the_hand_does(tactile: Force
     for goal in (-1.8, -0.3, -1.5, -0.2):
         rig.lead(goal)
         steps.append(rig.advance(8))
-    speed = np.diff(InteractiveTicks.joined(steps).finger_mm)
+    speed = np.diff(InteractiveTicks.concatenate(steps).finger_mm)
     assert np.abs(np.diff(speed)).max() < 0.03  # mm per tick and tick; a jump of the goal is 1.5 mm
 
 
@@ -124,7 +124,7 @@ def test_the_same_leads_give_the_same_press_however_time_is_cut(tactile: ForceSu
                 rig.lead(4.0 if done == 0 else -1.0)
             pieces.append(rig.advance(count))
             done += count
-        found.append(InteractiveTicks.joined(pieces))
+        found.append(InteractiveTicks.concatenate(pieces))
     for column in fields(InteractiveTicks):
         assert np.array_equal(*(getattr(ticks, column.name) for ticks in found)), column.name
 

@@ -86,7 +86,7 @@ def test_presses_unfold_what_one_press_aliases_only_if_their_phases_are_one() ->
     random = np.random.default_rng(3)
     times = [np.arange(25) / 1000 + phase for phase in random.uniform(0, 1e-3, 15)]
     signals = [ring(t, 900, 120, 1.0, 0.4) + 0.05 * random.standard_normal(t.size) for t in times]
-    one = {f: fit_damped(times, signals, [f], [100.0], one_phase=True) for f in (100.0, 900.0)}
+    one = {f: fit_damped(times, signals, [f], [100.0], same_phase=True) for f in (100.0, 900.0)}
     assert one[900.0].modes[0].frequency_Hz == pytest.approx(900, rel=0.005)
     assert one[900.0].noise < 0.3 * one[100.0].noise
     own = {f: fit_damped(times, signals, [f], [100.0]).noise for f in (100.0, 900.0)}

@@ -7,7 +7,7 @@ import pytest
 
 from fdvv.units import FloatArray
 from fdvv.vibration.damped import DampedFit, DampedMode
-from fdvv.vibration.modes import drives, most_likely, overlapped, sound
+from fdvv.vibration.modes import drives, most_likely, overlaps, sound
 
 PERIOD_s, NOISE = 1e-4, 0.03
 
@@ -80,6 +80,6 @@ def test_modes_lie_in_the_band_fall_and_are_no_halves_of_a_pair(
 
 def test_modes_nearer_than_they_are_wide_overlap_unless_one_is_a_drive() -> None:
     one, near, drive = mode(881, 300), mode(945, 300), mode(900, 2000)
-    assert overlapped(one, (one, near))
+    assert overlaps(one, (one, near))
     assert drives(drive)
-    assert not overlapped(one, (one, drive, mode(1200, 300)))
+    assert not overlaps(one, (one, drive, mode(1200, 300)))

@@ -33,7 +33,7 @@ def power_left(times: list[FloatArray], signals: list[FloatArray], theta: FloatA
 @pytest.mark.parametrize("even", [True, False])
 def test_what_remains_is_that_of_each_record_solved_by_itself(even: bool) -> None:
     times, signals = drawn(0, even)
-    records = Records(times, signals, 2, one_phase=False)
+    records = Records(times, signals, 2, same_phase=False)
     assert (records.even is not None) == even
     found = records.size**2 * records.at(THETA).power
     assert found == pytest.approx(power_left(times, signals, THETA), rel=1e-9)
@@ -42,7 +42,7 @@ def test_what_remains_is_that_of_each_record_solved_by_itself(even: bool) -> Non
 @pytest.mark.parametrize("even", [True, False])
 def test_slopes_are_those_of_the_power_that_remains(even: bool) -> None:
     times, signals = drawn(1, even)
-    records = Records(times, signals, 2, one_phase=False)
+    records = Records(times, signals, 2, same_phase=False)
     gradient = -2 * records.size**2 * records.at(THETA).slopes.sum(axis=0)
     for k, unit in enumerate(np.eye(THETA.size)):
         ends = [power_left(times, signals, THETA + sign * 1e-2 * unit) for sign in (1, -1)]
@@ -52,13 +52,13 @@ def test_slopes_are_those_of_the_power_that_remains(even: bool) -> None:
 def test_a_later_start_turns_weights_and_changes_nothing_else() -> None:
     times, signals = drawn(2, even=True)
     shifted = [t + 0.003 for t in times]
-    one, other = (Records(t, signals, 2, one_phase=False).at(THETA) for t in (times, shifted))
+    one, other = (Records(t, signals, 2, same_phase=False).at(THETA) for t in (times, shifted))
     assert other.power == pytest.approx(one.power, rel=1e-12)
     np.testing.assert_allclose(other.weights, one.weights, rtol=1e-9)
 
 
 def test_the_longer_half_of_records_is_left_without_what_is_known() -> None:
     times, signals = drawn(3, even=True)
-    left, basis = Records(times, signals, 2, one_phase=False).typical(THETA)
+    left, basis = Records(times, signals, 2, same_phase=False).typical(THETA)
     assert left.shape == (2, 120)
     assert np.abs(left @ basis).max() < 1e-9

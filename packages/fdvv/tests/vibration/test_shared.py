@@ -18,11 +18,11 @@ from fdvv.vibration.ring import Ring
 from fdvv.vibration.shared import (
     PacePresses,
     SharedMode,
+    common_mode,
+    common_rings,
     fit_scaling,
     measure_paces,
-    shared_mode,
-    shared_rings,
-    with_shared,
+    refit_shared,
 )
 from fdvv.vibration.snap import NotFound
 from tests.support.snaps import ENERGY, DECAY_1_s, FREQUENCY_Hz, made_press
@@ -36,7 +36,7 @@ def ring(*modes: tuple[float, float, float, float]) -> Ring:
 
 def test_one_pace_that_a_drive_bent_does_not_move_what_the_others_share() -> None:
     rings = [ring((239, 1, 150, 5)), ring((241, 1, 151, 5)), ring((240, 1, 60, 5)), ring((239, 1, 149, 5))]
-    found = shared_mode(rings)
+    found = common_mode(rings)
     assert found is not None
     assert found.decay_1_s == pytest.approx(149.5, abs=1)
     assert found.frequency_Hz == pytest.approx(239.5, abs=0.6)
@@ -45,11 +45,11 @@ def test_one_pace_that_a_drive_bent_does_not_move_what_the_others_share() -> Non
 
 
 def test_a_ring_at_another_frequency_is_no_part_of_it() -> None:
-    found = shared_mode([ring((239, 1, 150, 5)), ring((240, 1, 150, 5)), ring((77, 5, 30, 9))])
+    found = common_mode([ring((239, 1, 150, 5)), ring((240, 1, 150, 5)), ring((77, 5, 30, 9))])
     assert found is not None
     assert found.frequency_Hz == pytest.approx(239.5, abs=0.6)
     assert found.paces == 2
-    assert shared_mode([ring((239, 1, 150, 5))]) is None
+    assert common_mode([ring((239, 1, 150, 5))]) is None
 
 
 def test_searches_build_on_the_surest_first_mode_and_the_second_that_most_tell() -> None:
@@ -59,8 +59,8 @@ def test_searches_build_on_the_surest_first_mode_and_the_second_that_most_tell()
         ring((241, 3, 150, 5), (897, 5, 330, 9)),
         ring((240, 3, 150, 5), (901, 5, 330, 9)),
     ]
-    assert shared_rings(rings) == ((238, 150), (897, 330))
-    assert shared_rings([]) == ()
+    assert common_rings(rings) == ((238, 150), (897, 330))
+    assert common_rings([]) == ()
 
 
 def test_a_ring_fitted_again_keeps_the_shared_mode_and_its_own_spread() -> None:
@@ -68,7 +68,7 @@ def test_a_ring_fitted_again_keeps_the_shared_mode_and_its_own_spread() -> None:
     found = measure_vibration(presses, 100.0, ENERGY, acceleration=True)
     assert isinstance(found, MeasuredVibration)
     assert isinstance(found.ring, Ring)
-    again = with_shared(found, SharedMode(FREQUENCY_Hz, DECAY_1_s, 0.5, 4.0, 3))
+    again = refit_shared(found, SharedMode(FREQUENCY_Hz, DECAY_1_s, 0.5, 4.0, 3))
     assert isinstance(again.ring, Ring)
     shared, own = again.ring.mode, found.ring.mode
     assert (shared.frequency_Hz, shared.decay_1_s, shared.decay_sd_1_s) == (FREQUENCY_Hz, DECAY_1_s, 4.0)
@@ -82,9 +82,9 @@ def test_a_shared_mode_that_does_not_fit_changes_nothing() -> None:
     found = measure_vibration(presses, 100.0, ENERGY, acceleration=True)
     assert isinstance(found, MeasuredVibration)
     for frequency, decay in ((500.0, 150.0), (FREQUENCY_Hz, 10.0)):
-        assert with_shared(found, SharedMode(frequency, decay, 1.0, 1.0, 2)) is found
+        assert refit_shared(found, SharedMode(frequency, decay, 1.0, 1.0, 2)) is found
     without = replace(found, ring=NotFound("for a reason"))
-    assert with_shared(without, SharedMode(FREQUENCY_Hz, DECAY_1_s, 1.0, 1.0, 2)) is without
+    assert refit_shared(without, SharedMode(FREQUENCY_Hz, DECAY_1_s, 1.0, 1.0, 2)) is without
 
 
 def pace(velocity_mm_s: float, amplitude: float, seeds: range) -> PacePresses:

@@ -31,7 +31,7 @@ def test_the_same_answers_ask_the_same_so_that_a_session_can_go_on(
     method = Comparing(seed=seed)
     state = method.init(JOB)
     for answer in answers:
-        if method.done(state):
+        if method.is_done(state):
             break
         assert method.ask(state) == Comparing(seed=seed).ask(TuningState(JOB, answers=state.answers))
         state = method.tell(state, answer)

@@ -49,7 +49,7 @@ def test_questions_are_counted_and_end() -> None:
         numbers.append((asked.number, asked.total))
         state = method.tell(state, 4)
     assert numbers == [(i + 1, 14) for i in range(14)]
-    assert method.done(state)
+    assert method.is_done(state)
     with pytest.raises(ModelError, match="nothing is asked any more"):
         method.tell(state, 4)
 

@@ -63,7 +63,7 @@ class LivePlant:
         entered_s, left_s, span_mm = self._press_s
         pace_mm_s = span_mm / (left_s - entered_s) if left_s > entered_s > 0 else 0.0
         if 0.3 * velocity_mm_s < pace_mm_s < 3.0 * velocity_mm_s:  # else it pressed no button
-            self.hand.achieved(pace_mm_s)
+            self.hand.learn_speed(pace_mm_s)
         self._asked = 0.1 * travel_mm, 0.9 * travel_mm
         self._press_s = (0.0, 0.0, 0.8 * travel_mm)
         self.hand.press(travel_mm, velocity_mm_s)

@@ -71,22 +71,22 @@ def _run(sweep_plan: Any, plan: Path, output: Path, where: Workers, as_json: boo
 def _preview(sweep_plan: Any, plan: Path, output: Path | None, processes: int | None, as_json: bool) -> None:
     from fdvv_campaigns.sweep.sweep import preview_sweep
 
-    found = preview_sweep(sweep_plan, output, plan.parent)
+    preview = preview_sweep(sweep_plan, output, plan.parent)
     count = processes or len(os.sched_getaffinity(0))
-    ui.print_warnings([f"a cell that was tried failed: {reason}" for reason in found.failed])
+    ui.print_warnings([f"a cell that was tried failed: {reason}" for reason in preview.failed])
     if as_json:
         ui.print_json({
-            "cells": found.cells, "done": found.done, "cell_s": found.cell_s, "processes": count,
-            "estimated_s": found.seconds(count), "failed": list(found.failed),
+            "cells": preview.cells, "done": preview.done, "cell_s": preview.cell_s, "processes": count,
+            "estimated_s": preview.seconds(count), "failed": list(preview.failed),
         })  # fmt: skip
         return
     for name, values in sweep_plan.levels().items():
         listed = ", ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in values[:6])
         more = f" ... {values[-1]}" if len(values) > 6 else ""
         click.echo(f"{name} ({len(values)}): {listed}{more}")
-    each = f"{found.cell_s:.3g} s each"
-    click.echo(f"{ui.counted(found.cells, 'cell')}, {found.done} done, about {each}")
-    click.echo(f"about {_duration(found.seconds(count))} with {ui.counted(count, 'process')}; simulated")
+    each = f"{preview.cell_s:.3g} s each"
+    click.echo(f"{ui.counted(preview.cells, 'cell')}, {preview.done} done, about {each}")
+    click.echo(f"about {_duration(preview.seconds(count))} with {ui.counted(count, 'process')}; simulated")
 
 
 def _duration(seconds: float) -> str:

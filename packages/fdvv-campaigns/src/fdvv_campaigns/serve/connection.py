@@ -76,7 +76,7 @@ class Connection:
         await self._socket.accept()
         self._start(self._write())
         try:
-            if await self._greeted():
+            if await self._greet():
                 await self._read()
         except (WebSocketDisconnect, RuntimeError):
             pass  # it has gone
@@ -88,10 +88,10 @@ class Connection:
             # not waited for: to cancel this connection cancels every wait in it
             self._loop.run_in_executor(None, self._rig.close)
 
-    async def _greeted(self) -> bool:
+    async def _greet(self) -> bool:
         """Wait for hello with the token; nothing else is read before."""
         try:
-            hello = self._decoded(await asyncio.wait_for(self._socket.receive(), HELLO_s))
+            hello = self._decode(await asyncio.wait_for(self._socket.receive(), HELLO_s))
         except TimeoutError:
             await self._socket.close(SILENT, "say hello first")
             return False
@@ -117,7 +117,7 @@ class Connection:
 
     async def _read(self) -> None:
         while (message := await self._socket.receive())["type"] != "websocket.disconnect":
-            ask = self._decoded(message)
+            ask = self._decode(message)
             if ask is None:
                 continue
             if isinstance(ask, m.Hello):
@@ -131,14 +131,14 @@ class Connection:
                     self._served.runs.answer if isinstance(ask, m.RUN_REQUESTS) else self._rig.answer, ask
                 )
 
-    def _decoded(self, message: Any) -> m.Request | None:
+    def _decode(self, message: Any) -> m.Request | None:
         """Return the request in a message; None where it is none, which the client is sent."""
         if message["type"] == "websocket.disconnect":
             raise WebSocketDisconnect
         text = message.get("text") or message.get("bytes") or b""
         try:
-            found: m.Request = msgspec.json.decode(text, type=REQUEST)
-            return found
+            request: m.Request = msgspec.json.decode(text, type=REQUEST)
+            return request
         except (msgspec.MsgspecError, UnicodeError, RecursionError) as error:
             number = None
             with suppress(msgspec.MsgspecError, UnicodeError, RecursionError):

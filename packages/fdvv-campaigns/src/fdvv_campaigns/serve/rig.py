@@ -69,9 +69,9 @@ class RigClient:
     def answer(self, ask: m.Request) -> object:
         """Do what a request of DEVICE_REQUESTS asks. FdvvError, OSError."""
         if isinstance(ask, m.Stop):
-            return self._owned(ask)
+            return self._answer_owner(ask)
         with self._turn:
-            return self._open(ask) if isinstance(ask, m.OpenDevice) else self._owned(ask)
+            return self._open(ask) if isinstance(ask, m.OpenDevice) else self._answer_owner(ask)
 
     def close(self) -> None:
         """Fall to zero force and let the device go, for good; nothing happens without one."""
@@ -90,7 +90,7 @@ class RigClient:
             finally:
                 self._rig.owner = None
 
-    def _owned(self, ask: m.Request) -> object:
+    def _answer_owner(self, ask: m.Request) -> object:
         if self._rig.owner is not self:
             reason = "another client owns the device" if self._rig.owner else "you have opened no device"
             raise InputError(_call(ask), "device", reason, "open it, once it is free")
@@ -117,7 +117,7 @@ class RigClient:
         session = self._rig.session
         match ask:
             case m.DeviceFacts():
-                info = session.held().device.info()
+                info = session.thread().device.info()
                 limits = {key: asdict(info)[key] for key in ("force_limit_cN", "travel_limit_mm")}
                 return message_of(a.DeviceInformation, session.refresh(), **limits)
             case m.Upload():
@@ -139,7 +139,7 @@ class RigClient:
 
     def _stop(self) -> a.DeviceIs:
         session = self._rig.session
-        if session.held().remote is None:
+        if session.thread().remote is None:
             return device_is(session.refresh())  # it makes whole presses: between them there is no force
         return device_is(session.do(lambda remote: remote.stop()))
 
@@ -165,11 +165,11 @@ class RigClient:
 
     def _ticks(self, piece: TickPiece) -> None:
         for kind, t_s, x_mm in self._touch.changes(piece):
-            host_s = self._rig.session.held().host_s(t_s)
+            host_s = self._rig.session.thread().host_s(t_s)
             self._send(a.PressEvent(kind, t_s, host_s, self._level, self._simulated, x_mm))
         binner = self._binner
-        if binner and (found := binner.add(piece)).number.size:
-            frame = scope_frame(found, binner.bin_s)
+        if binner and (bins := binner.add(piece)).number.size:
+            frame = scope_frame(bins, binner.bin_s)
             self._send(message_of(a.TelemetryEvent, frame))
 
     def _tell(self, status: Struct) -> None:
@@ -193,7 +193,7 @@ class Touch:
 
         A cap that is deep at first has sunk: it counts once it was up.
         """
-        x, found = piece.displacement_mm, list[tuple[a.PressKind, float, float]]()
+        x, changes = piece.displacement_mm, list[tuple[a.PressKind, float, float]]()
         deep = np.where(x > TOP_mm, DOWN, np.where(x < UP_mm, UP, BETWEEN))
         for row in np.flatnonzero((deep != BETWEEN) | ~piece.rendered).tolist():
             down = bool(deep[row] == DOWN)
@@ -202,9 +202,9 @@ class Touch:
             elif self._down is None:
                 self._down = None if down else False
             elif down != self._down:
-                found.append(("down" if down else "up", float(piece.t_s[row]), float(x[row])))
+                changes.append(("down" if down else "up", float(piece.t_s[row]), float(x[row])))
                 self._down = down
-        return found
+        return changes
 
 
 def device_is(status: DeviceStatus) -> a.DeviceIs:

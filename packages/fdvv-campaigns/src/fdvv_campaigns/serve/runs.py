@@ -149,8 +149,8 @@ def _model(run: Optimization, design: dict[str, float] | None) -> dict[str, Any]
     """Return the button of a design as its file says; None of numbers of the client's own."""
     if design is None or run.setup.space.kind == "own":
         return None
-    found: dict[str, Any] = json.loads(model_to_json(run.model(design)))
-    return found
+    record: dict[str, Any] = json.loads(model_to_json(run.model(design)))
+    return record
 
 
 def _ask(run: Optimization, _ask: m.AskDesign) -> a.Suggestion:
@@ -191,10 +191,10 @@ def _is(trial: Trial, run: Optimization, ask: m.TellOutcome) -> bool:
 
 
 def _best(run: Optimization, _ask: m.BestOfRun) -> a.Best:
-    found, retest = best_design(run), retest_of(run)
+    best, retest = best_design(run), retest_of(run)
     return a.Best(
-        **vars(found),
-        model=_model(run, found.design),
+        **vars(best),
+        model=_model(run, best.design),
         retest=None if retest is None else a.RetestFound(**to_builtins(retest)),
     )
 

@@ -15,9 +15,9 @@ from fdvv.errors import InputError
 from fdvv_campaigns.serve.connection import Connection, Served
 from fdvv_campaigns.serve.rig import RigOwnership
 from fdvv_campaigns.serve.runs import FOLDER, Runs
-from fdvv_studio.studio.auth import saved_token
+from fdvv_studio.studio.auth import project_token
 from fdvv_studio.studio.parts import prepare_records
-from fdvv_studio.studio.server import bound_socket, serve_app
+from fdvv_studio.studio.server import bind_socket, serve_app
 from fdvv_studio.studio.studio import Studio
 
 HOST, PATH = "127.0.0.1", "/fdvv"
@@ -72,9 +72,9 @@ def serve(
 
     The token is that of the project: a client survives a restart. Raises InputError, OSError.
     """
-    known = {check_origin(one) for one in origins}
+    known = {check_origin(origin) for origin in origins}
     folder = studio.project / FOLDER
-    with bound_socket(HOST, port) as taken:
-        token, port = saved_token(folder, TOKEN_FILE), taken.getsockname()[1]
+    with bind_socket(HOST, port) as taken:
+        token, port = project_token(folder, TOKEN_FILE), taken.getsockname()[1]
         app = create_app(studio, token, port, known, devices)
         serve_app(app, taken, lambda: ready(f"ws://{HOST}:{port}{PATH}", token), SILENT_s)

@@ -18,7 +18,7 @@ from fdvv.device.twin import TwinDevice
 from fdvv.model.curve import Stroke
 from fdvv.model.file import load_builtin
 from fdvv.model.model import FDVVModel
-from fdvv.rendering.compensate import compensate, uncompensated
+from fdvv.rendering.compensate import compensate, start_surface
 from fdvv.rendering.feasibility import feasibility
 from fdvv.rendering.probe import probe
 from fdvv.twin.button import ButtonPhysics
@@ -83,24 +83,24 @@ def _probe(about: Subjects, settings: Mapping[str, Any]) -> Figures:
     device = TwinDevice(about.rig, about.finger, seed_of(about.seed, LEARN))
     judge = TwinDevice(about.rig, about.finger, seed_of(about.seed, JUDGE))
     if about.method == NOT_COMPENSATED:
-        surface, tuning = uncompensated(device, about.button, speeds), Tuning()
+        surface, tuning = start_surface(device, about.button, speeds), Tuning()
         learned, skipped = 0, 0
     else:
         result = compensate(device, about.button, speeds, _law(about.method, settings["rounds"]))
         surface, tuning = result.surface, result.outcome.tuning
         learned, skipped = result.presses, len(result.skipped)
-    found = probe(judge, about.button, surface, speeds, presses, tuning=tuning)
-    means = {(c.stroke, c.velocity_mm_s): c.outcome.mean_error_cN for c in found.curves}
+    judged = probe(judge, about.button, surface, speeds, presses, tuning=tuning)
+    means = {(c.stroke, c.velocity_mm_s): c.outcome.mean_error_cN for c in judged.curves}
     strokes = {s: [e for (stroke, _), e in means.items() if stroke is s] for s in Stroke}
     return {
         "mean_error_cN": float(np.mean(list(means.values()))),
         "worst_mean_error_cN": max(means.values()),
         "press_error_cN": _mean(strokes[Stroke.PRESS]),
         "release_error_cN": _mean(strokes[Stroke.RELEASE]),
-        "max_error_cN": max(c.outcome.max_error_cN for c in found.curves),
-        "reached_ratio": min(c.reached_ratio for c in found.curves),
+        "max_error_cN": max(c.outcome.max_error_cN for c in judged.curves),
+        "reached_ratio": min(c.reached_ratio for c in judged.curves),
         "learning_presses": learned,
-        "skipped_presses": skipped + len(found.skipped),
+        "skipped_presses": skipped + len(judged.skipped),
     }
 
 
@@ -120,8 +120,8 @@ def _feasible(about: Subjects, settings: Mapping[str, Any]) -> Figures:
     """Judge whether a rig that was identified from presses can render a button."""
     assert isinstance(about.button, FDVVModel)
     assert about.rig is not None
-    known = _known(about.rig, about.finger, seed_of(about.seed, KNOW), tuple(settings["velocities_mm_s"]))
     device, speeds = TwinDevice(about.rig, about.finger), settings["velocities_mm_s"]
+    known = _identify_rig(about.rig, about.finger, seed_of(about.seed, KNOW), tuple(speeds))
     report = feasibility(about.button, known, device.settings(), speeds, info=device.info())
     worst = max((curve.verdict.following for curve in report.curves), key=list(Following).index)
     kept = [c.reached.kept_ratio for c in report.curves if c.reached.kept_ratio is not None]
@@ -138,7 +138,7 @@ def _feasible(about: Subjects, settings: Mapping[str, Any]) -> Figures:
 
 
 @lru_cache(maxsize=16)
-def _known(rig: Rig, finger: Finger | None, seed: int, speeds_mm_s: tuple[float, ...]) -> RigModel:
+def _identify_rig(rig: Rig, finger: Finger | None, seed: int, speeds_mm_s: tuple[float, ...]) -> RigModel:
     """Identify a rig from its presses; cells of one rig share it, and it is the same wherever it is done."""
     device = TwinDevice(rig, finger, seed)
     learned = compensate(device, load_builtin(MET_ON), speeds_mm_s, RigAware()).learned_rig
@@ -149,16 +149,16 @@ def _known(rig: Rig, finger: Finger | None, seed: int, speeds_mm_s: tuple[float,
 def _press(about: Subjects, settings: Mapping[str, Any]) -> Figures:
     assert isinstance(about.button, ButtonPhysics)
     count = settings["presses"]
-    found = press_physics(about.button, about.finger or Finger(), (about.speed_mm_s,), count, about.seed)
-    closing = [press.closing_ms for press in found if press.closing_ms is not None]
+    presses = press_physics(about.button, about.finger or Finger(), (about.speed_mm_s,), count, about.seed)
+    closing = [press.closing_ms for press in presses if press.closing_ms is not None]
     return {
-        "achieved_mm_s": float(np.median([press.achieved_mm_s for press in found])),
-        "before_stop_cN": float(np.median([press.before_stop_cN for press in found])),
+        "achieved_mm_s": float(np.median([press.achieved_mm_s for press in presses])),
+        "before_stop_cN": float(np.median([press.before_stop_cN for press in presses])),
         "quasi_static_peak_cN": _slow_peak_cN(about.button),
-        "largest_cN": float(np.median([press.largest_cN for press in found])),
+        "largest_cN": float(np.median([press.largest_cN for press in presses])),
         "closing_ms": float(np.median(closing)) if closing else None,
         "closing_spread_ms": float(np.std(closing, ddof=1)) if len(closing) > 1 else None,
-        "closed_ratio": len(closing) / len(found),
+        "closed_ratio": len(closing) / len(presses),
     }
 
 

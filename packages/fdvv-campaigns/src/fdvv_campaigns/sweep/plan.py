@@ -124,12 +124,12 @@ def read_sweep_plan(path: Path) -> SweepPlan:
 def check_plan(plan: SweepPlan, source: object) -> None:
     """Refuse a plan that cannot be carried out, but for the files it names. Raises InputError."""
     if plan.measure not in MEASURES:
-        raise _unknown(source, "measure", plan.measure, list(MEASURES))
+        raise _bad_name(source, "measure", plan.measure, list(MEASURES))
     for name, value in plan.factors.items():
         _check_factor(plan, source, name, value)
     for name in plan.settings:
         if name not in plan.measured.settings:
-            raise _unknown(source, "settings", name, list(plan.measured.settings))
+            raise _bad_name(source, "settings", name, list(plan.measured.settings))
     if plan.count > MOST_cells:
         reason = f"{plan.count} cells, at most {MOST_cells} are tried"
         raise InputError(source, "factors", reason, "split the plan")
@@ -140,7 +140,7 @@ def _check_factor(plan: SweepPlan, source: object, name: str, value: FactorValue
     section, _, parameter = name.partition(".")
     known = [*plan.measured.factors, REPEAT]
     if name not in known and not (parameter and section in ("rig", "finger") and section in known):
-        raise _unknown(source, "factors", name, [*known, *(f"{s}.SECTION.NAME" for s in ("rig", "finger"))])
+        raise _bad_name(source, "factors", name, [*known, *(f"{s}.SECTION.NAME" for s in ("rig", "finger"))])
     if (name == REPEAT) != isinstance(value, int):
         wanted = "a count" if name == REPEAT else "a list, a range or a draw"
         raise InputError(source, place, f"{wanted} is needed, got {value!r:.60}", REMEDY)
@@ -173,7 +173,7 @@ def _values(value: FactorValues) -> tuple[Value, ...]:
     return tuple(value)
 
 
-def _unknown(source: object, place: str, name: str, known: list[str]) -> InputError:
+def _bad_name(source: object, place: str, name: str, known: list[str]) -> InputError:
     at = f"{place}.{name}" if place != "measure" else place
     return InputError(source, at, f"unknown: {name}", did_you_mean(name, known))
 
@@ -245,8 +245,8 @@ class SweepWork:
         """Open what a cell is about. Raises ModelError on a parameter that cannot be."""
         rig, finger = cell.get("rig"), cell.get("finger")
         return Subjects(
-            None if rig is None else _changed(self.rigs[str(rig)], "rig", cell),
-            None if finger is None else _changed(self.fingers[str(finger)], "finger", cell),
+            None if rig is None else _set_parameters(self.rigs[str(rig)], "rig", cell),
+            None if finger is None else _set_parameters(self.fingers[str(finger)], "finger", cell),
             self.buttons[str(cell["button"])],
             str(cell.get("method", "")),
             float(cell.get("speed_mm_s", 0.0)),
@@ -293,14 +293,14 @@ def _above_0(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < float("inf")
 
 
-def _drawn(name: str) -> int | None:
+def _draw_number(name: str) -> int | None:
     """Return the number of a rig or finger that is drawn; None for any other."""
     kind, _, number = name.partition(":")
     return int(number) if kind == "drawn" and number.isdecimal() else None
 
 
 def _rig(name: str, seed: int, folder: Path) -> Rig:
-    if (number := _drawn(name)) is not None:
+    if (number := _draw_number(name)) is not None:
         return draw_rig(np.random.default_rng((seed, RIGS, number)))
     return load_rig(name if name.isidentifier() else folder / name)
 
@@ -308,7 +308,7 @@ def _rig(name: str, seed: int, folder: Path) -> Rig:
 def _finger(name: str, seed: int, folder: Path) -> Finger:
     if name == "default":
         return Finger()
-    if (number := _drawn(name)) is not None:
+    if (number := _draw_number(name)) is not None:
         return draw_finger(np.random.default_rng((seed, FINGERS, number)))
     return load_finger(name if name.isidentifier() else folder / name)
 
@@ -328,13 +328,13 @@ def _check_parameters(work: SweepWork, levels: Mapping[str, Sequence[Value]]) ->
         records: Mapping[str, Any] = work.rigs if kind == "rig" else work.fingers
         for value in values:
             try:
-                _changed(next(iter(records.values())), kind, {name: value})
+                _set_parameters(next(iter(records.values())), kind, {name: value})
             except ModelError as error:
                 remedy = "docs/reference/rig.md lists all"
                 raise InputError("plan", f"factors.{name}", str(error), remedy) from error
 
 
-def _changed(record: Record, kind: str, cell: Mapping[str, Value]) -> Record:
+def _set_parameters(record: Record, kind: str, cell: Mapping[str, Value]) -> Record:
     """Return a rig or finger with the parameters that a cell gives it. Raises ModelError."""
     for name, value in cell.items():
         whose, _, rest = name.partition(".")

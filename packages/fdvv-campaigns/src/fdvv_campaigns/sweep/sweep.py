@@ -119,7 +119,7 @@ def run_sweep(
     _begin(folder, plan, opened)
     schema = sweep_schema(plan)
 
-    def lost(cell: Cell) -> Row:
+    def failure_row(cell: Cell) -> Row:
         seed = seed_of(plan.seed, int(cell[1][REPEAT]))
         return {"cell": cell[0], **cell[1], "state": "failed", "reason": DEADLY, "seed": seed}
 
@@ -139,7 +139,7 @@ def run_sweep(
             progress=progress,
             item_s=plan.measured.about_s,
             chunk_s=CHUNK_s,
-            lost=lost,
+            lost=failure_row,
         )
         store.finish([(number,) for number in range(plan.count)])
         states = (state for table in store.tables(["state"]) for state in table.column("state").to_pylist())
@@ -177,20 +177,20 @@ def _begin(folder: Path, plan: SweepPlan, work: SweepWork) -> None:
         stored = msgspec.json.decode(path.read_bytes(), type=dict[str, Any])
     except msgspec.MsgspecError as error:
         raise InputError(path, "whole file", f"is damaged ({error})", "name a new folder") from error
-    stored["sha256"] = _renamed(stored.get("sha256", {}), record["sha256"])
+    stored["sha256"] = _update_names(stored.get("sha256", {}), record["sha256"])
     other = [name for name in {**record, **stored} if stored.get(name) != record.get(name)]
     if other:
         reason = f"holds a sweep with other {', '.join(name.replace('sha256', 'files') for name in other)}"
         raise InputError(folder, "folder", reason, "give the same plan to go on, or name a new folder")
 
 
-def _renamed(stored: dict[str, str], wanted: dict[str, str]) -> dict[str, str]:
+def _update_names(stored: dict[str, str], wanted: dict[str, str]) -> dict[str, str]:
     """Return digests with the present name of a rig that an older plan left out."""
-    found = dict(stored)
+    digests = dict(stored)
     for old, name in OLD_RIG_NAMES.items():
-        if f"rig {name}" in wanted and f"rig {old}" in found:
-            found[f"rig {name}"] = found.pop(f"rig {old}")
-    return found
+        if f"rig {name}" in wanted and f"rig {old}" in digests:
+            digests[f"rig {name}"] = digests.pop(f"rig {old}")
+    return digests
 
 
 def _digests(work: SweepWork) -> dict[str, str]:
@@ -198,8 +198,8 @@ def _digests(work: SweepWork) -> dict[str, str]:
     texts: dict[str, str] = {f"rig {name}": rig_to_toml(rig) for name, rig in work.rigs.items()}
     texts |= {f"finger {name}": finger_to_toml(finger) for name, finger in work.fingers.items()}
     texts |= {
-        f"button {name}": model_to_json(one) if isinstance(one, FDVVModel) else button_to_toml(one)
-        for name, one in work.buttons.items()
+        f"button {name}": model_to_json(button) if isinstance(button, FDVVModel) else button_to_toml(button)
+        for name, button in work.buttons.items()
     }
     return {name: hashlib.sha256(text.encode()).hexdigest() for name, text in texts.items()}
 
@@ -212,17 +212,17 @@ def sweep_summary(result: SweepResult) -> list[dict[str, Any]]:
     factors = [name for name, values in levels.items() if 1 < len(values) <= MOST_levels]
     if not factors:
         factors = [next(iter(levels))]
-    found: dict[tuple[str, Value], list[float]] = {}
+    by_level: dict[tuple[str, Value], list[float]] = {}
     for batch in result.table([*factors, figure]).to_batches():
         for line in batch.to_pylist():
             if line[figure] is not None:
                 for name in factors:
-                    found.setdefault((name, line[name]), []).append(line[figure])
+                    by_level.setdefault((name, line[name]), []).append(line[figure])
     return [
         {
             "factor": name,
             "figure": figure,
-            "rows": [_row(value, found.get((name, value), [])) for value in levels[name][:MOST_levels]],
+            "rows": [_row(value, by_level.get((name, value), [])) for value in levels[name][:MOST_levels]],
         }
         for name in factors
     ]

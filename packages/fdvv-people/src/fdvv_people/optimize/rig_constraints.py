@@ -63,6 +63,6 @@ def rig_constraints(
 def _slack(curve: CurveFeasibility) -> float:
     """Return the slack of one curve: of the mean force that is missed, and of the bump that is left."""
     reached = curve.reached
-    missed = reached.missed_cN / max(1.0, float(np.abs(reached.intended_cN).mean()))
+    missed = reached.shortfall_cN / max(1.0, float(np.abs(reached.intended_cN).mean()))
     kept = 1.0 if reached.kept_ratio is None else reached.kept_ratio
     return min(MISSED_RATIO - missed, kept - KEPT_RATIO)

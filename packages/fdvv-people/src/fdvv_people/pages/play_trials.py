@@ -9,7 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Generic, Protocol, TypeVar
 
-from fdvv.device.open import open_device, pressed_by_person
+from fdvv.device.open import is_manual, open_device
 from fdvv.errors import DeviceError, InputError
 from fdvv.model.model import FDVVModel
 from fdvv.program.program import Program
@@ -95,7 +95,7 @@ class LiveTrial(Generic[RoundAsk, RoundKept]):
         self._by_travel = True
         pressed_s = self._key.read(at_ms / 1e3, displacement_mm)
         if pressed_s is not None:
-            self._times.pressed(pressed_s)
+            self._times.note_press(pressed_s)
             self._came_ms.append((at_ms, 1e3 * CLOCK()))
         self.run.ask(lambda press: press.follow(displacement_mm, velocity_mm_s))
 
@@ -114,7 +114,7 @@ class LiveTrial(Generic[RoundAsk, RoundKept]):
         """Make the moves of the hand that are due, and look again while some wait."""
         while move := self._moves.due(press.time_s):
             if move.down:
-                self._times.led(press.time_s, move.hand_s)
+                self._times.note_lead(press.time_s, move.hand_s)
                 self._hand.down(press)
             else:
                 self._hand.up(press)
@@ -124,7 +124,7 @@ class LiveTrial(Generic[RoundAsk, RoundKept]):
     def _show(self, seen: LiveFrame) -> None:
         for event in seen.events:
             if event.kind in DOWN and not self._by_travel:
-                self._times.activated(event.t_s)
+                self._times.note_activation(event.t_s)
             elif event.kind is LiveEventKind.VIBRATION:
                 at_ms = 1e3 * (event.t_s + seen.zero_s)
                 self._tell(PlayClick(event.number, at_ms, event.velocity_mm_s))
@@ -165,7 +165,7 @@ HOLDER = "the pointing task"
 
 
 def pressed_devices() -> tuple[tuple[str, str], ...]:
-    return tuple((name, about) for name, about in available_devices()[0] if pressed_by_person(name))
+    return tuple((name, about) for name, about in available_devices()[0] if is_manual(name))
 
 
 class Table:
@@ -199,7 +199,7 @@ class Table:
 
     def _open(self, name: str) -> None:
         require_listed("device", name, dict(pressed_devices()), "choose one of the list")
-        with self._locks.acquired(name, HOLDER):
+        with self._locks.hold(name, HOLDER):
             self._key = DeviceKey(open_device(name), self._failed)
         self._name = name
 

@@ -72,14 +72,14 @@ def build(folders: tuple[Path, ...], output: Path, where: Workers, as_json: bool
 
     ui.check_folder(output)
     with where.at_work(output, "files", 1) as (executor, tell):
-        found = build_library(folders, output, executor, tell)
+        summary = build_library(folders, output, executor, tell)
     if as_json:
-        ui.print_json(found.to_dict())
+        ui.print_json(summary.to_dict())
         return
-    click.echo(f"{output}: {ui.counted(found.buttons, 'button')} of {ui.counted(found.files, 'file')}")
-    click.echo(f"read {found.read}, not changed {found.kept}, no longer there {found.gone}")
-    if found.refused:
-        click.echo(f"refused {found.refused}; why: fdvv library refused {output}")
+    click.echo(f"{output}: {ui.counted(summary.buttons, 'button')} of {ui.counted(summary.files, 'file')}")
+    click.echo(f"read {summary.read}, not changed {summary.kept}, no longer there {summary.gone}")
+    if summary.refused:
+        click.echo(f"refused {summary.refused}; why: fdvv library refused {output}")
 
 
 @library.command()
@@ -143,11 +143,11 @@ def refused(folder: Path, as_json: bool) -> None:
     """List the files of a library's folders that could not be used, and why."""
     from fdvv_studio.library.library import Library
 
-    found = list(Library(folder).refused())
+    problems = list(Library(folder).refused())
     if as_json:
-        ui.print_json({"refused": [{"place": place, "reason": reason} for place, reason in found]})
+        ui.print_json({"refused": [{"place": place, "reason": reason} for place, reason in problems]})
         return
-    for place, reason in found:
+    for place, reason in problems:
         click.echo(ui.one_line(f"{place}: {reason}"))
 
 

@@ -40,19 +40,19 @@ def press(output: Path | None, as_json: bool, **options: Any) -> None:
     from fdvv_studio.live.simulated_press import press_button
 
     ui.check_output(output, ".csv")
-    found = press_button(**options)
+    result = press_button(**options)
     if output:
-        found.write_csv(output)
+        result.write_csv(output)
     if as_json:
-        rows = [{key: getattr(p, key) for key in FIGURES} for p in found.presses]
-        document = {"button": found.button, "travel_mm": found.travel_mm, "simulated": True}
-        ui.print_json({**document, "quasi_static_peak_cN": found.quasi_static_peak_cN, "presses": rows})
+        rows = [{key: getattr(p, key) for key in FIGURES} for p in result.presses]
+        document = {"button": result.button, "travel_mm": result.travel_mm, "simulated": True}
+        ui.print_json({**document, "quasi_static_peak_cN": result.quasi_static_peak_cN, "presses": rows})
         return
     click.echo(
-        f"{found.button} (simulated): travel {found.travel_mm:.2f} mm, "
-        f"{force_text(found.quasi_static_peak_cN, '.1f')} before the stop at 0.5 mm/s"
+        f"{result.button} (simulated): travel {result.travel_mm:.2f} mm, "
+        f"{force_text(result.quasi_static_peak_cN, '.1f')} before the stop at 0.5 mm/s"
     )
     columns = [ForceTitle(title) if "{}" in title else title for title in FIGURES.values()]
-    ui.print_table(columns, [[getattr(p, key) for key in FIGURES] for p in found.presses])
+    ui.print_table(columns, [[getattr(p, key) for key in FIGURES] for p in result.presses])
     if output:
         click.echo(f"written: {output}")

@@ -23,7 +23,7 @@ from fdvv.parallel.campaign import run_campaign
 from fdvv.parallel.executor import DEADLY, Executor
 from fdvv_studio.library.catalog import ButtonFile, source_files
 from fdvv_studio.library.figures import UNREADABLE, read_file, refusal, row_of_file
-from fdvv_studio.library.table import FORMAT, VERSION, LibraryRecord, library_schema, sampled, table_of
+from fdvv_studio.library.table import FORMAT, VERSION, LibraryRecord, library_schema, sample, table_of
 
 BLOCK_bytes = 1 << 20  # assumed: a single read of most files, and little memory for any
 
@@ -59,10 +59,10 @@ class LibraryWork:
 
 
 def _read_record(file: ButtonFile, record: LibraryRecord) -> LibraryRecord:
-    found = read_file(file.path)
-    row = row_of_file(file.path, file.id, file.collection, file.origin, found)
-    warnings = found.parts.warnings if found.parts else ()
-    return replace(record, row=row, format=found.format, warnings=warnings, curves=sampled(found.model))
+    parsed = read_file(file.path)
+    row = row_of_file(file.path, file.id, file.collection, file.origin, parsed)
+    warnings = parsed.parts.warnings if parsed.parts else ()
+    return replace(record, row=row, format=parsed.format, warnings=warnings, curves=sample(parsed.model))
 
 
 def _sha256(file: ButtonFile) -> str:
@@ -140,7 +140,7 @@ def build_library(
     """
     need_parquet()
     folder, sources = Path(folder), [Path(source).resolve() for source in sources]
-    files = _listed(sources)
+    files = _list_files(sources)
     labels = tuple(dict.fromkeys(file.place.partition("/")[0] for file in files))
     _begin(folder, labels)
     busy = InputError(folder, "folder", "another process builds it", "wait for it")
@@ -172,7 +172,7 @@ def read_manifest(folder: Path) -> LibraryManifest:
     return read_document(read_limited(path, LARGEST_bytes, REMEDY), path, KIND, read, lambda _: None)
 
 
-def _listed(sources: Sequence[Path]) -> list[ButtonFile]:
+def _list_files(sources: Sequence[Path]) -> list[ButtonFile]:
     for source in sources:
         if not source.is_dir():
             raise InputError(source, "folder", "there is no such folder", "give a folder of measurements")

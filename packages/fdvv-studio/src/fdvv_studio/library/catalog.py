@@ -68,12 +68,12 @@ def source_files(sources: Sequence[Path]) -> Iterator[ButtonFile]:
 
     A source that lies within another is listed once, with the other; a folder that is not there is empty.
     """
-    for label, folder in _labelled(sources):
-        found = dict(sorted(_walk(folder, "")))
-        for inside, entry in found.items():
+    for label, folder in _label_sources(sources):
+        entries = dict(sorted(_walk(folder, "")))
+        for inside, entry in entries.items():
             path = Path(entry.path)
             other = companion(path)
-            beside = found.get(inside.removesuffix(entry.name) + other.name) if other else None
+            beside = entries.get(inside.removesuffix(entry.name) + other.name) if other else None
             if other and beside and other.name < path.name:
                 continue  # the press is listed, which is first in the alphabet for every way of naming
             place = os.fsencode(f"{label}/{inside}")
@@ -89,7 +89,7 @@ def source_files(sources: Sequence[Path]) -> Iterator[ButtonFile]:
             )
 
 
-def _labelled(sources: Sequence[Path]) -> Iterator[tuple[str, Path]]:
+def _label_sources(sources: Sequence[Path]) -> Iterator[tuple[str, Path]]:
     """Name every source after its folder; the second of a name gets a number."""
     folders = list(dict.fromkeys(Path(source).resolve() for source in sources))
     seen: dict[str, int] = {}
@@ -153,9 +153,9 @@ class Catalog:
 
     def scan(self) -> tuple[ButtonFile, ...]:
         """List the files that may hold a button as they are now: the person's own, then the sources'."""
-        found = (*own_files(self.project / BUTTONS), *source_files(self.sources))
-        self._files = {file.id: file for file in found}
-        return found
+        files = (*own_files(self.project / BUTTONS), *source_files(self.sources))
+        self._files = {file.id: file for file in files}
+        return files
 
     def model(self, button_id: str) -> FDVVModel:
         """Open a button; a measured one is fitted. Raises InputError."""

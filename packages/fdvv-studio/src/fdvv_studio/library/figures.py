@@ -24,7 +24,7 @@ from fdvv.model.file import load_model
 from fdvv.model.landmarks import landmarks
 from fdvv.model.model import FDVVModel
 from fdvv_studio.library.row import NUMBERS, ButtonRow, Origin
-from fdvv_studio.library.stated import Stated, stated_type
+from fdvv_studio.library.stated import Stated, find_type
 
 AVERAGED_mm = 0.02  # finer than the 50 um in which a clicky switch falls; a shorter mean leaves more noise
 
@@ -124,9 +124,9 @@ def row_of_file(
 ) -> ButtonRow:
     """Return the row of a file, read already or read here. Raises InputError."""
     dated = datetime.fromtimestamp(path.stat().st_mtime, UTC).date().isoformat()
-    found = read or read_file(path)
-    stated = stated_type(found.model.name, collection, path)
-    return row_of_model(found.model, button_id, origin, collection, dated, found.parts, stated)
+    content = read or read_file(path)
+    stated = find_type(content.model.name, collection, path)
+    return row_of_model(content.model, button_id, origin, collection, dated, content.parts, stated)
 
 
 UNREADABLE = (FdvvError, OSError, ValueError, ArithmeticError, LookupError, MemoryError)
@@ -155,7 +155,7 @@ def row_of_model(
     stated : its type, where more than its name is known.
     """
     kind, figures = kind_of(model), figures_of(model)
-    stated = stated or stated_type(model.name, collection)
+    stated = stated or find_type(model.name, collection)
     said = f"{model.name} {collection} {model.provenance.source}".replace("_", " ").replace("-", " ")
     words = [word.lower() for word in STATED.findall(said)] + ([stated.type] if stated else [])
     return ButtonRow(

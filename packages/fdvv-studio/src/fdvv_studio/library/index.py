@@ -27,7 +27,7 @@ from fdvv.io.documents import MODEL, own_kind
 from fdvv.model.file import builtin_names, load_builtin
 from fdvv_studio.library.catalog import ButtonFile, Catalog
 from fdvv_studio.library.figures import UNREADABLE, refusal, row_of_file, row_of_model
-from fdvv_studio.library.library import known_lines
+from fdvv_studio.library.library import cache_lines
 from fdvv_studio.library.row import ButtonRow, CacheLine, Origin, add_to_cache, read_cache, write_cache
 
 LONGEST_s = 60.0
@@ -73,7 +73,7 @@ class RowReader:
         """Read one file; one that kills the reader or takes too long is refused with that reason."""
         if self._process is not None and self._process.poll() is not None:
             self.close()
-        process = self._process = self._process or _started()
+        process = self._process = self._process or _start_reader()
         assert process.stdin is not None
         assert process.stdout is not None
         watch = Timer(self._longest_s, process.kill)
@@ -104,7 +104,7 @@ class RowReader:
                         pipe.close()
 
 
-def _started() -> subprocess.Popen[bytes]:
+def _start_reader() -> subprocess.Popen[bytes]:
     """Start a process and wait until it can read, so that its start is not counted as a file's time."""
     command = [sys.executable, "-c", "from fdvv_studio.library.index import serve_rows; serve_rows()"]
     process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
@@ -236,10 +236,10 @@ class CatalogIndex:
     def _from_libraries(self) -> tuple[str, dict[str, CacheLine]]:
         """Return the reason why libraries cannot be used, if so, and their lines by place."""
         try:
-            found = {line.place: line for folder in self._libraries for line in known_lines(folder)}
+            lines = {line.place: line for folder in self._libraries for line in cache_lines(folder)}
         except FdvvError as error:
             return str(error), {}
-        return "", found
+        return "", lines
 
     def _read(self, files: Sequence[ButtonFile], status: IndexStatus) -> None:
         """Read files into the status and, every now and then, into the cache."""
@@ -275,7 +275,7 @@ class CatalogIndex:
         for reader in readers:
             free.put(reader)
 
-        def one(file: ButtonFile) -> CacheLine | None:
+        def read_line(file: ButtonFile) -> CacheLine | None:
             if self._closing.is_set():
                 return None
             ask = ReadRequest(os.fsencode(file.path), file.id, file.collection, file.origin)
@@ -287,7 +287,7 @@ class CatalogIndex:
 
         try:
             with ThreadPoolExecutor(max(1, len(readers))) as pool:
-                for line in pool.map(one, files):
+                for line in pool.map(read_line, files):
                     if line is None:
                         return
                     yield line

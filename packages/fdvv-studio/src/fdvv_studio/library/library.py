@@ -83,9 +83,9 @@ class Library:
             reason = "is not finished"
             raise InputError(self.folder, "library", reason, "run the same fdvv library build again")
         self._search = CatalogSearch()
-        found = [pair for table in _tables(self.folder, READ_NAMES) for pair in rows_of(table)]
-        self._places = {row.id: place for place, row in found}
-        self._search.extend([row for _, row in found])
+        pairs = [pair for table in _tables(self.folder, READ_NAMES) for pair in rows_of(table)]
+        self._places = {row.id: place for place, row in pairs}
+        self._search.extend([row for _, row in pairs])
 
     @property
     def rows(self) -> Sequence[ButtonRow]:
@@ -94,9 +94,9 @@ class Library:
 
     def find(self, query: SearchQuery) -> tuple[list[LibraryHit], tuple[str, ...]]:
         """Find buttons; give them and the words that were read with a typo. InputError."""
-        found = self._search.find(query)
-        rows = [self._search.rows[i] for i in found.positions]
-        return [LibraryHit(row, self._places[row.id]) for row in rows if row.id in self._places], found.mended
+        hits = self._search.find(query)
+        rows = [self._search.rows[i] for i in hits.positions]
+        return [LibraryHit(row, self._places[row.id]) for row in rows if row.id in self._places], hits.mended
 
     def like(self, spec: str, by: By = "all", count: int = 10, jnds: Jnds = LITERATURE) -> list[LibraryHit]:
         """Find the buttons that feel most like one; docs/explanation/library.md tells how that is decided.
@@ -108,10 +108,10 @@ class Library:
         row = self._query_row(spec)
         if self._search.row(row.id) is None:
             self._search.extend([row])
-        found = self._search.find(SearchQuery(like=row.id, jnds=jnds))
-        distance = distances(found.parts[:, PARTS[by]])
+        result = self._search.find(SearchQuery(like=row.id, jnds=jnds))
+        distance = distances(result.parts[:, PARTS[by]])
         nearest = [i for i in np.argsort(distance, kind="stable") if np.isfinite(distance[i])]
-        hits = (self._hit(found.positions[i], distance[i], found.parts[i]) for i in nearest)
+        hits = (self._hit(result.positions[i], distance[i], result.parts[i]) for i in nearest)
         return list(islice((hit for hit in hits if hit.row.id in self._places), count))
 
     def refused(self) -> Iterator[tuple[str, str]]:
@@ -159,7 +159,7 @@ class Library:
         return next((self._search.row(i) for i, there in self._places.items() if there == place), None)
 
 
-def known_lines(folder: Path) -> Iterator[CacheLine]:
+def cache_lines(folder: Path) -> Iterator[CacheLine]:
     """Return what a library knows of its files as lines of the cache, so that the index need not read them.
 
     Raises InputError if there is no library or it is damaged, BuildError without the extra `sweep`.
@@ -214,18 +214,18 @@ def library_query(text: str, sort: str = "match", descending: bool = False) -> S
     kinds: list[ButtonType] = []
     ranges: dict[str, Range] = {}
     for part in text.split():
-        found = _CONDITION.fullmatch(part)
-        if found is None and any(sign in part for sign in "<>="):
+        match = _CONDITION.fullmatch(part)
+        if match is None and any(sign in part for sign in "<>="):
             remedy = "write it as peak_cN>=50, without blanks"
             raise InputError("search", part, "is neither a word nor a condition", remedy)
-        if found is None:
+        if match is None:
             words.append(part)
-        elif found["name"] == "kind":
-            kinds += _kinds(part, found["sign"], found["value"])
+        elif match["name"] == "kind":
+            kinds += _kinds(part, match["sign"], match["value"])
         else:
-            name, unit = _column(found["name"])
+            name, unit = _column(match["name"])
             _check_name(name)
-            more = _range(part, found["sign"], found["value"], unit)
+            more = _range(part, match["sign"], match["value"], unit)
             ranges[name] = _both(ranges.get(name, FULL), more)
     sort, _ = _column(sort)
     if sort not in SORTED:
@@ -235,8 +235,8 @@ def library_query(text: str, sort: str = "match", descending: bool = False) -> S
 
 def _column(name: str) -> tuple[str, str]:
     """Return the column of a name and the unit of its bare numbers: peak_gf is peak_cN in gf."""
-    found = re.fullmatch(r"(\w+_)(cN|gf|N)(_mm)?", name)
-    return (f"{found[1]}cN{found[3] or ''}", found[2]) if found else (name, "")
+    match = re.fullmatch(r"(\w+_)(cN|gf|N)(_mm)?", name)
+    return (f"{match[1]}cN{match[3] or ''}", match[2]) if match else (name, "")
 
 
 def _check_name(name: str) -> None:

@@ -42,7 +42,7 @@ def open_file(path: Path, settings: FitSettings | None = None) -> OpenedFile:
     if own_kind(path) == MODEL:
         model = load_model(path)
         return OpenedFile(model, f"{kind_sentence(model)} {_extent(model)}.", model.provenance.assumptions)
-    return fitted_file(fit_file(path, settings))
+    return open_fitted(fit_file(path, settings))
 
 
 class Fitted(Protocol):
@@ -58,14 +58,14 @@ class Fitted(Protocol):
     def warnings(self) -> tuple[str, ...]: ...
 
 
-def fitted_file(found: Fitted) -> OpenedFile:
-    worst_cN = max(fit.rmse_cN for fit in found.fits)
+def open_fitted(fitted: Fitted) -> OpenedFile:
+    worst_cN = max(fit.rmse_cN for fit in fitted.fits)
     fit = f"The fit follows the samples within {force_text(worst_cN, '.2f')} (RMSE)"
-    sentence = f"{kind_sentence(found.model)} {fit}."
-    return OpenedFile(found.model, sentence, found.warnings, found.fits, found.measured)
+    sentence = f"{kind_sentence(fitted.model)} {fit}."
+    return OpenedFile(fitted.model, sentence, fitted.warnings, fitted.fits, fitted.measured)
 
 
-def one_of_each_pair(paths: Sequence[Path]) -> Iterator[Path]:
+def skip_paired_releases(paths: Sequence[Path]) -> Iterator[Path]:
     """Leave out releases whose press is there too: a reader takes both from the press's file."""
     for path in paths:
         named = stroke_of(path)

@@ -115,28 +115,28 @@ def read_cache(path: Path) -> dict[str, CacheLine]:
         head, *lines = path.read_bytes().split(b"\n")
     except OSError:
         return {}
-    found: dict[str, CacheLine] = {}
+    by_place: dict[str, CacheLine] = {}
     if head + b"\n" != _HEAD:
-        return found
+        return by_place
     for text in lines:
         try:
             line = _LINES.decode(text)
         except (msgspec.MsgspecError, UnicodeDecodeError):
             continue
-        found[line.place] = line
-    return found
+        by_place[line.place] = line
+    return by_place
 
 
 def add_to_cache(path: Path, lines: Iterable[CacheLine]) -> None:
     """Add lines to a cache that write_cache made. OSError if it cannot be written."""
     with path.open("ab") as stream:
-        stream.write(_encoded(lines))
+        stream.write(_encode(lines))
 
 
 def write_cache(path: Path, lines: Iterable[CacheLine]) -> None:
     """Write a cache anew, whole or not at all. OSError if it cannot be written."""
-    write_atomic(path, _HEAD + _encoded(lines))
+    write_atomic(path, _HEAD + _encode(lines))
 
 
-def _encoded(lines: Iterable[CacheLine]) -> bytes:
+def _encode(lines: Iterable[CacheLine]) -> bytes:
     return b"".join(msgspec.json.encode(line) + b"\n" for line in lines)

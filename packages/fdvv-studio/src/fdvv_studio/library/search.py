@@ -36,7 +36,7 @@ class TextTable:
             name = row.name.casefold()
             other = " ".join([row.collection, row.origin, *row.stated]).casefold()
             self._names.append(name)
-            self._others.append(_spaced(other))
+            self._others.append(_space_words(other))
             self._words.update(_WORD.findall(f"{name} {other}"))
 
     def match(self, text: str) -> tuple[Mask, npt.NDArray[np.float64], tuple[str, ...]]:
@@ -48,12 +48,12 @@ class TextTable:
         mask, score = np.ones(len(self._names), bool), np.zeros(len(self._names))
         mended = []
         for word in text.casefold().split():
-            found = self._score([word])
-            if not found.any() and len(word) >= TYPO_letters:
-                found = self._score([w for w in self._words if _nearly(word, w)])
-                mended += [word] if found.any() else []
-            mask &= found > 0
-            score += found
+            match = self._score([word])
+            if not match.any() and len(word) >= TYPO_letters:
+                match = self._score([w for w in self._words if _nearly(word, w)])
+                mended += [word] if match.any() else []
+            mask &= match > 0
+            score += match
         return mask, score, tuple(mended)
 
     def _score(self, words: Sequence[str]) -> npt.NDArray[np.float64]:
@@ -63,7 +63,7 @@ class TextTable:
         """
         score = [0] * len(self._names)  # single places of an array take longer to read and write
         for word in words:
-            prefix = _spaced(word)
+            prefix = _space_words(word)
             for i, name in enumerate(self._names):
                 at = name.find(word)
                 if at >= 0:
@@ -73,7 +73,7 @@ class TextTable:
         return np.array(score, dtype=np.float64)
 
 
-def _spaced(text: str) -> str:
+def _space_words(text: str) -> str:
     return "".join(f" {word}" for word in _WORD.findall(text))
 
 
@@ -82,10 +82,10 @@ def _nearly(typed: str, word: str) -> bool:
     n = len(typed)
     if typed[0] not in word[:2]:
         return False  # hardly anyone mistakes the first letter, and other words would often be near
-    return any(_one_off(typed, word[:size]) for size in (n - 1, n, n + 1) if len(word) >= size)
+    return any(_differs_by_typo(typed, word[:size]) for size in (n - 1, n, n + 1) if len(word) >= size)
 
 
-def _one_off(a: str, b: str) -> bool:
+def _differs_by_typo(a: str, b: str) -> bool:
     if abs(len(a) - len(b)) > 1:
         return False
     start = next((i for i, (p, q) in enumerate(zip(a, b, strict=False)) if p != q), min(len(a), len(b)))
@@ -206,7 +206,7 @@ class CatalogSearch:
         every = np.logical_and.reduce(list(masks.values())) if self.rows else np.zeros(0, bool)
         parts, distance = self._distances(query)
         keys = score if query.like is None else -distance
-        positions = self._ordered(query, np.flatnonzero(every), keys)
+        positions = self._sort(query, np.flatnonzero(every), keys)
         if query.like is not None:
             positions = positions[positions != self._position(query.like)]
         others = {name: _all_but(masks, name) for name in masks}
@@ -236,27 +236,27 @@ class CatalogSearch:
         parts = self._like.parts(self._position(query.like), query.jnds)
         return parts, distances(parts)
 
-    def _ordered(
-        self, query: SearchQuery, found: npt.NDArray[np.intp], score: FloatArray
+    def _sort(
+        self, query: SearchQuery, positions: npt.NDArray[np.intp], score: FloatArray
     ) -> npt.NDArray[np.intp]:
         """Sort positions; equal ones stay in the order of the catalogue, what is unknown comes last."""
         if query.sort == "match":
-            return found[np.argsort(-score[found], kind="stable")]
+            return positions[np.argsort(-score[positions], kind="stable")]
         if query.sort in LABELS:
-            labels = [str(getattr(self.rows[i], query.sort) or "").casefold() for i in found]
-            order = sorted(range(len(found)), key=labels.__getitem__, reverse=query.descending)
-            return found[[i for i in order if labels[i]] + [i for i in order if not labels[i]]]
-        values = self._numbers[found, NUMBERS.index(query.sort)]
-        return found[np.argsort(-values if query.descending else values, kind="stable")]
+            labels = [str(getattr(self.rows[i], query.sort) or "").casefold() for i in positions]
+            order = sorted(range(len(positions)), key=labels.__getitem__, reverse=query.descending)
+            return positions[[i for i in order if labels[i]] + [i for i in order if not labels[i]]]
+        values = self._numbers[positions, NUMBERS.index(query.sort)]
+        return positions[np.argsort(-values if query.descending else values, kind="stable")]
 
     def _histograms(self, masks: dict[str, Mask]) -> dict[str, Histogram]:
-        found = {}
+        histograms = {}
         for i, name in enumerate(NUMBERS):
             low, high = self._ends[:, i] if self._ends.size else (np.nan, np.nan)
             if high > low:
                 counts = np.bincount(self._bins[masks[name], i], minlength=BINS + 1)[:BINS]
-                found[name] = Histogram(float(low), float(high), counts)
-        return found
+                histograms[name] = Histogram(float(low), float(high), counts)
+        return histograms
 
 
 def _ends(numbers: FloatArray) -> FloatArray:
@@ -271,12 +271,12 @@ def _ends(numbers: FloatArray) -> FloatArray:
 
 def _bins(numbers: FloatArray, ends: FloatArray) -> npt.NDArray[np.intp]:
     """Return the bin of every figure, (n, k): the outermost beyond the ends, BINS where it is not known."""
-    found = np.full(numbers.shape, BINS, dtype=np.intp)
+    bins = np.full(numbers.shape, BINS, dtype=np.intp)
     for i, (low, high) in enumerate(ends.T):
         known = np.isfinite(numbers[:, i])
         inner = np.linspace(low, high, BINS + 1)[1:-1]
-        found[known, i] = np.searchsorted(inner, numbers[known, i], side="right")
-    return found
+        bins[known, i] = np.searchsorted(inner, numbers[known, i], side="right")
+    return bins
 
 
 def _all_but(masks: dict[str, Mask], name: str) -> Mask:
@@ -286,7 +286,7 @@ def _all_but(masks: dict[str, Mask], name: str) -> Mask:
 
 def _among(labels: npt.NDArray[np.str_], wanted: Sequence[str]) -> Mask:
     """Return which labels are wanted; all if none are named."""
-    return np.isin(labels, [str(one) for one in wanted]) if wanted else np.ones(labels.size, bool)
+    return np.isin(labels, [str(label) for label in wanted]) if wanted else np.ones(labels.size, bool)
 
 
 def _counts(labels: npt.NDArray[np.str_], mask: Mask) -> dict[str, int]:

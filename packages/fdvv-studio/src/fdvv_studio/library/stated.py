@@ -54,14 +54,14 @@ class Stated(NamedTuple):
         return f"{self.type} by {self.by}"
 
 
-def stated_type(name: str, folder: str = "", path: Path | None = None) -> Stated | None:
+def find_type(name: str, folder: str = "", path: Path | None = None) -> Stated | None:
     """Find what is stated of a button: by a table, by the words of name and folder, or by its make.
 
     folder : the names of the folders it lies in. path : of its file, beside which a table may lie.
     """
-    found = _by_table(name, path) if path else None
-    if found:
-        return found
+    stated = _by_table(name, path) if path else None
+    if stated:
+        return stated
     words = re.findall(rf"\b({'|'.join(WORDS)})\b", _plain(f"{name} {folder}"))
     types = {WORDS[word] for word in words}
     if len(types) == 1:
@@ -83,9 +83,9 @@ def _by_table(name: str, path: Path) -> Stated | None:
             known = _table(table, table.stat().st_mtime_ns)
         except OSError:
             continue
-        found = next((known[key] for key in map(_plain, names) if key in known), None)
-        if found:
-            return Stated(found, table.name)
+        kind = next((known[key] for key in map(_plain, names) if key in known), None)
+        if kind:
+            return Stated(kind, table.name)
     return None
 
 

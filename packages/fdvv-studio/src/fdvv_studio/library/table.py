@@ -69,17 +69,17 @@ class LibraryRecord(msgspec.Struct, frozen=True):
         return "button" if self.row else "refused" if self.reason else "other"
 
 
-def sampled(model: FDVVModel) -> tuple[SampledCurve, ...]:
+def sample(model: FDVVModel) -> tuple[SampledCurve, ...]:
     """Sample every curve of a model from its beginning to its end, about every 20 um."""
-    found = []
+    samples = []
     for curve in model.curves:
         length = curve.end_mm - curve.start_mm
         points = int(np.clip(round(length / KEPT_STEP_mm) + 1, 2, MOST_points))
         x = np.linspace(curve.start_mm, curve.end_mm, points)
         force_cN = curve.force_cN(x).astype(np.float32)
         place = (str(curve.stroke), curve.velocity_mm_s, float(x[0]), length / (points - 1))
-        found.append(SampledCurve(*place, force_cN))
-    return tuple(found)
+        samples.append(SampledCurve(*place, force_cN))
+    return tuple(samples)
 
 
 FORMAT, VERSION = "fdvv-library", 1
@@ -208,14 +208,14 @@ def rows_of(table: Table) -> list[tuple[str, ButtonRow]]:
 
 def _tuples(table: Table, name: str) -> list[tuple[int, ...]]:
     """Return lists of integers; by way of one array, which is ten times as fast as value by value."""
-    found = []
+    tuples = []
     for chunk in table.column(name).chunks:
         values, ends = chunk.flatten().to_numpy(zero_copy_only=False).tolist(), [0]
         ends += chunk.value_lengths().fill_null(0).to_numpy().cumsum().tolist()
-        found += [tuple(values[a:b]) for a, b in pairwise(ends)]
-    return found
+        tuples += [tuple(values[a:b]) for a, b in pairwise(ends)]
+    return tuples
 
 
 def curves_of(line: dict[str, Any]) -> tuple[SampledCurve, ...]:
-    found = line["curves"] or ()
-    return tuple(SampledCurve(**c | {"force_cN": np.array(c["force_cN"], dtype=np.float32)}) for c in found)
+    curves = line["curves"] or ()
+    return tuple(SampledCurve(**c | {"force_cN": np.array(c["force_cN"], dtype=np.float32)}) for c in curves)

@@ -35,7 +35,7 @@ class BinaryFinger:
     @classmethod
     def of(cls, subject: PressSubject, push_cN: float = 120.0) -> BinaryFinger:
         """Return the finger for a button: with push_cN more than the button's largest force."""
-        force_cN = float(subject.meant_cN(0.0)[0].max()) + push_cN
+        force_cN = float(subject.target_cN(0.0)[0].max()) + push_cN
         yields_m = N_from_cN(force_cN) / subject.finger.impedance.stiffness_N_m
         return cls(subject.travel_mm + float(mm_from_m(yields_m)) + FINGER_PAD_mm)
 

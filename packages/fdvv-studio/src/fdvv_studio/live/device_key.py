@@ -25,7 +25,7 @@ from fdvv.program.surface import Limits
 from fdvv.protocol.tables import Fault, KeyRequest
 from fdvv.rendering.press_made import clear_latched
 
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 
 GLANCE_s = 0.01
 """What is asked for waits no longer while a real line is listened to."""
@@ -38,7 +38,7 @@ ASKS_s = 0.1
 class DeviceLine(Protocol):
     """A device that is heard while it renders."""
 
-    def do(self, work: Callable[[], Found]) -> Found:
+    def do(self, work: Callable[[], Result]) -> Result:
         """Call work with exclusive access to the device; its exceptions are raised here."""
 
     def now_s(self) -> float:
@@ -57,7 +57,7 @@ class SimulatedLine:
     def __init__(self, device: LinkedDevice) -> None:
         self._device = device
 
-    def do(self, work: Callable[[], Found]) -> Found:
+    def do(self, work: Callable[[], Result]) -> Result:
         return work()
 
     def now_s(self) -> float:
@@ -92,22 +92,22 @@ class RealLine:
         self._thread = Thread(target=self._run, name="device line", daemon=True)
         self._thread.start()
 
-    def do(self, work: Callable[[], Found]) -> Found:
+    def do(self, work: Callable[[], Result]) -> Result:
         """Have it done between two glances at the line."""
-        found: Future[Found] = Future()
+        future: Future[Result] = Future()
 
-        def done() -> None:
+        def run() -> None:
             try:
-                found.set_result(work())
+                future.set_result(work())
             except BaseException as error:
-                found.set_exception(error)
+                future.set_exception(error)
 
-        self._requests.put(done)
+        self._requests.put(run)
         while True:
             try:
-                return found.result(ASKS_s)
+                return future.result(ASKS_s)
             except TimeoutError:
-                if not self._thread.is_alive() and not found.done():
+                if not self._thread.is_alive() and not future.done():
                     name = self._device.client.port.name
                     raise DeviceError(f"{name}: nobody listens to it any more; open it again") from None
 
@@ -254,9 +254,9 @@ class DeviceKey:
 
     def _look(self) -> None:
         if self._rendering and not self.problem:
-            found = self.device.fault()
-            if found.fault is not Fault.NONE:
-                reason = found.fault.name.lower().replace("_", " ")
+            report = self.device.fault()
+            if report.fault is not Fault.NONE:
+                reason = report.fault.name.lower().replace("_", " ")
                 name = self.device.info().name
                 self._end(f"{name}: fell to zero force: {reason}; let go and play it again")
 

@@ -208,7 +208,7 @@ class LivePress:
             pieces.append(self.rig.advance(count))
             events += self._events(pieces[-1])
             ticks -= count
-        return InteractiveTicks.joined(pieces), tuple(events)
+        return InteractiveTicks.concatenate(pieces), tuple(events)
 
     def _until_heard(self, ticks: int) -> int:
         """Return how many of the ticks may pass before presses that ended are looked for, as by a clock."""
@@ -217,14 +217,14 @@ class LivePress:
 
     def fault(self) -> FaultReport:
         core = self.rig.core
-        found = core.evidence
+        evidence = core.evidence
         return FaultReport(
             core.fault,
-            found.value,
-            found.bound,
-            found.time_us * 1e-6,
-            found.displacement_um16 / UM16_PER_mm,
-            found.commanded_cN64 / CN64_PER_cN,
+            evidence.value,
+            evidence.bound,
+            evidence.time_us * 1e-6,
+            evidence.displacement_um16 / UM16_PER_mm,
+            evidence.commanded_cN64 / CN64_PER_cN,
             int(core.fault is not Fault.NONE),
         )
 
@@ -305,8 +305,8 @@ class LivePress:
 
     def _presses(self, columns: InteractiveTicks) -> list[LiveEvent]:
         """Return presses that ended; the next one is announced at their speed."""
-        found = [self._descent.take(t, x) for t, x in stretches(columns, bool(self._descent))]
-        ended = [event for event in found if event]
+        descents = [self._descent.take(t, x) for t, x in stretches(columns, bool(self._descent))]
+        ended = [event for event in descents if event]
         for event in ended:
             self.rig.announce(float(np.clip(event.velocity_mm_s, *PACE_mm_s)))
         if ended:
@@ -314,12 +314,12 @@ class LivePress:
         return ended
 
     def _loop(self, columns: InteractiveTicks) -> list[LiveEvent]:
-        found = self.rig.loop_fault
-        if self._opened or found is LoopFault.SOUND or not columns.t_s.size:
+        fault = self.rig.loop_fault
+        if self._opened or fault is LoopFault.SOUND or not columns.t_s.size:
             return []
         self._opened = True
-        reason = found.name.lower().replace("_", " ")
-        event = _event(LiveEventKind.LOOP, columns, -1, int(found))
+        reason = fault.name.lower().replace("_", " ")
+        event = _event(LiveEventKind.LOOP, columns, -1, int(fault))
         return [
             replace(
                 event,
@@ -366,12 +366,12 @@ class PressTimes:
         self._activations_s = deque[float](maxlen=KEPT)
         self._lock = Lock()
 
-    def led(self, simulated_s: float, hand_s: float) -> None:
+    def note_lead(self, simulated_s: float, hand_s: float) -> None:
         """Note that a press of the hand at hand_s takes effect at a simulated time, later than the last."""
         with self._lock:
             self._leads.append((simulated_s, hand_s))
 
-    def activated(self, simulated_s: float) -> None:
+    def note_activation(self, simulated_s: float) -> None:
         """Note that the key went down; one that no lead came before is nobody's press."""
         with self._lock:
             at = bisect_right(self._leads, simulated_s, key=lambda lead: lead[0]) - 1
@@ -379,7 +379,7 @@ class PressTimes:
                 led_s, hand_s = self._leads[at]
                 self._activations_s.append(hand_s + simulated_s - led_s)
 
-    def pressed(self, hand_s: float) -> None:
+    def note_press(self, hand_s: float) -> None:
         """Note that the hand's own key went down at a time of its clock."""
         with self._lock:
             self._activations_s.append(hand_s)

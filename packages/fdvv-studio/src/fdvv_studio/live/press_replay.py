@@ -58,7 +58,7 @@ def path_of(trace: PressTrace, subject: PressSubject, start_s: float) -> Displac
     t = np.arange(int(trace.duration_s / REPLAY_STEP_s) + 1) * REPLAY_STEP_s
     x = _smooth(np.interp(t, trace.t_s, trace.displacement_mm))
     down = np.gradient(x, REPLAY_STEP_s) >= 0
-    slow = [np.interp(x, subject.displacement_mm, row) for row in subject.meant_cN(0.0)]
+    slow = [np.interp(x, subject.displacement_mm, row) for row in subject.target_cN(0.0)]
     force = np.where(down, *slow)
     referent = _smooth(x + _yields_mm(subject, x, force))
     return DisplacementPath(start_s, referent, np.gradient(referent, REPLAY_STEP_s))
@@ -73,7 +73,7 @@ class KeyFollower:
 
     def __init__(self, subject: PressSubject) -> None:
         self._x_mm = subject.displacement_mm
-        self._yields_mm = [_yields_mm(subject, self._x_mm, force) for force in subject.meant_cN(0.0)]
+        self._yields_mm = [_yields_mm(subject, self._x_mm, force) for force in subject.target_cN(0.0)]
         self._press_ratio, self._last_mm = 1.0, 0.0
 
     def step(self, displacement_mm: float, velocity_mm_s: float) -> ReferentStep:

@@ -35,7 +35,7 @@ from fdvv.twin.rig import Rig
 from fdvv.twin.settings import cell_of, settings_of
 from fdvv.units import FloatArray, cN_from_N
 from fdvv_studio.library.catalog import BUTTONS, Catalog
-from fdvv_studio.live.press_trace import PressTrace, drawn_traces
+from fdvv_studio.live.press_trace import PressTrace, synthetic_traces
 from fdvv_studio.project.programs import ProgramCatalog
 
 IDEAL_RIG = "ideal"
@@ -115,7 +115,7 @@ class PressSubject:
         """Return places from the top to the stop, (n,)."""
         return np.linspace(0.0, self.travel_mm, 1 + max(2, round(self.travel_mm / STEP_mm)))
 
-    def meant_cN(self, velocity_mm_s: float) -> tuple[FloatArray, FloatArray]:
+    def target_cN(self, velocity_mm_s: float) -> tuple[FloatArray, FloatArray]:
         """Return press and release as they are meant in a press at a speed, (n,) each."""
         press, release = (
             surface.force_along_cN(self.displacement_mm, velocity_mm_s)
@@ -132,11 +132,11 @@ def model_subject(
     rig_name : one of PRESS_RIGS; what is intended is felt on the ideal rig whatever is named.
     """
     name, rig = _rig(mode, rig_name)
-    learned = known_rendering(_pressable(model), name) if mode is PressMode.COMPENSATED else None
+    learned = compensate_for_rig(_pressable(model), name) if mode is PressMode.COMPENSATED else None
     return _of_model(model, mode, name, rig, learned, _description(mode, name))
 
 
-def learned_subject(model: FDVVModel, learned: CompensationResult, rig_name: str) -> PressSubject:
+def rig_subject(model: FDVVModel, learned: CompensationResult, rig_name: str) -> PressSubject:
     """Make a model ready as a rig was compensated for it. Raises InputError as model_subject does.
 
     What was learned with the force loop is rendered on FIRST_RIG if the named rig has no load cell.
@@ -185,7 +185,7 @@ def program_subject(
     description = _description(mode, name, program=True)
     if mode is not PressMode.COMPENSATED:
         return _subject(program, mode, name, rig, Tuning(), description)
-    known, cell = learned_rig(name), cell_of(rig)
+    known, cell = identify_shipped_rig(name), cell_of(rig)
     gains = force_loop_gains(known.rig, cell, rig.controller.tick_s) if cell else None
     tuning = tuning_with(known, program.travel_mm, gains)
     made = loop_targets(program) if cell else commands(program, known, rig_limits(rig).force_cN)
@@ -195,7 +195,7 @@ def program_subject(
 
 
 @cache
-def learned_rig(rig_name: str) -> LearnedRig:
+def identify_shipped_rig(rig_name: str) -> LearnedRig:
     """Return a shipped rig identified from simulated presses on TEACHER, 4 or 16; once per process."""
     device = TwinDevice(load_rig(rig_name), load_finger("paper"), seed=1)
     # the loop's errors are left as they are, what it learns on one button is not carried to another
@@ -205,9 +205,9 @@ def learned_rig(rig_name: str) -> LearnedRig:
     return learned
 
 
-def known_rendering(model: FDVVModel, rig_name: str) -> CompensationResult:
+def compensate_for_rig(model: FDVVModel, rig_name: str) -> CompensationResult:
     """Compensate a model for a shipped rig known before, without a press. Raises InputError, DeviceError."""
-    law = RigAware(rounds=0, learned_rig=learned_rig(rig_name))
+    law = RigAware(rounds=0, learned_rig=identify_shipped_rig(rig_name))
     return compensate(TwinDevice(load_rig(rig_name)), model, RENDERED_mm_s, law)
 
 
@@ -267,7 +267,7 @@ def _surfaces(program: Program) -> tuple[ProgramSurface, ProgramSurface]:
 
 def _has_timers(program: Program) -> bool:
     ways = (way for state in program.states for way in state.transitions)
-    waits = any(When.AFTER in {one.when for one in way.conditions} for way in ways)
+    waits = any(When.AFTER in {condition.when for condition in way.conditions} for way in ways)
     return waits or any(state.repeat_ms or state.bias_ms for state in program.states)
 
 
@@ -334,9 +334,9 @@ def program_choices(shelf: ProgramCatalog) -> tuple[PressChoice, ...]:
     )
 
 
-def drawn_trace(name: str) -> PressTrace:
+def trace_by_name(name: str) -> PressTrace:
     """Return a shipped trace by its name. Raises InputError."""
-    for trace in drawn_traces():
+    for trace in synthetic_traces():
         if trace.name == name:
             return trace
     raise InputError("trace", name, "no such trace", "choose one from the list")

@@ -89,11 +89,11 @@ def read_press_trace(data: bytes, source: str) -> PressTrace:
 
 def _json_columns(text: str, source: str) -> dict[str, FloatArray]:
     try:
-        found = msgspec.json.decode(text, type=dict[str, list[float]])
+        columns = msgspec.json.decode(text, type=dict[str, list[float]])
     except msgspec.MsgspecError as error:
         reason = f"is no object of columns: {error}"
         raise InputError(source, "$", reason, 'write {"t_s": […], "displacement_mm": […]}') from error
-    return {name: np.array(column) for name, column in found.items()}
+    return {name: np.array(column) for name, column in columns.items()}
 
 
 def _csv_columns(text: str, source: str) -> dict[str, FloatArray]:
@@ -126,30 +126,30 @@ def _time_and_place(columns: dict[str, FloatArray], source: str) -> tuple[FloatA
     if KEY in columns and t.size:
         keys, own = columns[KEY], np.unique(columns[KEY])
         most = max(own, key=lambda key: float(np.abs(np.diff(x[keys == key])).sum()))
-        t, x = _held(t[keys == most], x[keys == most])
+        t, x = _hold_silent(t[keys == most], x[keys == most])
     return t, x
 
 
-def _held(t: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _hold_silent(t: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Hold a key's position while its keyboard reported nothing."""
     silent = np.flatnonzero(np.diff(t) > SILENT_s)
     return np.insert(t, silent + 1, t[silent + 1] - STEP_s), np.insert(x, silent + 1, x[silent])
 
 
-def drawn_traces() -> tuple[PressTrace, ...]:
+def synthetic_traces() -> tuple[PressTrace, ...]:
     """Return synthetic traces: minimum-jerk motions between given points, not recorded from a person."""
     return (
-        _drawn("slow press", (0.2, 0.0), (2.2, 4.0), (2.7, 4.0), (4.7, 0.0), (5.0, 0.0)),
-        _drawn("firm press", (0.2, 0.0), (0.28, 4.0), (0.4, 4.0), (0.48, 0.0), (0.8, 0.0)),
-        _drawn("fast double tap", *_taps(2, 0.16)),
-        _drawn("drumming", *_taps(8, 0.14)),
-        _drawn(
+        _draw("slow press", (0.2, 0.0), (2.2, 4.0), (2.7, 4.0), (4.7, 0.0), (5.0, 0.0)),
+        _draw("firm press", (0.2, 0.0), (0.28, 4.0), (0.4, 4.0), (0.48, 0.0), (0.8, 0.0)),
+        _draw("fast double tap", *_taps(2, 0.16)),
+        _draw("drumming", *_taps(8, 0.14)),
+        _draw(
             "hesitant press",
             (0.2, 0.0), (0.5, 1.2), (0.9, 1.0), (1.2, 1.9), (1.6, 1.5), (1.9, 4.0), (2.2, 4.0), (2.4, 0.0),
             (2.7, 0.0),
         ),
-        _drawn("half way and back", (0.2, 0.0), (0.35, 2.0), (0.5, 0.4), (0.65, 2.2), (0.9, 0.0), (1.2, 0.0)),
-        _drawn("long hold", (0.2, 0.0), (0.3, 4.0), (3.3, 4.0), (3.42, 0.0), (3.8, 0.0)),
+        _draw("half way and back", (0.2, 0.0), (0.35, 2.0), (0.5, 0.4), (0.65, 2.2), (0.9, 0.0), (1.2, 0.0)),
+        _draw("long hold", (0.2, 0.0), (0.3, 4.0), (3.3, 4.0), (3.42, 0.0), (3.8, 0.0)),
     )  # fmt: skip
 
 
@@ -161,7 +161,7 @@ def _taps(count: int, period_s: float) -> list[tuple[float, float]]:
     return [*points, (0.5 + count * period_s, 0.0)]
 
 
-def _drawn(name: str, *points: tuple[float, float]) -> PressTrace:
+def _draw(name: str, *points: tuple[float, float]) -> PressTrace:
     """Move from point to point (s, mm) on minimum jerk."""
     times, places = (np.array(column) for column in zip((0.0, points[0][1]), *points, strict=True))
     t = np.arange(round(times[-1] / STEP_s) + 1) * STEP_s

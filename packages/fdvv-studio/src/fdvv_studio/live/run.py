@@ -247,6 +247,6 @@ class _Gathered:
         self._busy_s += busy_s
 
     def frame(self, sequence: int, dropped_s: float, now_s: float) -> LiveFrame:
-        columns, events = InteractiveTicks.joined(self.columns), tuple(self._events)
+        columns, events = InteractiveTicks.concatenate(self.columns), tuple(self._events)
         busy_ratio = self._busy_s / max(now_s - self.since_s, 1e-9)
         return LiveFrame(columns, events, sequence, dropped_s, busy_ratio, self.zero_s)

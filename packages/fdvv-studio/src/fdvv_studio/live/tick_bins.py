@@ -76,10 +76,10 @@ class TickBinner:
         # the last bin may go on in the next piece
         last = number == number[-1] if number.size else np.zeros(0, dtype=np.bool_)
         self._kept = TickPiece(*(column[last] for column in whole))
-        return _binned(TickPiece(*(column[~last] for column in whole)), number[~last])
+        return _bin(TickPiece(*(column[~last] for column in whole)), number[~last])
 
 
-def _binned(piece: TickPiece, number: IntArray) -> TickBins:
+def _bin(piece: TickPiece, number: IntArray) -> TickBins:
     if not number.size:
         none = np.zeros(0, dtype=np.int64)
         return TickBins(none, np.zeros((3, 0)), np.zeros((3, 0)), none, np.zeros(0, dtype=np.bool_), none)

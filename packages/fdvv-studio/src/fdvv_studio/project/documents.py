@@ -114,12 +114,12 @@ class Document:
         """Record a change of the model file made outside, or rewrite a file that is behind."""
         if self._seen is not None and self._seen == self._stamp():
             return
-        found = self._on_file()
-        if found is None or self._behind(found):
+        record = self._on_file()
+        if record is None or self._behind(record):
             self._follow(model_to_json(model_of(self.history.record, self.name)))
             return
         self._seen = self._stamp()
-        patch = patch_between(self.history.record, found)
+        patch = patch_between(self.history.record, record)
         if patch.fields or patch.curves or patch.vibrations:
             edit = EditMade(uuid4().hex, "changed outside", patch, False, now_s)
             self._log.write(edit, self.history.after(edit))
@@ -135,12 +135,12 @@ class Document:
             self.model_path.replace(self._trash_path)
             return None
 
-    def _behind(self, found: Record) -> bool:
+    def _behind(self, record: Record) -> bool:
         """Return whether a killed process left the file: an earlier state, older than the journal."""
-        if found == canonical(self.history.record):
+        if record == canonical(self.history.record):
             return False
         older = self.model_path.stat().st_mtime_ns <= self._log.path.stat().st_mtime_ns
-        return older and self._log.was(found)
+        return older and self._log.was(record)
 
     def _follow(self, text: str) -> None:
         """Write the model file; if that fails the journal has the change, and the next one writes again."""
@@ -153,10 +153,10 @@ class Document:
 
     def _stamp(self) -> tuple[int, int, int] | None:
         try:
-            found = self.model_path.stat()
+            stat = self.model_path.stat()
         except FileNotFoundError:
             return None
-        return found.st_mtime_ns, found.st_ino, found.st_size
+        return stat.st_mtime_ns, stat.st_ino, stat.st_size
 
     def close(self) -> None:
         self._log.close()
@@ -198,12 +198,12 @@ class DocumentStore:
 
     def list(self) -> list[DocumentFile]:
         """Return all buttons, the one changed last first."""
-        found: dict[str, list[Path]] = {}
+        by_name: dict[str, list[Path]] = {}
         for folder, suffix in ((BUTTONS, MODEL_SUFFIX), (JOURNALS, JOURNAL_SUFFIX)):
             for path in (self.project / folder).glob(f"*{suffix}"):
                 if not path.name.startswith(".") and path.stat().st_size:
-                    found.setdefault(path.name.removesuffix(suffix), []).append(path)
-        stats = {name: [path.stat() for path in paths] for name, paths in found.items()}
+                    by_name.setdefault(path.name.removesuffix(suffix), []).append(path)
+        stats = {name: [path.stat() for path in paths] for name, paths in by_name.items()}
         files = [
             DocumentFile(name, max(s.st_mtime for s in kept), sum(s.st_size for s in kept))
             for name, kept in stats.items()
@@ -250,7 +250,7 @@ class DocumentStore:
             # the journal first: killed in between, both names are there and nothing is lost
             self._journal_path(name).replace(self._journal_path(to))
             self._model_path(name).replace(self._model_path(to))
-            self._synced(BUTTONS, JOURNALS)
+            self._sync(BUTTONS, JOURNALS)
             self._name_inside(to)
             return to
 
@@ -263,7 +263,7 @@ class DocumentStore:
             folder.mkdir(parents=True)
             for path in (self._model_path(name), self._journal_path(name)):
                 path.replace(folder / path.name)
-            self._synced(BUTTONS, JOURNALS, TRASH)
+            self._sync(BUTTONS, JOURNALS, TRASH)
 
     def close(self) -> None:
         """Release the project."""
@@ -325,6 +325,6 @@ class DocumentStore:
         when = datetime.fromtimestamp(self._now_s(), UTC).strftime("%Y%m%dT%H%M%SZ")
         return self.project / TRASH / f"{name} {when} {uuid4().hex[:6]}"
 
-    def _synced(self, *folders: str) -> None:
+    def _sync(self, *folders: str) -> None:
         for folder in folders:
             sync_folder(self.project / folder)

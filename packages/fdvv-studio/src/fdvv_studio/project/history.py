@@ -102,7 +102,7 @@ class EditHistory(Struct, frozen=True):
         replace = msgspec.structs.replace
         match change:
             case EditMade():
-                return self._edited(change)
+                return self._edit(change)
             case UndoMade(count=count):
                 record = reduce(apply_patch, self._back(count), self.record)
                 return replace(self, record=record, done=self.done - count)
@@ -115,7 +115,7 @@ class EditHistory(Struct, frozen=True):
                 _check(index < len(self.pins), f"there is no pin {index + 1}")
                 return replace(self, pins=(*self.pins[:index], *self.pins[index + 1 :]))
 
-    def _edited(self, edit: EditMade) -> EditHistory:
+    def _edit(self, edit: EditMade) -> EditHistory:
         joins = edit.joins and 0 < self.done == len(self.steps)
         kept = self.steps[: self.done - joins]
         patches = [*self.steps[self.done - 1].patches, edit.patch] if joins else [edit.patch]
@@ -228,9 +228,9 @@ class DocumentLog:
         if self.history is None:
             return False
         fresh = EditHistory(self.history.opening, self.history.opening)
-        for found, _ in read_records(self.path, KIND):
-            if "change" in found:
-                fresh = fresh.after(msgspec.convert(found["change"], HistoryChange))
+        for body, _ in read_records(self.path, KIND):
+            if "change" in body:
+                fresh = fresh.after(msgspec.convert(body["change"], HistoryChange))
             if fresh.record == record:
                 return True
         return False

@@ -59,7 +59,7 @@ class _Probe(msgspec.Struct):
     curves: list[_Curve]
 
 
-def measured_button(project: Path, name: str) -> MeasuredButton | None:
+def load_measured_button(project: Path, name: str) -> MeasuredButton | None:
     """Read ``<project>/measured/<name>.json``, a ProbeResult as a document; None if there is none.
 
     name is looked up among the files there, never made into a path. Raises InputError on a broken file.
@@ -70,14 +70,14 @@ def measured_button(project: Path, name: str) -> MeasuredButton | None:
 
 def _read(text: bytes, path: Path) -> MeasuredButton:
     try:
-        found = msgspec.json.decode(text, type=_Probe)
+        probe = msgspec.json.decode(text, type=_Probe)
     except msgspec.DecodeError as error:
         raise InputError(path, "whole file", str(error), _REMEDY) from error
-    for i, curve in enumerate(found.curves):
+    for i, curve in enumerate(probe.curves):
         sizes = {len(curve.displacement_mm), *map(len, curve.rendered_quartiles_cN)}
         if len(sizes) != 1:
             raise InputError(path, f"$.curves[{i}]", f"columns of different length, {sorted(sizes)}", _REMEDY)
-    return MeasuredButton(found.device, found.presses, found.simulated, tuple(map(_band, found.curves)))
+    return MeasuredButton(probe.device, probe.presses, probe.simulated, tuple(map(_band, probe.curves)))
 
 
 def _band(curve: _Curve) -> MeasuredBand:

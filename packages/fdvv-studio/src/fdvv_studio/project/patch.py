@@ -140,15 +140,15 @@ def _points(before: Record, after: Record) -> Record | None:
     if not all(same(before.get(name), after.get(name)) for name in ("degree", "knots_mm", "spread")):
         return None
     pairs = enumerate(zip(before["control_points_cN"], after["control_points_cN"], strict=True))
-    return {"points": [(i, one, other) for i, (one, other) in pairs if one != other]}
+    return {"points": [(i, was, now) for i, (was, now) in pairs if was != now]}
 
 
 def inverse_patch(patch: Patch) -> Patch:
     fields = {name: (b, a) for name, (a, b) in patch.fields.items()}
-    return Patch(fields, [_turned(c) for c in patch.curves], [_turned(v) for v in patch.vibrations])
+    return Patch(fields, [_invert(c) for c in patch.curves], [_invert(v) for v in patch.vibrations])
 
 
-def _turned(change: Any) -> Any:
+def _invert(change: Any) -> Any:
     swapped = {"before": change.after, "after": change.before}
     if isinstance(change, CurveChange) and change.points is not None:
         swapped["points"] = [(i, b, a) for i, a, b in change.points]
@@ -163,9 +163,9 @@ def apply_patch(record: Record, patch: Patch) -> Record:
         _expect(holder.get(name), before, name)
         holder[name] = after
     for curve in patch.curves:
-        made["curves"] = _changed(made["curves"], curve)
+        made["curves"] = _apply_change(made["curves"], curve)
     for vibration in patch.vibrations:
-        made["vibrations"] = _changed(made["vibrations"], vibration)
+        made["vibrations"] = _apply_change(made["vibrations"], vibration)
     return canonical(made)
 
 
@@ -174,18 +174,18 @@ def _expect(there: Any, before: Any, what: str) -> None:
         raise ModelError(f"the edit does not fit the model: its {what} is another")
 
 
-def _changed(parts: Sequence[Record], change: CurveChange | VibrationChange) -> list[Record]:
+def _apply_change(parts: Sequence[Record], change: CurveChange | VibrationChange) -> list[Record]:
     key = (str(change.stroke), change.velocity_mm_s)
     there = next((part for part in parts if _key(part) == key), None)
     rest = [part for part in parts if part is not there]
     place = {"stroke": key[0], "velocity_mm_s": key[1]}
     if isinstance(change, CurveChange) and change.points is not None:
-        return [*rest, {**(there or place), "control_points_cN": _moved(there, change)}]
+        return [*rest, {**(there or place), "control_points_cN": _move_points(there, change)}]
     _expect(_shape(there), change.before, _label(change))
     return [*rest, {**change.after, **place}] if change.after is not None else rest
 
 
-def _moved(curve: Record | None, change: CurveChange) -> list[float]:
+def _move_points(curve: Record | None, change: CurveChange) -> list[float]:
     points = list(curve["control_points_cN"]) if curve else []
     for i, before, after in change.points or ():
         _expect(points[i] if i < len(points) else None, before, f"control point {i} of {_label(change)}")

@@ -78,7 +78,7 @@ class ProgramCheckResult:
         object.__setattr__(self, "accepted", not refused)
 
 
-def checked_program(text: str, limits: Limits | None = None) -> ProgramCheckResult:
+def check_program_text(text: str, limits: Limits | None = None) -> ProgramCheckResult:
     """Check the text of a program file as far as it goes; never raises for what a person can mend.
 
     A text that is no program has one finding. One that no device could hold is not checked further than
@@ -93,12 +93,12 @@ def checked_program(text: str, limits: Limits | None = None) -> ProgramCheckResu
         compiled = compile_program(program, limits)
     except InputError as error:
         if any(taken > most for _, taken, most in _counts(program)):
-            found = _of_error(path_of(error.place, _names(program)), error)
-            return ProgramCheckResult((found,), _sizes(program, None))
+            problem = _of_error(path_of(error.place, _names(program)), error)
+            return ProgramCheckResult((problem,), _sizes(program, None))
         compiled = None
     report = check_program(program, limits)
     return ProgramCheckResult(
-        tuple(_placed(program, finding) for finding in report.findings),
+        tuple(_place(program, finding) for finding in report.findings),
         _sizes(program, compiled),
         _surface_sizes(program, compiled),
         report.return_s,
@@ -134,7 +134,7 @@ def _names(program: Program) -> dict[str, list[str]]:
     return {kind: [part.name for part in getattr(program, field)] for kind, field in PARTS.items()}
 
 
-def _placed(program: Program, finding: Finding) -> PlacedFinding:
+def _place(program: Program, finding: Finding) -> PlacedFinding:
     words = f"state {finding.state!r}, {finding.place}" if finding.state else finding.place
     number = re.search(r"(-?\d+(?:\.\d+)?) mm\b", finding.place)
     path = path_of(words, _names(program))
@@ -172,22 +172,22 @@ def path_of(words: str, names: dict[str, list[str]]) -> str:
 
     A surface named within a state is the part that is meant, for it is what can be mended.
     """
-    found = {kind: _named(words, kind, names.get(kind, ())) for kind in PARTS}
-    if found["surface"] is not None:
-        return f"surfaces[{found['surface']}]"
-    if found["state"] is not None:
-        path = f"states[{found['state']}]"
+    indices = {kind: _index_of_name(words, kind, names.get(kind, ())) for kind in PARTS}
+    if indices["surface"] is not None:
+        return f"surfaces[{indices['surface']}]"
+    if indices["state"] is not None:
+        path = f"states[{indices['state']}]"
         transition = re.search(r", transition (\d+)", words)
         return f"{path}.transitions[{int(transition[1]) - 1}]" if transition else path
-    if found["signal"] is not None:
-        return f"signals[{found['signal']}]"
+    if indices["signal"] is not None:
+        return f"signals[{indices['signal']}]"
     vibration = re.match(r"vibration (\d+)", words)
     if vibration:
         return f"vibrations[{int(vibration[1]) - 1}]"
     return {"travel": "travel_mm", "travel_mm": "travel_mm", "start:": "start"}.get(words.split(" ")[0], "")
 
 
-def _named(words: str, kind: str, names: Sequence[str]) -> int | None:
+def _index_of_name(words: str, kind: str, names: Sequence[str]) -> int | None:
     """Return the index of the part named at the start or after a comma; the last of equal names."""
     for i in reversed(range(len(names))):
         part = f"{kind} {names[i]!r}"

@@ -71,14 +71,14 @@ class ProgramCatalog:
 
     def entries(self) -> tuple[ProgramEntry, ...]:
         """List the shipped programs, then the person's own; a broken file is listed with its problem."""
-        return (*_shipped_entries(), *(self._own_entry(name) for name in self._own()))
+        return (*_builtin_entries(), *(self._own_entry(name) for name in self._own()))
 
     def open(self, program_id: str) -> KeptProgram:
-        program, revision = self._opened(program_id)
+        program, revision = self._open_text(program_id)
         return KeptProgram(program_id, program_to_json(program), revision)
 
     def program(self, program_id: str) -> Program:
-        return self._opened(program_id)[0]
+        return self._open_text(program_id)[0]
 
     def save(self, program_id: str, text: str, revision: str = "") -> KeptProgram:
         """Write a program of the person's, whole or not at all.
@@ -134,21 +134,21 @@ class ProgramCatalog:
     def restore(self, thrown: str) -> KeptProgram:
         """Take a program out of the trash, under its old name or the next free one."""
         with self._lock:
-            found = _by_name((self.folder / TRASH).glob(f"*{PROGRAM_SUFFIX}"))
-            if thrown not in found:
+            trash = _by_name((self.folder / TRASH).glob(f"*{PROGRAM_SUFFIX}"))
+            if thrown not in trash:
                 raise InputError("studio", thrown, "not in the trash", "look in the list again")
             name = self.free_name(thrown.rpartition("~")[0])
-            found[thrown].rename(self.folder / (name + PROGRAM_SUFFIX))
+            trash[thrown].rename(self.folder / (name + PROGRAM_SUFFIX))
             sync_folder(self.folder)
         return self.open(f"own:{name}")
 
     # -- files ---------------------------------------------------------------------------------------------
 
     def _own(self) -> dict[str, Path]:
-        found = sorted(self.folder.glob(f"*{PROGRAM_SUFFIX}")) if self.folder.is_dir() else []
-        return _by_name(path for path in found if not path.name.startswith("."))
+        paths = sorted(self.folder.glob(f"*{PROGRAM_SUFFIX}")) if self.folder.is_dir() else []
+        return _by_name(path for path in paths if not path.name.startswith("."))
 
-    def _opened(self, program_id: str) -> tuple[Program, str]:
+    def _open_text(self, program_id: str) -> tuple[Program, str]:
         """Read a program, and which text of its file it is."""
         kind, _, name = program_id.partition(":")
         if kind == "shipped":
@@ -199,8 +199,8 @@ def read_program(text: str, source: str = "program") -> Program:
 
 
 @cache
-def _shipped_entries() -> tuple[ProgramEntry, ...]:
-    return tuple(_entry(f"shipped:{one.name}", load_shipped(one.name), one.summary) for one in programs())
+def _builtin_entries() -> tuple[ProgramEntry, ...]:
+    return tuple(_entry(f"shipped:{row.name}", load_shipped(row.name), row.summary) for row in programs())
 
 
 def _entry(program_id: str, program: Program, summary: str) -> ProgramEntry:

@@ -153,7 +153,7 @@ class AuthMiddleware:
         request = Request(scope, receive)
         answer, seat = self.door.enter(request), self.door.sit(request)
 
-        async def guarded(message: Message) -> None:
+        async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 own = {name for name, _ in message["headers"]}
                 extra = [(k.encode(), v.encode()) for k, v in HEADERS.items() if k.encode() not in own]
@@ -165,7 +165,7 @@ class AuthMiddleware:
             answer = None if seat else PlainTextResponse(NO_SEAT, 403)
         elif answer is None and (reason := self.door.refusal(request, request.method not in ("GET", "HEAD"))):
             answer = PlainTextResponse(reason, 403)
-        await (answer or self.app)(scope, receive, guarded)
+        await (answer or self.app)(scope, receive, send_with_headers)
 
     def _cookie(self, seat: str | None) -> list[tuple[bytes, bytes]]:
         if not seat:
@@ -185,7 +185,7 @@ def new_token() -> str:
     return secrets.token_urlsafe(24)
 
 
-def saved_token(project: Path, name: str = TOKEN_FILE) -> str:
+def project_token(project: Path, name: str = TOKEN_FILE) -> str:
     """Return the token that a project keeps in a file; draw it when it is first asked for.
 
     InputError where others can read it, or where it is none. OSError.
@@ -217,7 +217,7 @@ def opening_file(project: Path) -> Iterator[Callable[[str], Path]]:
     """
     pages: list[Path] = []
 
-    def written(address: str) -> Path:
+    def write_page(address: str) -> Path:
         folder = project if project.is_dir() else Path(tempfile.mkdtemp(prefix="fdvv-"))
         pages.append(folder / OPENING_FILE)
         text = f'<!doctype html><meta http-equiv="refresh" content="0;url={html.escape(address)}">\n'
@@ -225,7 +225,7 @@ def opening_file(project: Path) -> Iterator[Callable[[str], Path]]:
         return pages[-1]
 
     try:
-        yield written
+        yield write_page
     finally:
         for page in pages:
             page.unlink(missing_ok=True)

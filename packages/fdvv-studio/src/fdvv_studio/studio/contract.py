@@ -83,13 +83,13 @@ def call(name: str) -> Callable[[Callable[[Any, Any], object]], Call]:
     Its first argument is the studio, or a service of which the studio has one instance.
     """
 
-    def made(function: Callable[[Any, Any], object]) -> Call:
+    def make_call(function: Callable[[Any, Any], object]) -> Call:
         (_, service), (_, ask), (_, answer) = get_type_hints(function, include_extras=True).items()
         if service is Studio:
             return Call(name, ask, answer, function)
         return Call(name, ask, answer, lambda studio, request: function(studio.part(service), request))
 
-    return made
+    return make_call
 
 
 class Channel(Protocol):

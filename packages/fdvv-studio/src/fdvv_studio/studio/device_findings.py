@@ -12,9 +12,9 @@ from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import Jnds
 from fdvv.model.press import Press
 from fdvv.rendering.evaluation.verdict import FEW_ratio
-from fdvv.rendering.press_check import RenderedPress, intended_press, rendered_press
+from fdvv.rendering.press_check import RenderedPress, bin_press, target_press
 from fdvv_studio.studio.contract import Message
-from fdvv_studio.studio.rounding import finite_row, rounded
+from fdvv_studio.studio.rounding import finite_row, round_row
 
 
 class CellCheck(Message):
@@ -48,17 +48,17 @@ class PressSeen(Message, tag="press_seen"):
 
 def press_seen(press: Press, model: FDVVModel, velocity_mm_s: float, jnds: Jnds) -> PressSeen:
     """Return how a press came out; jnds : what a finger notices."""
-    rendered, wanted = rendered_press(press, model.travel_mm), intended_press(model, velocity_mm_s)
+    rendered, wanted = bin_press(press, model.travel_mm), target_press(model, velocity_mm_s)
     error_cN, noticed = _off(rendered, wanted, model.travel_mm, jnds)
     simulated = ", simulated" if press.simulated else ""
     return PressSeen(
         velocity_mm_s,
         press.simulated,
-        rounded(rendered.displacement_mm),
+        round_row(rendered.displacement_mm),
         finite_row(rendered.press_cN),
         finite_row(rendered.release_cN),
-        rounded(wanted.press_cN),
-        rounded(wanted.release_cN),
+        round_row(wanted.press_cN),
+        round_row(wanted.release_cN),
         f"Mean error {error_cN:.1f} cN in one press at {velocity_mm_s:g} mm/s{simulated}; "
         f"a finger would {'' if noticed else 'not '}notice it, by {jnds.origin}",
         noticed,

@@ -165,9 +165,9 @@ class DeviceSession:
             if self._held:
                 reason = f"{self._status.device} is connected"
                 raise InputError("device", "device", reason, "disconnect it first")
-            with self._locks.acquired(ask.device, HOLDER):
+            with self._locks.hold(ask.device, HOLDER):
                 device = open_device(ask.device, load_rig(rig), None, ask.seed)
-                self._held = DeviceThread(device, self._ticks, self._lost, self._keys)
+                self._held = DeviceThread(device, self._ticks, self._drop, self._keys)
             self._status = DeviceStatus(ask.device)
         return self.refresh("")
 
@@ -179,9 +179,9 @@ class DeviceSession:
         if held:
             held.close()
             self._locks.release(device)
-        return self._changed()
+        return self._broadcast()
 
-    def held(self) -> DeviceThread:
+    def thread(self) -> DeviceThread:
         """Return the device that is connected. DeviceError if there is none."""
         with self._lock:
             if not self._held:
@@ -190,7 +190,7 @@ class DeviceSession:
 
     def upload(self, ask: DeviceUpload, model: FDVVModel, learned: CompensationResult | None) -> DeviceStatus:
         """Make a button the device's program, with what was learned for it or its own force. FdvvError."""
-        held = self.held()
+        held = self.thread()
         PressSettings(velocities_mm_s=tuple(ask.velocities_mm_s))
         button = UploadedButton(model, learned, sorted(ask.velocities_mm_s))
         held.do(lambda: button.put(held))
@@ -199,7 +199,7 @@ class DeviceSession:
 
     def upload_program(self, program: Program) -> DeviceStatus:
         """Make a program of several states the device's. FdvvError."""
-        held = self.held()
+        held = self.thread()
         image = compile_program(program, Limits(held.device.settings())).image
         held.do(lambda: held.device.upload_program(image))  # type: ignore[attr-defined]  # as in put_button
         self._button = None
@@ -207,7 +207,7 @@ class DeviceSession:
 
     def press(self, velocity_mm_s: float) -> DeviceStatus:
         """Make one simulated press and send it to all subscribers. DeviceError, InputError."""
-        held = self.held()
+        held = self.thread()
         PressSettings(velocities_mm_s=(velocity_mm_s,))
         jnds = self._studio.jnds  # a broken file is said before anything moves
         if not held.device.info().simulated:
@@ -225,7 +225,7 @@ class DeviceSession:
 
         DeviceError without a cell.
         """
-        held, button = self.held(), self._button
+        held, button = self.thread(), self._button
         if not held.remote:
             raise DeviceError("there is no firmware in this device: its loop is closed anew for each press")
         remote = held.remote
@@ -241,7 +241,7 @@ class DeviceSession:
 
     def do(self, work: Callable[[Remote], None]) -> DeviceStatus:
         """Do something with a device that runs the firmware. DeviceError."""
-        held = self.held()
+        held = self.thread()
         if not held.remote:
             raise DeviceError("there is no firmware in this device: it makes whole presses only")
         remote = held.remote
@@ -253,11 +253,11 @@ class DeviceSession:
         with self._lock:
             held, known = self._held, self._status
         if held:
-            found = self._read(held, known.device, known.programmed if programmed is None else programmed)
+            status = self._read(held, known.device, known.programmed if programmed is None else programmed)
             with self._lock:
                 if self._held is held:
-                    self._status = found
-        return self._changed()
+                    self._status = status
+        return self._broadcast()
 
     def subscribe(
         self,
@@ -314,14 +314,14 @@ class DeviceSession:
         for subscriber in self._current_subscribers():
             subscriber.keys(change)
 
-    def _lost(self, error: DeviceError) -> None:
+    def _drop(self, error: DeviceError) -> None:
         with self._lock:
             device, self._held = self._status.device, None
             self._status = DeviceStatus(fault=str(error))
         self._locks.release(device)
-        self._changed()
+        self._broadcast()
 
-    def _changed(self) -> DeviceStatus:
+    def _broadcast(self) -> DeviceStatus:
         self._tell(self._status)
         return self._status
 

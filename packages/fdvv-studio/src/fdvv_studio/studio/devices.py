@@ -28,7 +28,7 @@ class DeviceLocks:
             self._holders[device] = holder
 
     @contextmanager
-    def acquired(self, device: str, holder: str) -> Iterator[None]:
+    def hold(self, device: str, holder: str) -> Iterator[None]:
         """Acquire a device, and release it again if what is done then fails."""
         self.acquire(device, holder)
         try:
@@ -64,11 +64,11 @@ def may_be_listed(device: str) -> bool:
 def available_devices() -> tuple[tuple[tuple[str, str], ...], str]:
     """Return every available device with its description, and why serial ports cannot be listed, if so."""
     emulator = BUILT_ELF.is_file() and "emulated" in installed("devices")
-    found = tuple((name, KINDS[name]) for name in LOCAL if emulator or name != "emulated")
+    devices = tuple((name, KINDS[name]) for name in LOCAL if emulator or name != "emulated")
     try:
-        return (*found, *((f"serial:{path}", about) for path, about in serial_ports())), ""
+        return (*devices, *((f"serial:{path}", about) for path, about in serial_ports())), ""
     except BuildError as error:
-        return found, str(error)
+        return devices, str(error)
 
 
 def require_listed(what: str, given: str, choices: Collection[str], remedy: str = "") -> None:

@@ -106,7 +106,7 @@ class LiveConnection:
             with suppress(RuntimeError):
                 self._loop.call_soon_threadsafe(self._say, body, kind.name)
 
-        channel = await run_in_threadpool(self._opened, kind, tell)
+        channel = await run_in_threadpool(self._open_channel, kind, tell)
         while True:
             ask = await asks.get()
             try:
@@ -117,7 +117,7 @@ class LiveConnection:
                 log.exception("channel %s failed", kind.name)
                 self._say(b"", kind.name, f"{kind.name} failed; the studio's terminal tells why")
 
-    def _opened(self, kind: ChannelKind, tell: Tell) -> Channel:
+    def _open_channel(self, kind: ChannelKind, tell: Tell) -> Channel:
         """Open a channel; if the page has gone meanwhile it is closed again."""
         seated = kind.seated if self._seat else None
         channel = seated(self._studio, tell, self._seat) if seated else kind.open(self._studio, tell)

@@ -27,7 +27,7 @@ def project_lock(project: Path) -> Iterator[int]:
     Raises InputError, which names the other studio's address, if another one has the project. OSError.
     """
     made = [folder for folder in (project, *project.absolute().parents) if not folder.exists()]
-    lock = _locked(project)
+    lock = _lock(project)
     try:
         yield lock
     finally:
@@ -46,7 +46,7 @@ def note_address(lock: int, address: str) -> None:
     os.write(lock, address.encode())
 
 
-def _locked(project: Path) -> int:
+def _lock(project: Path) -> int:
     path = project / LOCK_FILE
     while not project.is_file():
         # a studio that has just ended may take file and folder away in between

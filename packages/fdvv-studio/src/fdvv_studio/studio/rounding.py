@@ -15,7 +15,7 @@ def finite_or_none(value: float) -> float | None:
     return round(value, DIGITS) if math.isfinite(value) else None
 
 
-def rounded(row: FloatArray, digits: int = DIGITS) -> tuple[float, ...]:
+def round_row(row: FloatArray, digits: int = DIGITS) -> tuple[float, ...]:
     """Round a row that is known throughout, (n,)."""
     return tuple(row.round(digits).tolist())
 

@@ -132,13 +132,13 @@ class Seats:
     def _change(self, word: str, **changes: str | bool) -> None:
         """Change what is known of a seat; nothing where there is none. OSError."""
         with self._lock:
-            found = self.find(word)
-            if found and (seat := msgspec.structs.replace(found[1], **changes)) != found[1]:
-                self._keep(found[0], seat)
+            pair = self.find(word)
+            if pair and (seat := msgspec.structs.replace(pair[1], **changes)) != pair[1]:
+                self._keep(pair[0], seat)
 
     def _keep(self, study: str, seat: Seat) -> None:
         with self._lock:
-            before = {one.word: one for one in self.of(study)}
+            before = {other.word: other for other in self.of(study)}
             kept = SeatsFile(seats=(*({**before, seat.word: seat}).values(),))
             if study not in self.unkept:
                 write_atomic(self._path(study), pretty(msgspec.to_builtins(kept)) + "\n", private=True)

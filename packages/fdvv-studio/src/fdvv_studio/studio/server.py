@@ -26,7 +26,7 @@ from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from fdvv.errors import BuildError, FdvvError, InputError
-from fdvv_studio.studio.auth import AuthMiddleware, ServerAddress, new_token, saved_token
+from fdvv_studio.studio.auth import AuthMiddleware, ServerAddress, new_token, project_token
 from fdvv_studio.studio.contract import Call, error_line
 from fdvv_studio.studio.live import LiveConnection
 from fdvv_studio.studio.lock import note_address, project_lock
@@ -114,7 +114,7 @@ async def answer_call(studio: Studio, call: Call, request: Request) -> Response:
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         return error_response(f"{call.name}: {error}", 400)
     try:
-        found = await run_in_threadpool(call.function, studio, ask)
+        answer = await run_in_threadpool(call.function, studio, ask)
     except asyncio.CancelledError:
         # Ctrl-C, and the server has waited long enough; the work itself ends with the process
         return error_response("the studio is closed", 503)
@@ -126,7 +126,7 @@ async def answer_call(studio: Studio, call: Call, request: Request) -> Response:
     except Exception:
         call_log.exception("%s failed", call.name)
         return error_response(f"{call.name} failed; the studio's terminal tells why", 500)
-    return Response(msgspec.json.encode(found), media_type="application/json")
+    return Response(msgspec.json.encode(answer), media_type="application/json")
 
 
 def create_app(studio: Studio, door: ServerAddress) -> Starlette:
@@ -171,7 +171,7 @@ def create_app(studio: Studio, door: ServerAddress) -> Starlette:
 LARGEST_MESSAGE_bytes = 2_000_000  # of the live connection: a model of many curves is some hundred kB
 
 
-def bound_socket(host: str, port: int) -> socket.socket:
+def bind_socket(host: str, port: int) -> socket.socket:
     """Take a port; 0 takes any free one. Raises InputError if it cannot be had."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     # asyncio sends at once only where TCP is named; else the end of an answer waits 40 ms for the page
@@ -195,14 +195,14 @@ def reachable_hosts(host: str) -> tuple[str, ...]:
     if host == "localhost" or not ipaddress.ip_address(host).is_unspecified:
         return (host,)
     family, unused = (socket.AF_INET6, "2001:db8::1") if ":" in host else (socket.AF_INET, "192.0.2.1")
-    found: list[str] = []
+    addresses: list[str] = []
     with suppress(OSError), socket.socket(family, socket.SOCK_DGRAM) as probe:
         # connecting sends nothing; it asks the system which of its addresses would be used
         probe.connect((unused, 9))
-        found.append(str(probe.getsockname()[0]))
+        addresses.append(str(probe.getsockname()[0]))
     with suppress(OSError):
-        found += [str(entry[4][0]) for entry in socket.getaddrinfo(socket.gethostname(), None, family)]
-    others = [name for name in dict.fromkeys(found) if not ipaddress.ip_address(name).is_loopback]
+        addresses += [str(entry[4][0]) for entry in socket.getaddrinfo(socket.gethostname(), None, family)]
+    others = [name for name in dict.fromkeys(addresses) if not ipaddress.ip_address(name).is_loopback]
     if not others:
         reason = "no address of this machine was found that others could reach"
         raise InputError("--host", host, reason, "name the address, such as --host 192.168.1.20")
@@ -211,7 +211,7 @@ def reachable_hosts(host: str) -> tuple[str, ...]:
 
 def address_of(hosts: Sequence[str], port: int, token: str) -> ServerAddress:
     """Make the door of a studio at a port. token : that opens it."""
-    names = {"127.0.0.1", "localhost", "[::1]", *map(_shown, hosts)}
+    names = {"127.0.0.1", "localhost", "[::1]", *map(_bracket, hosts)}
     return ServerAddress(frozenset(f"{name}:{port}" for name in names), token, f"fdvv-{port}")
 
 
@@ -225,16 +225,16 @@ def serve(
     or another studio has the project, BuildError.
     """
     hosts = reachable_hosts(host)
-    with project_lock(studio.project) as lock, bound_socket(host, port) as taken:
-        token = saved_token(studio.project) if keep_address else new_token()
+    with project_lock(studio.project) as lock, bind_socket(host, port) as taken:
+        token = project_token(studio.project) if keep_address else new_token()
         door = address_of(hosts, taken.getsockname()[1], token)
-        places = [f"http://{_shown(name)}:{taken.getsockname()[1]}" for name in hosts]
+        places = [f"http://{_bracket(name)}:{taken.getsockname()[1]}" for name in hosts]
         note_address(lock, places[0])
         opened = [f"{place}/?token={token}" for place in places]
         serve_app(create_app(studio, door), taken, lambda: ready(opened))
 
 
-def _shown(host: str) -> str:
+def _bracket(host: str) -> str:
     return f"[{host}]" if ":" in host else host
 
 

@@ -157,12 +157,12 @@ class Progress:
 
     def _at_velocity(self, velocity_mm_s: float) -> VelocityProgress:
         step = Step(Stage.PRESS, velocity_mm_s)
-        found = [check for other, check in self.judged if other == step]
-        good = [check.achieved_mm_s for check in found if check.ok]
+        checks = [check for other, check in self.judged if other == step]
+        good = [check.achieved_mm_s for check in checks if check.ok]
         known = tuple(speed for speed in good if np.isfinite(speed))
         settled = sum(o.settled for o in self.outcomes if o.step == step)
         missed = max(settled - len(good), 0)
-        return VelocityProgress(velocity_mm_s, len(good), self.plan.presses, len(found), missed, known)
+        return VelocityProgress(velocity_mm_s, len(good), self.plan.presses, len(checks), missed, known)
 
 
 def capture_session(
@@ -189,7 +189,7 @@ def capture_session(
         for text in (*(f"warning: {warning}" for warning in log.warnings), *_resume_notice(state, log)):
             guide.notice(text)
         try:
-            state = _recorded(device, state, guide, log)
+            state = _record_takes(device, state, guide, log)
         except KeyboardInterrupt:
             raise KeyboardInterrupt(f"interrupted; {_how_to_resume(log)}") from None
         except DeviceError as error:
@@ -197,7 +197,7 @@ def capture_session(
         return CaptureResult(path, log.recording, info.name, state.by_velocity())
 
 
-def _recorded(device: CaptureDevice, state: Progress, guide: CaptureGuide, log: RecordingLog) -> Progress:
+def _record_takes(device: CaptureDevice, state: Progress, guide: CaptureGuide, log: RecordingLog) -> Progress:
     while (wanted := state.next) is not None:
         step, total = wanted.step, len(state.outcomes)
         travel_mm = state.travel_mm or TRAVEL_mm

@@ -59,10 +59,10 @@ def plot_take(recording: Recording, number: int, simulated: bool = False) -> Fig
 
 
 def _take(recording: Recording, number: int) -> Take:
-    found = [take for take in recording.takes if take.number == number]
-    if not found or not found[0].streams:
+    takes = [take for take in recording.takes if take.number == number]
+    if not takes or not takes[0].streams:
         raise ModelError(f"recording {recording.name!r} has no take {number} with streams")
-    return found[0]
+    return takes[0]
 
 
 def _draw_stream(ax: Axes, stream: Stream) -> None:
@@ -150,10 +150,10 @@ def plot_force(recording: Recording, processed: Processed, number: int, simulate
 
     Raises ModelError if the take holds no press.
     """
-    one, take = _judged(processed, number), _take(recording, number)
-    stream, press = take.of(Quantity.FORCE)[0], one.press
-    inside = (stream.t_s >= one.spans.start_s - 0.03) & (stream.t_s <= one.spans.end_s + 0.03)
-    shown = (press.t_s >= one.spans.start_s - 0.03) & (press.t_s <= one.spans.end_s + 0.03)
+    entry, take = _press_of_take(processed, number), _take(recording, number)
+    stream, press = take.of(Quantity.FORCE)[0], entry.press
+    inside = (stream.t_s >= entry.spans.start_s - 0.03) & (stream.t_s <= entry.spans.end_s + 0.03)
+    shown = (press.t_s >= entry.spans.start_s - 0.03) & (press.t_s <= entry.spans.end_s + 0.03)
     read_cN = stream.values - idle_cN(recording)
     fig = style.new_figure(8.0, 4.8)
     top, below = fig.subplots(2, 1, sharex=True, height_ratios=(2.4, 1))
@@ -172,11 +172,11 @@ def plot_force(recording: Recording, processed: Processed, number: int, simulate
     return fig
 
 
-def _judged(processed: Processed, number: int) -> Judged:
-    found = [one for one in processed.judged if one.press.take == number]
-    if not found:
+def _press_of_take(processed: Processed, number: int) -> Judged:
+    presses = [entry for entry in processed.judged if entry.press.take == number]
+    if not presses:
         raise ModelError(f"no press was seen in take {number}")
-    return found[0]
+    return presses[0]
 
 
 @style.in_house_style
@@ -185,8 +185,8 @@ def plot_displacement(processed: Processed, number: int, simulated: bool = False
 
     Raises ModelError if the take holds no press.
     """
-    one = _judged(processed, number)
-    press, spans = one.press, one.spans
+    entry = _press_of_take(processed, number)
+    press, spans = entry.press, entry.spans
     fig = style.new_figure(8.0, 4.2)
     ax = fig.add_subplot()
     near = (press.frame_s >= spans.start_s - 0.03) & (press.frame_s <= spans.end_s + 0.03)
@@ -204,7 +204,7 @@ def plot_displacement(processed: Processed, number: int, simulated: bool = False
             ax.axvline(switched_s, color=MARKS[name], linewidth=1.0, label=f"circuit {name}")
     ax.set(xlabel="time on the clock of the board (s)", ylabel=style.DISPLACEMENT)
     ax.legend(**BESIDE)
-    said = f", left out: {one.reason}" if one.reason else ""
+    said = f", left out: {entry.reason}" if entry.reason else ""
     title = f"path of {press.name}, {style.velocity_text(press.velocity_mm_s)}{said}"
     style.set_titles(ax, title, simulated)
     return fig
@@ -223,17 +223,17 @@ def plot_velocities(processed: Processed, simulated: bool = False) -> Figure:
     fig = style.new_figure(8.0, 4.4)
     ax = fig.add_subplot()
     order = np.arange(1, len(processed.judged) + 1)
-    requested_mm_s = np.array([one.press.velocity_mm_s or np.nan for one in processed.judged])
-    made = np.array([one.achieved_mm_s for one in processed.judged])
+    requested_mm_s = np.array([entry.press.velocity_mm_s or np.nan for entry in processed.judged])
+    made = np.array([entry.achieved_mm_s for entry in processed.judged])
     ax.plot(order, requested_mm_s, drawstyle="steps-mid", color=style.QUIET, linewidth=1.2, label="asked")
-    used = np.array([one.reason is None for one in processed.judged])
+    used = np.array([entry.reason is None for entry in processed.judged])
     ax.plot(order[used], made[used], "o", markersize=4.5, color=style.PALETTE[0], label=f"used: {used.sum()}")
     for i, reason in enumerate(Reason):
-        which = np.array([one.reason is reason for one in processed.judged])
+        which = np.array([entry.reason is reason for entry in processed.judged])
         if which.any():
             look: Any = {"color": style.PALETTE[1 + i % 7], "markersize": 7.0, "markeredgewidth": 1.8}
             label = f"{reason}: {which.sum()}"
-            ax.plot(order[which], made[which], LEFT_OUT[i], **look, label=style.wrapped(label))
+            ax.plot(order[which], made[which], LEFT_OUT[i], **look, label=style.wrap(label))
     ax.set(xlabel="press (count, in the order made)", ylabel="mean speed of the press (mm/s)")
     ax.set_ylim(0.0, 1.06 * float(np.nanmax(np.concatenate([made, requested_mm_s, [1.0]]))))
     ax.legend(**BESIDE)
@@ -255,7 +255,7 @@ def plot_registration(
     Raises ModelError if there is no such curve.
     """
     stroke, recipe = Stroke(stroke), recipe or PaperRecipe()
-    curve, tracks = _found(processed, stroke, velocity_mm_s)
+    curve, tracks = _find_curve(processed, stroke, velocity_mm_s)
     theirs = paper_average(processed.judged, stroke, velocity_mm_s, recipe, processed.zero_mm)
     fig = style.new_figure(8.0, 4.6)
     ax = fig.add_subplot()
@@ -265,7 +265,7 @@ def plot_registration(
     style.draw_band(ax, curve.displacement_mm, curve.force_cN, curve.spread_cN, style.PALETTE[0])
     ax.plot(curve.displacement_mm, curve.force_cN, color=style.PALETTE[0], label="mean")
     look: Any = {"color": style.PALETTE[1], "linestyle": (0, (4, 1.5)), "linewidth": 1.3}
-    ax.plot(theirs.displacement_mm, theirs.force_cN, **look, label=style.wrapped(recipe_text(recipe)))
+    ax.plot(theirs.displacement_mm, theirs.force_cN, **look, label=style.wrap(recipe_text(recipe)))
     handles: list[Any] = [*ax.get_legend_handles_labels()[0], *style.band_handles([curve.presses])]
     style.legend_beside(ax, handles)
     ax.set(xlabel=style.DISPLACEMENT, ylabel=style.FORCE)
@@ -280,7 +280,7 @@ def recipe_text(recipe: PaperRecipe) -> str:
     return f"the paper's recipe, σ {first.sigma:g} {first.unit} and {last.sigma:g} {last.unit}"
 
 
-def _found(
+def _find_curve(
     processed: Processed, stroke: Stroke, velocity_mm_s: float | None
 ) -> tuple[AveragedCurve, tuple[StrokeTrack, ...]]:
     for curve, tracks in zip(processed.curves, processed.tracks, strict=True):

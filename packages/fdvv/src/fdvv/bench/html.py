@@ -14,7 +14,7 @@ from fdvv.bench.figures import (
     plot_take,
     plot_velocities,
 )
-from fdvv.bench.model import RecordedModel, used_and_left_out
+from fdvv.bench.model import RecordedModel, explain_rejections
 from fdvv.button.compare import vibration_spread
 from fdvv.force_text import force_number, force_text, force_unit
 from fdvv.model.curve import Stroke
@@ -35,17 +35,17 @@ def capture_html(recorded: RecordedModel) -> str:
     present = [section for part in parts if (section := part(recorded)) is not None]
     simulated = "the takes come from the twin; no hardware was used" if model.provenance.simulated else None
     footer = f"fdvv {__version__}; {'; '.join(model.provenance.assumptions)}."
-    summary = f"{model.provenance.source}: {used_and_left_out(recorded.processed)}."
+    summary = f"{model.provenance.source}: {explain_rejections(recorded.processed)}."
     return render_html(f"{model.name}: from recording to model", summary, present, footer, simulated)
 
 
 def _example(recorded: RecordedModel, fastest: bool) -> Judged:
     """Choose the press of median speed among those used at the fastest or slowest velocity."""
-    used = [one for one in recorded.processed.judged if one.reason is None]
-    velocities = [one.press.velocity_mm_s or 0.0 for one in used]
+    used = [entry for entry in recorded.processed.judged if entry.reason is None]
+    velocities = [entry.press.velocity_mm_s or 0.0 for entry in used]
     requested_mm_s = max(velocities) if fastest else min(velocities)
-    group = [one for one, its in zip(used, velocities, strict=True) if its == requested_mm_s]
-    return sorted(group, key=lambda one: one.achieved_mm_s)[len(group) // 2]
+    group = [entry for entry, its in zip(used, velocities, strict=True) if its == requested_mm_s]
+    return sorted(group, key=lambda entry: entry.achieved_mm_s)[len(group) // 2]
 
 
 def _streams(recorded: RecordedModel) -> Section:
@@ -104,19 +104,19 @@ def _paths(recorded: RecordedModel) -> Section:
 def _presses(recorded: RecordedModel) -> Section:
     rows = tuple(
         (
-            one.press.name,
-            _speed(one.press.velocity_mm_s),
-            f"{one.achieved_mm_s:.1f}",
-            f"{one.spans.bottom_mm:.3f}",
-            str(one.reason),
+            entry.press.name,
+            _speed(entry.press.velocity_mm_s),
+            f"{entry.achieved_mm_s:.1f}",
+            f"{entry.spans.bottom_mm:.3f}",
+            str(entry.reason),
         )
-        for one in recorded.processed.judged
-        if one.reason
+        for entry in recorded.processed.judged
+        if entry.reason
     )
     columns = ("press", "asked (mm/s)", "achieved (mm/s)", "deepest (mm)", "why it is left out")
     tables = (Table(columns, rows, "Presses that were left out."),) if rows else ()
     plot = plot_velocities(recorded.processed, recorded.recording.simulated)
-    text = used_and_left_out(recorded.processed) + "."
+    text = explain_rejections(recorded.processed) + "."
     return Section("Presses", (text,), (figure_svg(plot, "Speeds of all presses"),), tables)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from fdvv.bench.vibration import RecordedVibrations, recorded_vibrations
+from fdvv.bench.vibration import RecordedVibrations, find_vibrations
 from fdvv.button.compare import curve_spread, spread_reports
 from fdvv.button.fit import DECIMALS_mm, FitSettings, fit_report, one_line
 from fdvv.errors import FdvvError, InputError
@@ -51,24 +51,24 @@ def method_of(recording: Recording, processed: Processed) -> str:
     if bench.force_play_cN:
         steps.append(f"the force sensor's play of {force_text(bench.force_play_cN)} undone")
     steps.append("paths between frames found from frames and force together")
-    steps.append(used_and_left_out(processed))
+    steps.append(explain_rejections(processed))
     if processed.probe:
         probes = "a slow probe" if processed.probe.probes == 1 else f"{processed.probe.probes} slow probes"
         steps.append(f"zero and slowest curves from {probes}")
     return "; ".join(steps)
 
 
-def used_and_left_out(processed: Processed) -> str:
-    left = [one for one in processed.judged if one.reason is not None]
+def explain_rejections(processed: Processed) -> str:
+    left = [entry for entry in processed.judged if entry.reason is not None]
     used = len(processed.judged) - len(left)
     summary = f"{used} of {len(processed.judged)} presses averaged at their own samples on 50 µm"
-    counts = Counter(str(one.reason) for one in left)
+    counts = Counter(str(entry.reason) for entry in left)
     reasons = [f"{reason} ({_takes(left, reason)})" for reason, _ in counts.most_common()]
     return f"{summary}, left out: {', '.join(reasons)}" if reasons else summary
 
 
 def _takes(left: Sequence[Judged], reason: str) -> str:
-    numbers = list(dict.fromkeys(str(one.press.take) for one in left if one.reason == reason))
+    numbers = list(dict.fromkeys(str(entry.press.take) for entry in left if entry.reason == reason))
     more = len(numbers) - FEW_TAKES
     listed = ", ".join(numbers[:FEW_TAKES]) + (f" and {more} more" if more > 0 else "")
     return f"take {listed}" if len(numbers) == 1 else f"takes {listed}"
@@ -135,7 +135,7 @@ def process_recording(
     path: Path | str,
     settings: Settings | None = None,
     fit_settings: FitSettings | None = None,
-    find_vibrations: FindVibrations = recorded_vibrations,
+    find_vibrations: FindVibrations = find_vibrations,
 ) -> RecordedModel:
     """Read a file of a recording and make its model. Raises InputError."""
     recording = load_recording(path)
@@ -150,7 +150,7 @@ def model_of_recording(
     recording: Recording,
     settings: Settings | None = None,
     fit_settings: FitSettings | None = None,
-    find_vibrations: FindVibrations = recorded_vibrations,
+    find_vibrations: FindVibrations = find_vibrations,
 ) -> RecordedModel:
     """Process a recording and fit every averaged curve; the slow probe is the slowest one.
 
@@ -165,15 +165,15 @@ def model_of_recording(
     settings, fit_settings = settings or Settings(), fit_settings or FitSettings()
     processed = process(recording, settings)
     warnings = [*recording.warnings, *processed.warnings, *velocity_warnings(processed)]
-    parts = [_averaged(curve) for curve in processed.curves]
-    parts += _probed(processed.probe, {part.velocity_mm_s for part, _ in parts}, warnings)
+    parts = [_curve_and_spread(curve) for curve in processed.curves]
+    parts += _probe_curves(processed.probe, {part.velocity_mm_s for part, _ in parts}, warnings)
     parts.sort(key=lambda pair: reading_order(pair[0]))
     fits = tuple(_fit(part, spread, fit_settings) for part, spread in parts)
     vibration = find_vibrations(recording, processed)
     warnings += vibration.warnings
     travel_mm = round(processed.travel_mm.value, DECIMALS_mm)
-    actuation = _switched("actuation", processed.actuation_mm, processed.probe, travel_mm, warnings)
-    reset = _switched("reset", processed.reset_mm, processed.probe, travel_mm, warnings)
+    actuation = _switch_point("actuation", processed.actuation_mm, processed.probe, travel_mm, warnings)
+    reset = _switch_point("reset", processed.reset_mm, processed.probe, travel_mm, warnings)
     model = FDVVModel(
         name=one_line(recording.name) or "unnamed",
         travel_mm=travel_mm,
@@ -196,7 +196,7 @@ def model_of_recording(
     return RecordedModel(recording, model, processed, fits, measured, vibration, warned)
 
 
-def _averaged(curve: AveragedCurve) -> tuple[MeasuredCurve, CurveSpread | None]:
+def _curve_and_spread(curve: AveragedCurve) -> tuple[MeasuredCurve, CurveSpread | None]:
     """Return a curve as a fit takes it, at the achieved velocity where none was requested."""
     x_mm = np.round(curve.displacement_mm, DECIMALS_mm)
     requested_mm_s = curve.velocity_mm_s or round(curve.achieved_mm_s, 1)
@@ -206,7 +206,7 @@ def _averaged(curve: AveragedCurve) -> tuple[MeasuredCurve, CurveSpread | None]:
     return MeasuredCurve(x_mm, curve.force_cN, curve.stroke, requested_mm_s), spread
 
 
-def _probed(
+def _probe_curves(
     probe: Probe | None, velocities_mm_s: set[float | None], warnings: list[str]
 ) -> list[tuple[MeasuredCurve, CurveSpread | None]]:
     """Return both strokes of the slow probe; none if its velocity is unknown or that of presses."""
@@ -217,15 +217,15 @@ def _probed(
         warnings.append(f"the speed of the slow probe is {reason}: it gives the zero, but no curve")
         return []
     x_mm = np.round(probe.displacement_mm, DECIMALS_mm)
-    found: list[tuple[MeasuredCurve, CurveSpread | None]] = []
+    curves: list[tuple[MeasuredCurve, CurveSpread | None]] = []
     for stroke, force_cN, spread_cN in zip(
         Stroke, (probe.press_cN, probe.release_cN), probe.spread_cN, strict=True
     ):
         spread = (
             CurveSpread(x_mm, np.round(spread_cN, DECIMALS_cN), probe.probes) if probe.probes > 1 else None
         )
-        found.append((MeasuredCurve(x_mm, force_cN, stroke, probe.velocity_mm_s), spread))
-    return found
+        curves.append((MeasuredCurve(x_mm, force_cN, stroke, probe.velocity_mm_s), spread))
+    return curves
 
 
 def _fit(part: MeasuredCurve, spread: CurveSpread | None, settings: FitSettings) -> CurveFit:
@@ -233,19 +233,19 @@ def _fit(part: MeasuredCurve, spread: CurveSpread | None, settings: FitSettings)
     return replace(fit, curve=replace(fit.curve, spread=spread))
 
 
-def _switched(
-    what: str, found: Feature | None, probe: Probe | None, travel_mm: float, warnings: list[str]
+def _switch_point(
+    what: str, point: Feature | None, probe: Probe | None, travel_mm: float, warnings: list[str]
 ) -> Feature | None:
     """Return where the circuit switched, by the presses, else by the probe; None beyond the travel."""
-    if found is None and probe is not None:
+    if point is None and probe is not None:
         positions_mm = probe.closed_mm if what == "actuation" else probe.open_mm
         spread_mm = float(np.std(positions_mm, ddof=1)) if len(positions_mm) > 1 else 0.0
-        found = Feature(float(np.mean(positions_mm)), spread_mm, len(positions_mm)) if positions_mm else None
-    if found is not None and not 0 <= found.value <= travel_mm:
+        point = Feature(float(np.mean(positions_mm)), spread_mm, len(positions_mm)) if positions_mm else None
+    if point is not None and not 0 <= point.value <= travel_mm:
         outside = f"lies outside the travel of {travel_mm:.3f} mm"
-        warnings.append(f"{what} at {found.value:.3f} mm {outside}: left out")
+        warnings.append(f"{what} at {point.value:.3f} mm {outside}: left out")
         return None
-    return found
+    return point
 
 
 def _point(feature: Feature | None) -> PointSpread | None:
@@ -268,7 +268,7 @@ def capture_report(recorded: RecordedModel) -> dict[str, Any]:
         "landmarks": landmarks(model).to_dict() if pressed else {"travel_mm": model.travel_mm},
         "landmark_errors": {name: vars(error) for name, error in errors.items()},
         "vibrations": {
-            "heard": [one.report() for one in recorded.vibration.strokes],
+            "heard": [stroke.report() for stroke in recorded.vibration.strokes],
             "in_model": spread_reports(model)["vibrations"],
             "scalings": [scaling.report() for scaling in recorded.vibration.scalings],
         },
@@ -282,12 +282,12 @@ def press_reports(processed: Processed) -> list[dict[str, Any]]:
     """Return the outcome of every press; reason is null where it was used."""
     return [
         {
-            "take": one.press.take,
-            "part": one.press.part,
-            "velocity_mm_s": one.press.velocity_mm_s,
-            "achieved_mm_s": float(one.achieved_mm_s),
-            "bottom_mm": float(one.spans.bottom_mm),
-            "reason": str(one.reason) if one.reason else None,
+            "take": entry.press.take,
+            "part": entry.press.part,
+            "velocity_mm_s": entry.press.velocity_mm_s,
+            "achieved_mm_s": float(entry.achieved_mm_s),
+            "bottom_mm": float(entry.spans.bottom_mm),
+            "reason": str(entry.reason) if entry.reason else None,
         }
-        for one in processed.judged
+        for entry in processed.judged
     ]

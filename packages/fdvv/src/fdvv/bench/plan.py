@@ -61,12 +61,12 @@ class Outcome:
 
 def settle(outcomes: Sequence[Outcome], step: Step, ok: bool, repeats: int) -> tuple[Outcome, ...]:
     """Count a take for the first open step of its kind; a take beyond the plan changes nothing."""
-    found = list(outcomes)
-    first = next((i for i, o in enumerate(found) if o.step == step and not o.settled), None)
+    settled = list(outcomes)
+    first = next((i for i, o in enumerate(settled) if o.step == step and not o.settled), None)
     if first is not None:
-        tries = found[first].tries + 1
-        found[first] = Outcome(step, tries, ok or tries > repeats)
-    return tuple(found)
+        tries = settled[first].tries + 1
+        settled[first] = Outcome(step, tries, ok or tries > repeats)
+    return tuple(settled)
 
 
 def cue_length_s(velocity_mm_s: float | None, travel_mm: float) -> float:

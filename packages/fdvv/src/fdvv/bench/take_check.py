@@ -61,13 +61,13 @@ def quick_look(take: Take, travel_mm: float | None = None, pace_ratio: float = 0
         return _rest(take)
     if take.stage is Stage.PROBE:
         return _probe(take, travel_mm)
-    found = _displacement(take)
-    if isinstance(found, TakeCheck):
-        return found if take.of(Quantity.MARKER) or take.of(Quantity.DISPLACEMENT) else _felt(take, found)
-    return _press(take.velocity_mm_s, *found, travel_mm, pace_ratio)
+    track = _displacement(take)
+    if isinstance(track, TakeCheck):
+        return track if take.of(Quantity.MARKER) or take.of(Quantity.DISPLACEMENT) else _force(take, track)
+    return _press(take.velocity_mm_s, *track, travel_mm, pace_ratio)
 
 
-def _felt(take: Take, unseen: TakeCheck) -> TakeCheck:
+def _force(take: Take, unseen: TakeCheck) -> TakeCheck:
     """Check by the force alone, where cameras record on their own and are joined later."""
     if not take.of(Quantity.FORCE):
         return unseen
@@ -79,8 +79,8 @@ def _felt(take: Take, unseen: TakeCheck) -> TakeCheck:
 
 def _rest(take: Take) -> TakeCheck:
     forces = [float(np.ptp(stream.values)) for stream in take.of(Quantity.FORCE)]
-    found = _displacement(take)
-    moved_mm = 0.0 if isinstance(found, TakeCheck) else float(np.ptp(found[1]))
+    track = _displacement(take)
+    moved_mm = 0.0 if isinstance(track, TakeCheck) else float(np.ptp(track[1]))
     touched = max(forces, default=0.0) > STILL_cN or moved_mm > STILL_mm
     reason = "something touched the bench; take the finger off and wait" if touched else ""
     return TakeCheck(not touched, reason=reason)
@@ -89,8 +89,8 @@ def _rest(take: Take) -> TakeCheck:
 def _probe(take: Take, travel_mm: float | None) -> TakeCheck:
     displacements, forces = take.of(Quantity.DISPLACEMENT), take.of(Quantity.FORCE)
     if not displacements or not forces:
-        found = _displacement(take)
-        return found if isinstance(found, TakeCheck) else _deep(float(found[1].max()), travel_mm)
+        track = _displacement(take)
+        return track if isinstance(track, TakeCheck) else _deep(float(track[1].max()), travel_mm)
     displacement, force = displacements[0], forces[0]
     turn = int(np.argmax(displacement.values))
     force_cN = np.interp(displacement.t_s, force.t_s, force.values)
@@ -120,7 +120,7 @@ def _displacement(take: Take) -> tuple[FloatArray, FloatArray] | TakeCheck:
         positions = np.stack([np.reshape(m.values, (m.t_s.size, -1)) for m in markers])
         seen = np.isfinite(positions).all(axis=(0, 2))
         t_s, positions = markers[0].t_s[seen], positions[:, seen]
-        if seen.sum() >= FEWEST and _knocked_mm(positions) > KNOCKED_mm:
+        if seen.sum() >= FEWEST and _marker_shift_mm(positions) > KNOCKED_mm:
             return TakeCheck(False, reason="a marker moved on the cap; fix it and press again")
         down = _along(positions.mean(axis=0))
     else:
@@ -130,7 +130,7 @@ def _displacement(take: Take) -> tuple[FloatArray, FloatArray] | TakeCheck:
     return t_s, down - np.median(down[: down.size // REST_PART])
 
 
-def _knocked_mm(positions_mm: FloatArray) -> float:
+def _marker_shift_mm(positions_mm: FloatArray) -> float:
     """Return how much the rest positions of markers (2, n, axes) relative to each other changed."""
     apart = positions_mm[0] - positions_mm[-1]
     few = len(apart) // REST_PART

@@ -58,26 +58,26 @@ def stroke_scaling(
 ) -> StrokeScaling | None:
     """Fit the law of one stroke; None where fewer than two velocities have a vibration."""
     pairs = [
-        (one, one.found, v)
+        (measured, measured.found, v)
         for v in vibrations
-        for one in strokes
-        if isinstance(one.found, MeasuredVibration)
-        and v.stroke is one.stroke is stroke
-        and v.velocity_mm_s == one.velocity_mm_s
+        for measured in strokes
+        if isinstance(measured.found, MeasuredVibration)
+        and v.stroke is measured.stroke is stroke
+        and v.velocity_mm_s == measured.velocity_mm_s
     ]
     if len(pairs) < FEWEST_VELOCITIES:
         return None
-    speeds = [found.snap_velocity_mm_s.value for _, found, _ in pairs]
+    speeds = [vibration.snap_velocity_mm_s.value for _, vibration, _ in pairs]
     amplitudes = [abs(v.modes[0].amplitude_m_s2) for _, _, v in pairs]
     if min(speeds) <= 0 or min(amplitudes) <= 0:
         return None
-    ratios = [speed / one.achieved_mm_s for speed, (one, _, _) in zip(speeds, pairs, strict=True)]
-    energies = [found.energy.energy_mJ for _, found, _ in pairs]
+    ratios = [speed / measured.achieved_mm_s for speed, (measured, _, _) in zip(speeds, pairs, strict=True)]
+    energies = [vibration.energy.energy_mJ for _, vibration, _ in pairs]
     law = fit_scaling(speeds, amplitudes, energies if min(energies) > 0 else None)
     return StrokeScaling(stroke, law, float(np.median(ratios)))
 
 
-def scaled_vibrations(
+def scale_vibrations(
     scaling: StrokeScaling, strokes: Sequence[StrokeVibration], vibrations: Sequence[Vibration]
 ) -> list[Vibration]:
     """Return vibrations for a stroke's missing velocities: the nearest one's, its amplitudes by the law.
@@ -87,27 +87,27 @@ def scaled_vibrations(
     own = [v for v in vibrations if v.stroke is scaling.stroke and v.velocity_mm_s is not None]
     known = {v.velocity_mm_s for v in own}
     return [
-        _scaled(scaling, one, own)
-        for one in strokes
-        if one.stroke is scaling.stroke
-        and one.velocity_mm_s is not None
-        and one.velocity_mm_s not in known
-        and one.energy is not None
+        _scale(scaling, measured, own)
+        for measured in strokes
+        if measured.stroke is scaling.stroke
+        and measured.velocity_mm_s is not None
+        and measured.velocity_mm_s not in known
+        and measured.energy is not None
         and own
     ]
 
 
-def _scaled(scaling: StrokeScaling, one: StrokeVibration, own: Sequence[Vibration]) -> Vibration:
-    assert one.energy is not None
-    assert one.velocity_mm_s is not None
-    requested_mm_s = one.velocity_mm_s
+def _scale(scaling: StrokeScaling, measured: StrokeVibration, own: Sequence[Vibration]) -> Vibration:
+    assert measured.energy is not None
+    assert measured.velocity_mm_s is not None
+    requested_mm_s = measured.velocity_mm_s
     near = min(own, key=lambda v: abs(math.log((v.velocity_mm_s or requested_mm_s) / requested_mm_s)))
-    found = one.found if isinstance(one.found, MeasuredVibration) else None
-    speed = found.snap_velocity_mm_s.value if found else scaling.speed_ratio * one.achieved_mm_s
-    wanted = scaling.scaling.amplitude(speed, one.energy.energy_mJ)
+    vibration = measured.found if isinstance(measured.found, MeasuredVibration) else None
+    speed = vibration.snap_velocity_mm_s.value if vibration else scaling.speed_ratio * measured.achieved_mm_s
+    wanted = scaling.scaling.amplitude(speed, measured.energy.energy_mJ)
     grown = wanted / abs(near.modes[0].amplitude_m_s2)
     modes = tuple(replace(mode, amplitude_m_s2=grown * mode.amplitude_m_s2) for mode in near.modes)
-    onset_mm = found.onset_mm.value if found else near.onset_mm
+    onset_mm = vibration.onset_mm.value if vibration else near.onset_mm
     return replace(near, velocity_mm_s=requested_mm_s, onset_mm=onset_mm, modes=modes, spread=None)
 
 
@@ -164,16 +164,16 @@ class StrokeVibration:
             "duration_error_s": None,
             "modes": [],
         }
-        found = self.found
-        if isinstance(found, NotFound):
+        heard = self.found
+        if isinstance(heard, NotFound):
             return figures
-        figures |= {"presses": found.shown, "onset_mm": found.onset_mm.value}
+        figures |= {"presses": heard.shown, "onset_mm": heard.onset_mm.value}
         figures |= {
-            "onset_spread_mm": found.onset_mm.sd,
-            "snap_velocity_mm_s": found.snap_velocity_mm_s.value,
+            "onset_spread_mm": heard.onset_mm.sd,
+            "snap_velocity_mm_s": heard.snap_velocity_mm_s.value,
         }
-        if isinstance(found.ring, Ring):
-            figures |= {"duration_s": found.ring.duration_s, "duration_error_s": found.ring.duration_sd_s}
+        if isinstance(heard.ring, Ring):
+            figures |= {"duration_s": heard.ring.duration_s, "duration_error_s": heard.ring.duration_sd_s}
             figures["modes"] = [
                 {
                     "frequency_Hz": m.frequency_Hz,
@@ -183,7 +183,7 @@ class StrokeVibration:
                     "decay_error_1_s": m.decay_sd_1_s,
                     "decay_spread_1_s": m.decay_spread_1_s,
                 }
-                for m in found.ring.modes
+                for m in heard.ring.modes
             ]
         return figures
 
@@ -191,23 +191,23 @@ class StrokeVibration:
 def missing_words(missing: Sequence[tuple[StrokeVibration, str]]) -> list[str]:
     """Describe where there is no vibration, strokes and velocities of one reason together."""
     by_reason: dict[str, list[StrokeVibration]] = {}
-    for one, reason in missing:
-        by_reason.setdefault(reason, []).append(one)
-    return [f"no vibration on the {_conditions(ones)}: {reason}" for reason, ones in by_reason.items()]
+    for measured, reason in missing:
+        by_reason.setdefault(reason, []).append(measured)
+    return [f"no vibration on the {_conditions(strokes)}: {reason}" for reason, strokes in by_reason.items()]
 
 
-def _conditions(ones: Sequence[StrokeVibration]) -> str:
+def _conditions(strokes: Sequence[StrokeVibration]) -> str:
     velocities: dict[Stroke, list[str]] = {}
-    for one in sorted(ones, key=lambda one: one.stroke is Stroke.RELEASE):
-        speed = "unknown" if one.velocity_mm_s is None else f"{one.velocity_mm_s:g}"
-        velocities.setdefault(one.stroke, []).append(speed)
+    for measured in sorted(strokes, key=lambda measured: measured.stroke is Stroke.RELEASE):
+        speed = "unknown" if measured.velocity_mm_s is None else f"{measured.velocity_mm_s:g}"
+        velocities.setdefault(measured.stroke, []).append(speed)
     parts = {str(stroke): f"at {', '.join(of_stroke)} mm/s" for stroke, of_stroke in velocities.items()}
     if len(set(parts.values())) == 1:
         return f"{' and '.join(parts)} {next(iter(parts.values()))}"
     return " and ".join(f"{stroke} {where}" for stroke, where in parts.items())
 
 
-def shared_words(mode: SharedMode) -> str:
+def mode_words(mode: SharedMode) -> str:
     return (
         f"the housing rings alike at every pace: {mode.frequency_Hz:.0f} Hz with a decay of "
         f"{mode.decay_1_s:.0f} 1/s, the middle of {mode.paces} rings (standard errors "
@@ -241,7 +241,7 @@ class RecordedVibrations:
     scalings: tuple[StrokeScaling, ...] = ()
 
 
-def recorded_vibrations(
+def find_vibrations(
     recording: Recording, processed: Processed, extrapolate: bool = False
 ) -> RecordedVibrations:
     """Search the vibration of a recording for snaps, pooled over the presses of each stroke and velocity.
@@ -259,16 +259,16 @@ def recorded_vibrations(
         deaf = "no vibration: nothing listened, neither microphone nor accelerometer"
         return RecordedVibrations((), (), (deaf,))
     shaken = quantity is Quantity.ACCELERATION
-    strokes, mode = _measured_strokes(recording, processed, streams, shaken)
+    strokes, mode = _measure_strokes(recording, processed, streams, shaken)
     own, missing = _vibrations(strokes, None if shaken else recording.bench.sound_V_s_m or None)
     scalings = tuple(s for s in (stroke_scaling(strokes, own, stroke) for stroke in Stroke) if s is not None)
-    assumptions = [*([ON_HOUSING] if own and shaken else []), *([shared_words(mode)] if own and mode else [])]
+    assumptions = [*([ON_HOUSING] if own and shaken else []), *([mode_words(mode)] if own and mode else [])]
     warnings = missing_words(missing)
     if extrapolate:
-        more = [v for s in scalings for v in scaled_vibrations(s, strokes, own)]
+        more = [v for s in scalings for v in scale_vibrations(s, strokes, own)]
         assumptions += [scaling_words(s, more) for s in scalings if any(v.stroke is s.stroke for v in more)]
         own = sorted([*own, *more], key=lambda v: (v.stroke is Stroke.RELEASE, v.velocity_mm_s or 0.0))
-    elif any(one.stroke is s.stroke for s in scalings for one, _ in missing):
+    elif any(measured.stroke is s.stroke for s in scalings for measured, _ in missing):
         warnings.append("strokes that lack it at some paces only can be given it by --extrapolate-vibration")
     return RecordedVibrations(tuple(strokes), tuple(own), tuple(warnings), tuple(assumptions), scalings)
 
@@ -276,25 +276,25 @@ def recorded_vibrations(
 def _vibrations(
     strokes: Sequence[StrokeVibration], scale_V_s_m: float | None
 ) -> tuple[list[Vibration], list[tuple[StrokeVibration, str]]]:
-    found, missing = [], []
-    for one in strokes:
-        if isinstance(one.found, NotFound) or one.reason is not None:
-            missing.append((one, one.reason or ""))
+    vibrations, missing = [], []
+    for measured in strokes:
+        if isinstance(measured.found, NotFound) or measured.reason is not None:
+            missing.append((measured, measured.reason or ""))
             continue
         try:
-            vibration = one.found.vibration(scale_V_s_m)
+            vibration = measured.found.vibration(scale_V_s_m)
         except ModelError as error:
-            missing.append((one, str(error)))
+            missing.append((measured, str(error)))
         else:
-            spread = _spread(one.found, vibration)
-            found.append(replace(vibration, velocity_mm_s=one.velocity_mm_s, spread=spread))
-    return found, missing
+            spread = _spread(measured.found, vibration)
+            vibrations.append(replace(vibration, velocity_mm_s=measured.velocity_mm_s, spread=spread))
+    return vibrations, missing
 
 
-def _measured_strokes(
+def _measure_strokes(
     recording: Recording, processed: Processed, streams: dict[int, Stream], shaken: bool
 ) -> tuple[list[StrokeVibration], SharedMode | None]:
-    presses = {(one.press.take, one.press.part): one.press for one in processed.judged if one.reason is None}
+    presses = {(j.press.take, j.press.part): j.press for j in processed.judged if j.reason is None}
     delay_s = 0.0 if shaken else 1e-3 * recording.bench.sound_filter_ms
     groups = []
     for curve, tracks in zip(processed.curves, processed.tracks, strict=True):
@@ -305,10 +305,10 @@ def _measured_strokes(
         )
         speed_mm_s = curve.velocity_mm_s or curve.achieved_mm_s
         groups.append(PacePresses(curve.stroke, speed_mm_s, records, _energy(curve)))
-    found, mode = measure_paces(groups, shaken)
+    results, mode = measure_paces(groups, shaken)
     measured = [
-        StrokeVibration(curve.stroke, curve.velocity_mm_s, curve.achieved_mm_s, one, group.energy)
-        for curve, group, one in zip(processed.curves, groups, found, strict=True)
+        StrokeVibration(curve.stroke, curve.velocity_mm_s, curve.achieved_mm_s, result, group.energy)
+        for curve, group, result in zip(processed.curves, groups, results, strict=True)
     ]
     return measured, mode
 
@@ -334,22 +334,22 @@ def _energy(curve: AveragedCurve) -> SnapEnergy | None:
     return snap_energy(x_mm[inside], curve.force_cN[inside])
 
 
-def _spread(found: MeasuredVibration, vibration: Vibration) -> VibrationSpread | None:
+def _spread(measured: MeasuredVibration, vibration: Vibration) -> VibrationSpread | None:
     """Return how presses differ: onset and amplitude one by one, frequency and decay by jackknife."""
-    ring = found.ring
-    if found.shown < 2 or isinstance(ring, NotFound):
+    ring = measured.ring
+    if measured.shown < 2 or isinstance(ring, NotFound):
         return None
     first = ring.mode
     lasting = first.decay_spread_1_s / first.decay_1_s if first.decay_spread_1_s is not None else None
     return VibrationSpread(
-        found.shown,
-        onset_mm=_rounded(found.onset_mm.sd),
-        duration_s=_rounded(lasting and vibration.duration_s * lasting),
+        measured.shown,
+        onset_mm=_round(measured.onset_mm.sd),
+        duration_s=_round(lasting and vibration.duration_s * lasting),
         modes=tuple(
             ModeSpread(
-                _rounded(mode.frequency_spread_Hz),
-                _rounded(_deviation_ratio(sizes) * abs(kept.amplitude_m_s2)),
-                _rounded(mode.decay_spread_1_s),
+                _round(mode.frequency_spread_Hz),
+                _round(_deviation_ratio(sizes) * abs(kept.amplitude_m_s2)),
+                _round(mode.decay_spread_1_s),
             )
             for mode, kept, sizes in zip(ring.modes, vibration.modes, ring.amplitudes.T, strict=True)
         ),
@@ -362,5 +362,5 @@ def _deviation_ratio(sizes: FloatArray) -> float:
     return 1.4826 * float(np.median(np.abs(sizes - middle))) / middle if middle else 0.0
 
 
-def _rounded(value: float | None) -> float | None:
+def _round(value: float | None) -> float | None:
     return None if value is None else float(f"{value:.4g}")

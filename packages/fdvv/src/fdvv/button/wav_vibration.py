@@ -12,7 +12,7 @@ from fdvv.io.files import read_limited
 from fdvv.model.vibration import Mode
 from fdvv.units import FloatArray
 from fdvv.vibration.modes import fit_modes
-from fdvv.vibration.sound import LEAST_CARRIED, carried
+from fdvv.vibration.sound import LEAST_CARRIED, energy_ratio
 from fdvv.vibration.wave import read_wav
 
 LARGEST_bytes = 20_000_000
@@ -59,7 +59,7 @@ def _modes(name: Path | str, ring: FloatArray, rate_Hz: int) -> VibrationRead:
         raise InputError(name, "samples", str(error), "give a longer sound") from error
     if not fit.modes:
         raise InputError(name, "samples", "no damped mode in it", "give a snap's sound")
-    part = carried(ring, rate_Hz, fit.modes)
+    part = energy_ratio(ring, rate_Hz, fit.modes)
     if part < LEAST_CARRIED:
         least = f"less than {100 * LEAST_CARRIED:.0f} %"
         reason = f"its damped modes carry {100 * part:.0f} % of its energy, {least}"

@@ -13,7 +13,7 @@ from fdvv.button.figures import plot_fit, plot_scan
 from fdvv.cli.demo_run import DemoResult
 from fdvv.cli.ui import bump_kept
 from fdvv.force_text import force_number, force_text, force_unit
-from fdvv.rendering.evaluation.probe_figures import rendered_curves
+from fdvv.rendering.evaluation.probe_figures import method_curves
 from fdvv.rendering.evaluation.probe_report import sources_section, vibration_section
 from fdvv.rendering.evaluation.verdict import headline, headline_figures, verdict
 from fdvv.rendering.figures import PAPER_ERROR_cN, plot_convergence, plot_rendering
@@ -48,7 +48,7 @@ def _before_and_after(result: DemoResult) -> Section:
     """Show target and rendered force of one speed at a time, with and without compensation."""
     first, last = result.renderings[0].judged.curves, result.renderings[-1].judged.curves
     methods = {"uncompensated": first, "compensated": last}
-    shown = rendered_curves(methods, simulated=True)
+    shown = method_curves(methods, simulated=True)
     speeds = sorted({curve.velocity_mm_s for curve in shown})
     choices = tuple(
         (f"{v:g} mm/s", _figure(_of_speed(shown, v), f"Target and rendered force at {v:g} mm/s"))
@@ -141,7 +141,7 @@ def _every_rendering(result: DemoResult) -> Section:
         *(f"{r.label}: {verdict(r.judged.curves)}" for r in result.renderings),
     )
     learned = {r.label: r.judged.curves for r in result.renderings if r.learned}
-    grid = plot_rendering(rendered_curves(learned, simulated=True), title=result.button.name, simulated=True)
+    grid = plot_rendering(method_curves(learned, simulated=True), title=result.button.name, simulated=True)
     figure = _figure(grid, "Target and rendered force per velocity and stroke")
     return Section(
         "Every speed, and what each part of the model brings",

@@ -16,7 +16,7 @@ from fdvv.device.contract import Device
 from fdvv.model.file import load_builtin
 from fdvv.model.fit import PAPERS_CONTROL_POINTS, CurveFit, FitMethod, fit_curve, scan_sizes
 from fdvv.model.model import FDVVModel
-from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.compensate import CompensationResult, compensate, start_surface
 from fdvv.rendering.evaluation.vibration_presses import Playback
 from fdvv.rendering.probe import ProbeResult, fd_only, probe
 from fdvv.rendering.session_run import PressDone
@@ -146,7 +146,7 @@ def _render(
 def _judge(
     device: Device, button: FDVVModel, label: str, learned: CompensationResult | None, stage: Stage
 ) -> ProbeResult:
-    surface = learned.surface if learned else uncompensated(device, button, VELOCITIES_mm_s)
+    surface = learned.surface if learned else start_surface(device, button, VELOCITIES_mm_s)
     tuning = learned.outcome.tuning if learned else Tuning()
     tell = _on_press(stage, f"probing {label}")
     # force and displacement alone leave the vibration out; the other two play it

@@ -262,9 +262,9 @@ class RigName(click.ParamType[Path]):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         if str(value).isidentifier() and not Path(value).exists():
-            from fdvv.twin.files import current_rig_name, shipped_rigs
+            from fdvv.twin.files import current_rig_name, rig_files
 
-            found, name = shipped_rigs(), str(current_rig_name(value))
+            found, name = rig_files(), str(current_rig_name(value))
             if name not in found:
                 self.fail(f"there is no rig {value!r}; name a file, or one of {', '.join(found)}", param, ctx)
             return found[name]

@@ -57,10 +57,10 @@ class Tuning:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fields as files hold them: without loop where there is none, as before it existed."""
-        found = asdict(self)
+        record = asdict(self)
         if self.loop is None:
-            del found["loop"]
-        return found
+            del record["loop"]
+        return record
 
     def numbers(self) -> FloatArray:
         """Return all numbers in order, (7,), and those of the loop behind them."""

@@ -138,7 +138,7 @@ class PaperLaw:
         command = self._start(state)
         return command, replace(state, command_cN=command)
 
-    def finished(self, state: CurveState) -> bool:
+    def is_finished(self, state: CurveState) -> bool:
         """Return whether all rounds are done."""
         return len(state.rounds) >= self.rounds
 
@@ -151,7 +151,7 @@ class PaperLaw:
         step_mm = float(state.grid_mm[1] - state.grid_mm[0])
         table = smooth(np.mean([b.command_cN for b in bests], axis=0), self.smoothing_mm, step_mm)
         return LearnedCurve(
-            self._limited(table, state),
+            self._limit(table, state),
             state.errors_cN,
             float(np.mean([b.mean_error_cN for b in bests])),
             float(np.mean([b.max_error_cN for b in bests])),
@@ -166,9 +166,9 @@ class PaperLaw:
         learned = state.command_cN + change - state.target_cN
         step_mm = float(state.grid_mm[1] - state.grid_mm[0])
         command = state.target_cN + smooth(learned, self.filter_mm, step_mm)
-        return self._limited(command, state)
+        return self._limit(command, state)
 
-    def _limited(self, command_cN: FloatArray, state: CurveState) -> FloatArray:
+    def _limit(self, command_cN: FloatArray, state: CurveState) -> FloatArray:
         home = state.grid_mm <= HOME_mm if self.hold_cN else False
         held = np.where(home, np.maximum(command_cN, self.hold_cN), command_cN)
         return read_only(np.clip(held, -state.limit_cN, state.limit_cN))
@@ -177,11 +177,11 @@ class PaperLaw:
         if self.start == "random":
             draw = np.random.default_rng((self.seed, len(state.rounds)))
             level = draw.uniform(0.5, 1.0) * float(np.abs(state.target_cN).max())
-            return self._limited(np.full(state.grid_mm.size, level), state)
+            return self._limit(np.full(state.grid_mm.size, level), state)
         if self.start == "average" and state.rounds:
             # these are within the limits, and so is their mean
             return read_only(np.mean([b.command_cN for b in state.rounds], axis=0))
-        return self._limited(np.maximum(state.target_cN, self.hold_cN or -np.inf), state)
+        return self._limit(np.maximum(state.target_cN, self.hold_cN or -np.inf), state)
 
     def _sentence(self, state: CurveState, bests: tuple[BestPress, ...], step_mm: float) -> str:
         kept = bump_kept_ratio(state.grid_mm, state.target_cN, self.smoothing_mm)

@@ -115,7 +115,7 @@ class PerCurve:
 
     def _at(self, state: JobState) -> int | None:
         """Return the row to press next: the first unfinished one, or the one with the fewest presses."""
-        left = [i for i, pair in enumerate(state.pairs) if not self.law.finished(pair[0])]
+        left = [i for i, pair in enumerate(state.pairs) if not self.law.is_finished(pair[0])]
         if not self.whole_surface:
             return next(iter(left), None)
         return min(left, key=lambda i: len(state.pairs[i][0].errors_cN), default=None)

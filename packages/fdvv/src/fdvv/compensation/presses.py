@@ -146,17 +146,17 @@ def judge_press(
         return PressAcceptance("too few samples between the guards to measure the speed; press slower", speed)
     reasons = (
         _off_pace(speed, press.velocity_mm_s, bounds.pace_ratio),
-        _lifted(x_mm[down], bounds.lifted_mm),
-        _paused(t_s[down], x_mm[down], travel_mm, bounds.paused_ratio),
-        _saturated(press, (t_s, down, up), bounds.saturated_ratio),
+        _explain_lift(x_mm[down], bounds.lifted_mm),
+        _explain_pause(t_s[down], x_mm[down], travel_mm, bounds.paused_ratio),
+        _explain_saturation(press, (t_s, down, up), bounds.saturated_ratio),
         "" if true_position else _silent_sensor(press),
     )
     return PressAcceptance(next(filter(None, reasons), ""), speed)
 
 
 def _silent_sensor(press: Press) -> str:
-    found = None if press.sensed_cN is None else silent_fault(press.sensed_cN)
-    return "" if found is None else str(found)
+    fault = None if press.sensed_cN is None else silent_fault(press.sensed_cN)
+    return "" if fault is None else str(fault)
 
 
 def _off_pace(achieved_mm_s: float, requested_mm_s: float, bound: float) -> str:
@@ -166,7 +166,7 @@ def _off_pace(achieved_mm_s: float, requested_mm_s: float, bound: float) -> str:
     return f"{achieved_mm_s:.0f} mm/s instead of {requested_mm_s:g}: press {remedy}"
 
 
-def _lifted(x_mm: FloatArray, bound_mm: float) -> str:
+def _explain_lift(x_mm: FloatArray, bound_mm: float) -> str:
     back = np.maximum.accumulate(x_mm) - x_mm
     at = int(back.argmax())
     if back[at] <= bound_mm:
@@ -174,7 +174,7 @@ def _lifted(x_mm: FloatArray, bound_mm: float) -> str:
     return f"the finger was lifted at {x_mm[: at + 1].max():.2f} mm on its way down; press without stopping"
 
 
-def _paused(t_s: FloatArray, x_mm: FloatArray, travel_mm: float, bound: float) -> str:
+def _explain_pause(t_s: FloatArray, x_mm: FloatArray, travel_mm: float, bound: float) -> str:
     """Find the longest time within one window of displacement."""
     deepest = np.maximum.accumulate(x_mm)
     left = np.searchsorted(deepest, deepest + PAUSE_WINDOW_ratio * travel_mm)
@@ -186,7 +186,7 @@ def _paused(t_s: FloatArray, x_mm: FloatArray, travel_mm: float, bound: float) -
     return f"the finger paused at {middle:.2f} mm for {spent[at] * MS_PER_s:.0f} ms; press without stopping"
 
 
-def _saturated(press: Press, strokes: tuple[FloatArray, slice, slice], bound: float) -> str:
+def _explain_saturation(press: Press, strokes: tuple[FloatArray, slice, slice], bound: float) -> str:
     if press.saturated is None:
         return ""
     t_s, down, up = strokes

@@ -57,7 +57,7 @@ def explain_rig(rig: RigModel, middle_mm: float = 2.0) -> str:
 
     A number is not known if its error exceeds it or it rests on a bound, and weak if its error is large.
     """
-    found, weak, unknown = [], [], []
+    quantities, weak, unknown = [], [], []
     for name, (words, unit) in QUANTITIES.items():
         value = float(rig.gain_at(np.array(middle_mm))) if name == "gain" else float(getattr(rig, name))
         error = rig.error.get(name, 0.0)
@@ -66,14 +66,14 @@ def explain_rig(rig: RigModel, middle_mm: float = 2.0) -> str:
         write = force_number if unit == "cN" else format
         end = f" {unit.replace('cN', force_unit())}" if unit else ""
         about, off = (write(scale * number, f".{digits}f") for number in (value, error))
-        found.append(f"{words} {about} +- {off}{end}")
+        quantities.append(f"{words} {about} +- {off}{end}")
         if error > abs(value) or name in rig.at_bound:
             unknown.append(words)
         elif error > WEAK_ratio * abs(value):
             weak.append(words)
-    found += _own_force(rig)
+    quantities += _own_force(rig)
     text = (
-        f"{', '.join(found)}, from {rig.presses} presses; {force_text(rig.residual_cN, '.1f')} rms "
+        f"{', '.join(quantities)}, from {rig.presses} presses; {force_text(rig.residual_cN, '.1f')} rms "
         "unexplained"
     )
     text = f"{text}; not known: {', '.join(unknown)}" if unknown else text
@@ -178,7 +178,7 @@ class RigState:
     message: str = ""
 
     @property
-    def identified(self) -> tuple[RigModel, Pair]:
+    def rig_and_tables(self) -> tuple[RigModel, Pair]:
         """Rig and tables. Raises ModelError while they are unknown."""
         if self.rig is None or self.tables is None:
             raise ModelError("the rig is not identified yet")
@@ -252,7 +252,7 @@ class RigAware:
         at = least_pressed(state.errors)
         if len(state.errors[at]) >= self.rounds:
             return None
-        surface = self._surface(state, state.identified[1])
+        surface = self._surface(state, state.rig_and_tables[1])
         speed = float(state.job.target.velocity_mm_s[at])
         return Trial(surface, speed, self._tuning(state), LOOSE_SPEED_TOLERANCE_ratio)
 
@@ -263,7 +263,7 @@ class RigAware:
         at = least_pressed(state.errors)
         pair, tables = self._learn(self._strokes(press, state), state, at)
         errors = (*state.errors[:at], (*state.errors[at], pair), *state.errors[at + 1 :])
-        message = press_summary(state.rig, (state.identified[1], tables), pair, at)
+        message = press_summary(state.rig, (state.rig_and_tables[1], tables), pair, at)
         return replace(state, errors=errors, tables=tables, message=message)
 
     def explain(self, state: RigState) -> str:
@@ -280,7 +280,7 @@ class RigAware:
         if state.rig is None:
             start = minimum_lift_surface(state.job)
             return Outcome(start, (), made, False, f"{made} presses, the rig is not identified yet")
-        _, tables = state.identified
+        _, tables = state.rig_and_tables
         complete = self.trial(state) is None
         sentence = explain_rig(state.rig, 0.5 * state.job.travel_mm)
         surface = self._surface(state, best_rows(tables, state.errors))
@@ -289,7 +289,7 @@ class RigAware:
 
     def rig_after(self, state: RigState) -> LearnedRig:
         """Return the rig with its learned residual, for other buttons. ModelError before identification."""
-        rig, tables = state.identified
+        rig, tables = state.rig_and_tables
         press, release = (table.rows_cN for table in best_rows(tables, state.errors))
         target, job = state.job.target, state.job
         errors = np.array([[c.mean_error_cN for c in curves_of(job, state.errors, self.learned_rig)]])
@@ -305,9 +305,9 @@ class RigAware:
         rig = try_identification(presses, state.job.travel_mm, limits, prior)
         if isinstance(rig, str):
             return replace(state, identification=presses, message=rig)
-        return self.identified(state, rig, presses)
+        return self.adopt_rig(state, rig, presses)
 
-    def identified(self, state: RigState, rig: RigModel, presses: tuple[Press, ...]) -> RigState:
+    def adopt_rig(self, state: RigState, rig: RigModel, presses: tuple[Press, ...]) -> RigState:
         """Return the state once a rig is identified from presses, learned from them all."""
         table = prior_table(state.job, rig, self.learning)
         after = replace(state, rig=rig, identification=presses, tables=(table, table))
@@ -325,11 +325,11 @@ class RigAware:
                 return self._learn(strokes, state, at)[1]
         except ModelError:
             pass  # it served the identification
-        return state.identified[1]
+        return state.rig_and_tables[1]
 
     def _strokes(self, press: Press, state: RigState) -> tuple[StrokeSample, StrokeSample]:
         try:
-            return stroke_samples(press, state.job.travel_mm, state.identified[0], self.sensor)
+            return stroke_samples(press, state.job.travel_mm, state.rig_and_tables[0], self.sensor)
         except FitError as error:
             raise ModelError(str(error)) from error
 
@@ -337,7 +337,7 @@ class RigAware:
         self, strokes: tuple[StrokeSample, StrokeSample], state: RigState, at: int
     ) -> tuple[tuple[PressError, PressError], Pair]:
         """Return the errors of a press of speed number ``at``, and the tables after it."""
-        rig, tables = state.identified
+        rig, tables = state.rig_and_tables
         job, known = state.job, (rig, self._tuning(state))
         targets = (job.target.press_cN[at], job.target.release_cN[at])
         each = tuple(zip(tables, strokes, targets, strict=True))
@@ -351,4 +351,4 @@ class RigAware:
         return tuning_of(state.rig, state.job.travel_mm, self.bandwidth_Hz, self.friction_mm_s)
 
     def _surface(self, state: RigState, tables: Pair) -> ForceSurface:
-        return command_surface(state.job, state.identified[0], tables, self.friction_mm_s)
+        return command_surface(state.job, state.rig_and_tables[0], tables, self.friction_mm_s)

@@ -41,7 +41,7 @@ class FingerJoint:
             raise ModelError(f"a finger needs a mass above 0, and no numbers below 0, got {self}")
 
 
-def predicted_change(
+def predict_change(
     stroke: StrokeSample, target_cN: FloatArray, grid_mm: FloatArray, finger: FingerJoint
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Predict the change of displacement (mm), speed (mm/s), acceleration (m/s2) by the target force, (n,).
@@ -93,7 +93,7 @@ def tuning_of(rig: RigModel, travel_mm: float, bandwidth_Hz: float, friction_mm_
     return Tuning(bandwidth_Hz, *leads_s, drag_N_s_m, friction_cN, friction_mm_s, paced=True)
 
 
-def added_cN(tuning: Tuning, velocity_mm_s: FloatArray) -> FloatArray:
+def feedforward_cN(tuning: Tuning, velocity_mm_s: FloatArray) -> FloatArray:
     """Return the force that the controller subtracts from its table at a speed, positive downward."""
     rub = tuning.friction_cN * np.clip(velocity_mm_s / tuning.friction_mm_s, -1.0, 1.0)
     return np.asarray(DRAG_cN * tuning.drag_N_s_m * velocity_mm_s + rub)
@@ -110,7 +110,7 @@ def command_cN(
     return np.asarray((borne - rig.own_at(grid_mm)) / rig.gain_at(grid_mm))
 
 
-def required_change(
+def table_change(
     rig: RigModel,
     tuning: Tuning,
     stroke: StrokeSample,
@@ -119,7 +119,7 @@ def required_change(
 ) -> tuple[FloatArray, FloatArray]:
     """Return displacement (mm) and the change (cN) of command_cN() needed there, (n,) each.
 
-    change : of displacement, speed and acceleration under the target force (predicted_change).
+    change : of displacement, speed and acceleration under the target force (predict_change).
     target : grid and force.
 
     The rig's own force is taken as measured, plus what the change adds to it; the force left to the coil is
@@ -136,7 +136,7 @@ def required_change(
     own = stroke.own_cN + moved + viscous * dv + cN_PER_g_m_s2 * rig.mass_g * da
     braking = DRAG_cN * rig.back_emf_N_s_m * gain**2 * late_v
     wanted = np.interp(x, *target)
-    table = (wanted - own - braking) / gain + added_cN(tuning, late_v)
+    table = (wanted - own - braking) / gain + feedforward_cN(tuning, late_v)
     return x, table - command_cN(rig, x, wanted, direction)
 
 
@@ -228,11 +228,11 @@ def learn_stroke(
     """Return a table after one stroke for its row ``at``. Raises ModelError if no bin was visited."""
     rig, tuning = rig_and_tuning
     grid, speed = table.grid_mm, float(table.speeds_mm_s[at])
-    q, dv, da = (how.trust * part for part in predicted_change(stroke, target_cN, grid, how.finger))
-    places, more = required_change(rig, tuning, stroke, (q, dv, da), (grid, target_cN))
+    q, dv, da = (how.trust * part for part in predict_change(stroke, target_cN, grid, how.finger))
+    places, more = table_change(rig, tuning, stroke, (q, dv, da), (grid, target_cN))
     sigma_mm = how.smoothing_mm + how.smoothing_s * speed
     seen = bin_force(places, more, grid)
-    return table.updated(seen, speed, unrepeatable_cN(rig, speed), sigma_mm, how.fading)
+    return table.update(seen, speed, unrepeatable_cN(rig, speed), sigma_mm, how.fading)
 
 
 LIFTED_cN = 1.0
@@ -348,7 +348,7 @@ def curves_of(
 ) -> tuple[CurveOutcome, ...]:
     """Return the outcome of every curve, presses first; the expected errors where nothing was pressed."""
     speeds = job.target.velocity_mm_s
-    expected = np.full((2, speeds.size), np.nan) if learned is None else learned.expected_cN(speeds)
+    expected = np.full((2, speeds.size), np.nan) if learned is None else learned.error_at_cN(speeds)
     return tuple(
         _curve(stroke, float(speed), [pair[j] for pair in errors[i]], float(expected[j, i]))
         for j, stroke in enumerate(Stroke)

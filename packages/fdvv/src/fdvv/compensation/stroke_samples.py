@@ -10,9 +10,9 @@ from fdvv.compensation.identification.balance import (
     Sensor,
     Ticks,
     cN_PER_g_m_s2,
-    rendered_cN,
+    convolve,
+    finger_force_cN,
     ticks_of,
-    windowed,
     windows,
 )
 from fdvv.compensation.identification.rig_model import RigModel
@@ -54,7 +54,8 @@ def stroke_samples(
     lag = rig.position_lag_s
     x, v, a = (value + lag * rate for value, rate in zip((position, *slopes[:2]), slopes, strict=True))
     a = a / 1000.0  # from mm/s2
-    rendered = rendered_cN(ticks, sensor) + _play_cN(ticks, rig.play_cN) - cN_PER_g_m_s2 * sensor.cone_g * a
+    cone_cN = cN_PER_g_m_s2 * sensor.cone_g * a
+    rendered = finger_force_cN(ticks, sensor) + _play_cN(ticks, rig.play_cN) - cone_cN
     own = rendered - rig.coil_cN(ticks.t_s, x, v, ticks.commanded_cN)
 
     def between(rows: slice) -> StrokeSample:
@@ -67,5 +68,5 @@ def stroke_samples(
 
 def _play_cN(ticks: Ticks, play_cN: float) -> FloatArray:
     """Return by how much a changing force leads its reading: half the sensor's hysteresis."""
-    slope = windowed(windows(ticks.tick_s)[1], ticks.force_cN)
+    slope = convolve(windows(ticks.tick_s)[1], ticks.force_cN)
     return np.asarray(0.5 * play_cN * np.clip(slope / TURN_cN_s, -1.0, 1.0))

@@ -175,7 +175,7 @@ class SharedTable:
     def at(self, speed_mm_s: float) -> FloatArray:
         return np.asarray(self.shares(speed_mm_s) @ self.rows_cN)
 
-    def updated(
+    def update(
         self, seen_cN: FloatArray, speed_mm_s: float, noise_cN: float, sigma_mm: float, fading: float
     ) -> SharedTable:
         """Return the estimate after one stroke: seen_cN (n,), NaN where it was not measured.

@@ -116,7 +116,7 @@ class SerialBench:
         self._port, self._rest, self._cut, self._clock = port, b"", True, ""
         self._capture = SerialCapture()
         try:
-            self._feed(self._heard())
+            self._feed(self._listen_for_head())
             self._capture.take(1)
             self._bench = self._capture.bench
         except BaseException as error:
@@ -135,7 +135,7 @@ class SerialBench:
         self._feed(self._anchors())
         known = len(self._capture.warnings)
         self._port.write(BLINK)
-        self._feed(self._recorded(cue))
+        self._feed(self._record_lines(cue))
         take = self._capture.take(number, stage, velocity_mm_s, made)
         if not any(stream.t_s.size for stream in take.streams):
             raise DeviceError(f"{self._port.name}: no sample came; check the board's program")
@@ -149,7 +149,7 @@ class SerialBench:
     def close(self) -> None:
         self._port.close()
 
-    def _heard(self) -> list[str]:
+    def _listen_for_head(self) -> list[str]:
         """Listen until the head and some samples have come; give them."""
         self._port.write(ASK)
         until_s, lines, heard, body = self._port.now_s() + HEAD_s, list[str](), False, 0
@@ -161,20 +161,20 @@ class SerialBench:
                 body = body + 1 if lines and _TIME.match(line) else 0
                 if body == BODY:
                     return lines
-        found = "something else than a capture bench writes there" if heard else "no answer"
+        problem = "something else than a capture bench writes there" if heard else "no answer"
         remedy = "check the port's name, the cable and the board's program"
-        raise DeviceError(f"{self._port.name}: {found}; {remedy}")
+        raise DeviceError(f"{self._port.name}: {problem}; {remedy}")
 
-    def _recorded(self, cue: Cue) -> list[str]:
+    def _record_lines(self, cue: Cue) -> list[str]:
         begun_s = heard_s = self._port.now_s()
         lines: list[str] = []
         while (now_s := self._port.now_s()) < begun_s + cue.length_s + AFTER_s:
             cue.show(min(now_s - begun_s, cue.length_s))
-            found = self._lines(self._port.read(now_s + CUE_PERIOD_s))
-            heard_s = now_s if found else heard_s
+            fresh = self._lines(self._port.read(now_s + CUE_PERIOD_s))
+            heard_s = now_s if fresh else heard_s
             if now_s - heard_s > SILENT_s:
                 raise DeviceError(f"{self._port.name}: the bench fell silent; check its power and its cable")
-            lines += found
+            lines += fresh
         return lines
 
     def _lines(self, data: bytes) -> list[str]:
@@ -235,7 +235,7 @@ class TwinBench:
 
     def take(self, number: int, stage: Stage, velocity_mm_s: float | None, cue: Cue) -> Take:
         if self._pacing:
-            _shown(cue, self._pacing)
+            _show(cue, self._pacing)
         try:
             made = self._bench.take(number, stage, velocity_mm_s)
         except ModelError as error:
@@ -252,7 +252,7 @@ class TwinBench:
         """Do nothing: there is no line."""
 
 
-def _shown(cue: Cue, pacing: Pacing) -> None:
+def _show(cue: Cue, pacing: Pacing) -> None:
     begun_s = pacing.now_s()
     while (t_s := pacing.now_s() - begun_s) < cue.length_s:
         cue.show(t_s)

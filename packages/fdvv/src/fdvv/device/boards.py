@@ -75,11 +75,11 @@ class LibraryBoard:
 
     def program(self) -> bytes | None:
         """Return the image that is rendered, None if there is none."""
-        found = self._library.fdvv_host_program(self._handle)
-        if not found:
+        pointer = self._library.fdvv_host_program(self._handle)
+        if not pointer:
             return None
-        head = ImageHeader.unpack(ctypes.string_at(found, ImageHeader.length_bytes()))
-        return ctypes.string_at(found, head.size_bytes)
+        head = ImageHeader.unpack(ctypes.string_at(pointer, ImageHeader.length_bytes()))
+        return ctypes.string_at(pointer, head.size_bytes)
 
     @property
     def announced_mm_s(self) -> float:

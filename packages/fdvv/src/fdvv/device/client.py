@@ -223,7 +223,7 @@ class Client:
         if isinstance(notice, RecordsRequest):
             self.telemetry.add(notice, records, sequence)
         else:
-            self.telemetry.heard(sequence)
+            self.telemetry.count_missing(sequence)
         if isinstance(notice, KeyRequest) and self.on_key:
             self.on_key(notice)
         if isinstance(notice, FaultedRequest) and self.on_fault:

@@ -19,12 +19,12 @@ def lacking(device: Device, vibrating: bool = True) -> tuple[str, ...]:
 
     vibrating : vibrations are to be played. What knows no parts, as a recording, is taken to have them all.
     """
-    found = []
+    sentences = []
     if isinstance(device, Remote):
         if not device.settings().force_gain_q14:
-            found.append(NO_FORCE_SENSOR)
+            sentences.append(NO_FORCE_SENSOR)
         if not device.parts & BoardFlag.SERVO:
-            found.append(NO_LIMITER)
+            sentences.append(NO_LIMITER)
     if vibrating and not getattr(device, "has_exciter", True):
-        found.append(NO_VIBRATION)
-    return tuple(found)
+        sentences.append(NO_VIBRATION)
+    return tuple(sentences)

@@ -184,8 +184,8 @@ class LinkedDevice(Remote):
     @property
     def parts(self) -> BoardFlag:
         """What the board has, of vibration board and stop only what the rig has too."""
-        found, both = super().parts, BoardFlag.VIBRATION | BoardFlag.SERVO
-        return found & (self._person.fitted | ~both) if isinstance(self._person, FittedPerson) else found
+        parts, both = super().parts, BoardFlag.VIBRATION | BoardFlag.SERVO
+        return parts & (self._person.fitted | ~both) if isinstance(self._person, FittedPerson) else parts
 
     def upload_program(self, image: bytes) -> None:
         super().upload_program(image)
@@ -239,11 +239,11 @@ class LinkedDevice(Remote):
                 self.stop()
             self.port.connect(self._person.rest(self._settings))
         self._fail_on_fault()
-        press = self._joined(truth, ticks, velocity_mm_s)
+        press = self._join(truth, ticks, velocity_mm_s)
         self.force_loop.check(press)
         return press
 
-    def _joined(self, truth: Truth, ticks: IntArray, velocity_mm_s: float) -> Press:
+    def _join(self, truth: Truth, ticks: IntArray, velocity_mm_s: float) -> Press:
         """Join the telemetry of the board with the truth at the same ticks."""
         telemetry = self.client.telemetry.columns()
         assert truth.tick is not None

@@ -40,7 +40,7 @@ PRESSED = ("serial", "moteus", "odrive", "simplefoc")
 """Kinds of which nothing is simulated: whoever sits there presses."""
 
 
-def pressed_by_person(spec: str) -> bool:
+def is_manual(spec: str) -> bool:
     """Return whether a person presses the device, or bench, that spec names; no other is pressed by one."""
     kind, colon, _ = spec.partition(":")
     return bool(colon) and kind in PRESSED

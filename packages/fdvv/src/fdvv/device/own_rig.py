@@ -187,12 +187,12 @@ class Hand:
         self._t_s = 0.0
         self.duration_s = 2 * (self.REST_s + self._stroke_s) + self.HOLD_s
 
-    def achieved(self, velocity_mm_s: float) -> None:
+    def learn_speed(self, velocity_mm_s: float) -> None:
         """Learn from the speed that the last press reached."""
         ratio = velocity_mm_s / self._asked_mm_s
         self._slowness[self._asked_mm_s] *= ratio**self.ADAPTED_ratio
 
-    def _meant_mm(self) -> float:
+    def _target_mm(self) -> float:
         down = _minimum_jerk((self._t_s - self.REST_s) / self._stroke_s)
         up = _minimum_jerk((self._t_s - self.REST_s - self._stroke_s - self.HOLD_s) / self._stroke_s)
         return SWITCHED_OFF_mm + self._reach_mm * (down - up)
@@ -202,7 +202,7 @@ class Hand:
         depth_mm = self.x_mm - cap_mm
         pad_N = self.PAD_N_mm * depth_mm + self.PAD_N_s_mm * (self.v_mm_s - cap_mm_s)
         force_N = max(0.0, pad_N) if depth_mm > 0 else 0.0
-        muscle_N = self.MUSCLE_N_mm * (self._meant_mm() - self.x_mm) - self.DAMPING_N_s_mm * self.v_mm_s
+        muscle_N = self.MUSCLE_N_mm * (self._target_mm() - self.x_mm) - self.DAMPING_N_s_mm * self.v_mm_s
         self.v_mm_s += 1000.0 * (muscle_N - force_N) / self.MASS_kg * dt_s
         self.x_mm += self.v_mm_s * dt_s
         self._t_s += dt_s
@@ -263,7 +263,7 @@ class OwnRigPerson:
         between = [int(np.argmax(x_mm > part * self._travel_mm)) for part in MIDDLE]
         if 0 < between[0] < between[1]:
             took_s = (between[1] - between[0]) * self.rig.numbers.tick_us * 1e-6
-            self._hand.achieved((MIDDLE[1] - MIDDLE[0]) * self._travel_mm / took_s)
+            self._hand.learn_speed((MIDDLE[1] - MIDDLE[0]) * self._travel_mm / took_s)
 
     def rest(self, settings: Settings) -> OwnRigPerson:
         """Leave the button alone: the finger stays up once its press is over."""
@@ -289,7 +289,7 @@ class OwnRigPerson:
         for _ in range(count):
             self._move(motor_N, stop_mm, tick_s / count)
         self._rows.append((self._x_mm, 100.0 * self._force_N))
-        return self._sensed()
+        return self._read_sensors()
 
     def _move(self, motor_N: float, stop_mm: float, dt_s: float) -> None:
         self._force_N = self._hand.step(self._x_mm, self._v_mm_s, dt_s)
@@ -299,7 +299,7 @@ class OwnRigPerson:
         self._v_mm_s = (x_mm - self._x_mm) / dt_s
         self._x_mm = x_mm
 
-    def _sensed(self) -> Inputs:
+    def _read_sensors(self) -> Inputs:
         numbers, settings = self.rig.numbers, self.settings
         scale = settings.position_gain_q14 / 2**14
         exact = (UM16_PER_mm * self._x_mm - settings.position_offset_um16) / scale / READS
@@ -338,7 +338,7 @@ def _of_file(path: Path, attribute: str) -> Callable[[], OwnRig]:
         spec.loader.exec_module(module)
     except Exception as error:
         raise BuildError(f"{path}: cannot be imported: {type(error).__name__}: {error}") from error
-    found = getattr(module, attribute, None)
-    if not callable(found):
+    factory = getattr(module, attribute, None)
+    if not callable(factory):
         raise InputError("rig", f"{path}:{attribute}", "is no class or function", "write FILE.py:NAME")
-    return cast(Callable[[], OwnRig], found)
+    return cast(Callable[[], OwnRig], factory)

@@ -34,8 +34,8 @@ T = TypeVar("T")
 
 def pack_record(record: Press | ForceSurface) -> dict[str, Any]:
     """Write a record of columns and numbers."""
-    found = {f.name: getattr(record, f.name) for f in dataclasses.fields(record)}
-    return {k: _flat(v) if isinstance(v, np.ndarray) else v for k, v in found.items()}
+    fields = {f.name: getattr(record, f.name) for f in dataclasses.fields(record)}
+    return {k: _flat(v) if isinstance(v, np.ndarray) else v for k, v in fields.items()}
 
 
 def _flat(column: np.ndarray[Any, Any]) -> str:
@@ -43,13 +43,13 @@ def _flat(column: np.ndarray[Any, Any]) -> str:
     return pack_column(column.ravel().astype("?" if column.dtype == np.bool_ else "<f8", copy=False))
 
 
-def unpack_press(found: dict[str, Any]) -> Press:
-    fields: dict[str, Any] = {k: unpack_column(v) if isinstance(v, str) else v for k, v in found.items()}
+def unpack_press(body: dict[str, Any]) -> Press:
+    fields: dict[str, Any] = {k: unpack_column(v) if isinstance(v, str) else v for k, v in body.items()}
     return Press(**fields)
 
 
-def unpack_surface(found: dict[str, Any]) -> ForceSurface:
-    columns: dict[str, Any] = {k: unpack_column(v) for k, v in found.items()}
+def unpack_surface(body: dict[str, Any]) -> ForceSurface:
+    columns: dict[str, Any] = {k: unpack_column(v) for k, v in body.items()}
     shape = columns["velocity_mm_s"].size, columns["displacement_mm"].size
     tables = {k: columns[k].reshape(shape) for k in ("press_cN", "release_cN")}
     return ForceSurface(**{**columns, **tables})
@@ -72,16 +72,16 @@ class Recorder:
         self._file.flush()
         os.fsync(self._file.fileno())
 
-    def _recorded(self, call: Callable[[], T], line: dict[str, Any]) -> T:
+    def _log_call(self, call: Callable[[], T], line: dict[str, Any]) -> T:
         """Call, and write what was asked; a refusal or failure is part of the session."""
         try:
-            found = call()
+            result = call()
         except DeviceError as error:
             self._write({"error": {**line, "reason": str(error)}})
             raise
-        if not isinstance(found, Press):
+        if not isinstance(result, Press):
             self._write(line)
-        return found
+        return result
 
     def info(self) -> DeviceInfo:
         return self._device.info()
@@ -94,19 +94,19 @@ class Recorder:
         return bool(getattr(self._device, "has_exciter", False))
 
     def configure(self, settings: Settings) -> None:
-        self._recorded(lambda: self._device.configure(settings), {"settings": dataclasses.asdict(settings)})
+        self._log_call(lambda: self._device.configure(settings), {"settings": dataclasses.asdict(settings)})
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         upload = {"surface": pack_record(surface), "travel_mm": travel_mm}
         upload |= {"paced": True} if paced else {}
-        self._recorded(lambda: self._device.upload(surface, travel_mm, paced), {"upload": upload})
+        self._log_call(lambda: self._device.upload(surface, travel_mm, paced), {"upload": upload})
 
     def upload_program(self, image: bytes) -> None:
         line = {"program": base64.b64encode(image).decode()}
-        self._recorded(lambda: self._programs().upload_program(image), line)
+        self._log_call(lambda: self._programs().upload_program(image), line)
 
     def press(self, velocity_mm_s: float) -> Press:
-        press = self._recorded(lambda: self._device.press(velocity_mm_s), {"press": {"asked": velocity_mm_s}})
+        press = self._log_call(lambda: self._device.press(velocity_mm_s), {"press": {"asked": velocity_mm_s}})
         self._write({"press": pack_record(press)})
         return press
 
@@ -147,12 +147,12 @@ def read_session(path: Path) -> list[dict[str, Any]]:
         raise InputError(path, "whole file", "is no text", "name a file that --record wrote") from None
     lines: list[dict[str, Any]] = []
     for number, line in enumerate(text.split("\n"), 1):
-        found = _line(path, number, line) if line else None
-        if found is None:
+        record = _line(path, number, line) if line else None
+        if record is None:
             continue
-        if found.get("fdvv") == "session":
+        if record.get("fdvv") == "session":
             lines = []
-        lines.append(found)
+        lines.append(record)
     if not lines or lines[0].get("fdvv") != "session":
         raise InputError(path, "line 1", "begins no session", "name a file that --record wrote")
     if lines[0].get("format") != FORMAT:
@@ -162,11 +162,11 @@ def read_session(path: Path) -> list[dict[str, Any]]:
 
 def _line(path: Path, number: int, line: str) -> dict[str, Any] | None:
     """Read a line; None if it was cut short, as the last line of a killed session is."""
-    found = None
+    record = None
     with suppress(json.JSONDecodeError):
-        found = json.loads(line)
-    if isinstance(found, dict) or (found is None and line.startswith("{")):
-        return found
+        record = json.loads(line)
+    if isinstance(record, dict) or (record is None and line.startswith("{")):
+        return record
     raise InputError(path, f"line {number}", "is no record", "name a file that --record wrote")
 
 
@@ -194,15 +194,15 @@ class ReplayDevice:
 
     def configure(self, settings: Settings) -> None:
         wanted = dataclasses.asdict(settings)
-        self._find("settings", lambda found: found == wanted, "a device with such settings")
+        self._find("settings", lambda recorded: recorded == wanted, "a device with such settings")
         self._settings, self._active = settings, False
 
     def upload(self, surface: ForceSurface, travel_mm: float, paced: bool = False) -> None:
         check_table(self._info, surface, travel_mm)
-        self._find("upload", lambda found: _same(found, surface, travel_mm, paced), "this table")
+        self._find("upload", lambda recorded: _same(recorded, surface, travel_mm, paced), "this table")
 
     def upload_program(self, image: bytes) -> None:
-        self._find("program", lambda found: base64.b64decode(found) == image, "this program")
+        self._find("program", lambda recorded: base64.b64decode(recorded) == image, "this program")
 
     def _find(self, kind: str, same: Any, what: str) -> None:
         """Go to the next such line of the recording; DeviceError if none follows."""
@@ -246,8 +246,8 @@ class ReplayDevice:
         """Do nothing."""
 
 
-def _same(found: dict[str, Any], surface: ForceSurface, travel_mm: float, paced: bool) -> bool:
-    if found["travel_mm"] != travel_mm or found.get("paced", False) != paced:
+def _same(recorded: dict[str, Any], surface: ForceSurface, travel_mm: float, paced: bool) -> bool:
+    if recorded["travel_mm"] != travel_mm or recorded.get("paced", False) != paced:
         return False
-    then = vars(unpack_surface(found["surface"]))
+    then = vars(unpack_surface(recorded["surface"]))
     return all(np.array_equal(then[name], column) for name, column in vars(surface).items())

@@ -162,8 +162,8 @@ class Remote:
     def fault(self) -> FaultReport:
         reply = self.client.read_fault()
         at = reply.displacement_um16 / UM16_PER_mm, reply.commanded_cN64 / CN64_PER_cN
-        found = Fault(reply.fault), reply.value, reply.bound
-        return FaultReport(*found, reply.time_us * 1e-6, *at, reply.count)
+        cause = Fault(reply.fault), reply.value, reply.bound
+        return FaultReport(*cause, reply.time_us * 1e-6, *at, reply.count)
 
     def clear_fault(self) -> None:
         self.force_loop.forget()  # a fault opens it
@@ -241,10 +241,10 @@ class PressedDevice(Remote):
         self.client.stream(1)
         try:
             self._arm()
-            found = self._wait(travel_mm)
+            columns = self._wait(travel_mm)
         finally:
             self.stop()
-        press = self._record(found, velocity_mm_s)
+        press = self._record(columns, velocity_mm_s)
         self.force_loop.check(press)
         return press
 

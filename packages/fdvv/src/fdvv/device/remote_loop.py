@@ -44,8 +44,8 @@ class RemoteLoop:
         self.forget()
         if not self.exists:
             return
-        found = self._client.read_force_loop()
-        cell = CellSpec(**{name: getattr(found, name) for name in CellSpec.REALS})
+        reply = self._client.read_force_loop()
+        cell = CellSpec(**{name: getattr(reply, name) for name in CellSpec.REALS})
         self.load_cell = cell if cell.stiffness_N_m > 0 else None
 
     def forget(self) -> None:
@@ -80,9 +80,9 @@ class RemoteLoop:
         """Say what the board does with its loop: none, open, closed, or failed and why."""
         if not self.exists:
             return "none"
-        found = self._client.read_force_loop()
-        state = LoopState(found.state).name.lower()
-        return f"{state}, {LoopFault(found.fault).name.lower()}" if found.fault else state
+        reply = self._client.read_force_loop()
+        state = LoopState(reply.state).name.lower()
+        return f"{state}, {LoopFault(reply.fault).name.lower()}" if reply.fault else state
 
     def check(self, press: Press | None = None) -> None:
         """Raise PressError, with the press, if the loop was opened by itself since it was closed."""

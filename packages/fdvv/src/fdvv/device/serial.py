@@ -22,8 +22,8 @@ def serial_ports() -> list[tuple[str, str]]:
         import serialx
     except ImportError:
         raise BuildError(MISSING) from None
-    found = serialx.list_serial_ports()
-    return sorted((port.device, port.product or port.manufacturer or "") for port in found)
+    ports = serialx.list_serial_ports()
+    return sorted((port.device, port.product or port.manufacturer or "") for port in ports)
 
 
 class SerialPort:
@@ -31,9 +31,9 @@ class SerialPort:
 
     def __init__(self, path: str) -> None:
         self._path = path
-        self._line = self._opened()
+        self._line = self._open()
 
-    def _opened(self) -> serialx.BaseSerial:
+    def _open(self) -> serialx.BaseSerial:
         try:
             import serialx
         except ImportError:
@@ -62,7 +62,7 @@ class SerialPort:
         try:
             self._line.write(data)
         except (OSError, ValueError, serialx.SerialException) as error:
-            raise self._gone(error) from error
+            raise self._disconnect_error(error) from error
 
     def read(self, until_s: float) -> bytes:
         import serialx
@@ -71,10 +71,10 @@ class SerialPort:
         try:
             count = self._line.readinto(buffer, timeout=max(0.0, until_s - time.monotonic()))
         except (OSError, ValueError, serialx.SerialException) as error:
-            raise self._gone(error) from error
+            raise self._disconnect_error(error) from error
         return bytes(buffer[:count])
 
-    def _gone(self, error: Exception) -> DeviceError:
+    def _disconnect_error(self, error: Exception) -> DeviceError:
         return DeviceError(f"{self._path}: the device is gone ({error}); plug it in again")
 
     def reopen(self) -> None:
@@ -82,7 +82,7 @@ class SerialPort:
         until_s = time.monotonic() + REOPEN_s
         while True:
             try:
-                self._line = self._opened()
+                self._line = self._open()
                 return
             except DeviceError:
                 if time.monotonic() >= until_s:

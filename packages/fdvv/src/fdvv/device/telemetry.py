@@ -66,14 +66,14 @@ class Telemetry:
         self._due: int | None = None
         self._pieces: list[tuple[RecordsRequest, bytes]] = []
 
-    def heard(self, sequence: int) -> None:
+    def count_missing(self, sequence: int) -> None:
         """Count the frames that should have come before this one."""
         if self._sequence is not None:
             self.missing_frames += (sequence - self._sequence - 1) % 256
         self._sequence = sequence
 
     def add(self, head: RecordsRequest, records: bytes, sequence: int) -> None:
-        self.heard(sequence)
+        self.count_missing(sequence)
         if self.last is not None:
             self.lost_records += max(0, head.lost - self.last.lost)
             self.late_ticks += max(0, head.late - self.last.late)
@@ -95,9 +95,9 @@ class Telemetry:
 
     def take(self) -> TickColumns:
         """Return what has arrived and forget it; counts and gaps go on."""
-        found = self.columns()
+        columns = self.columns()
         self._pieces = []
-        return found
+        return columns
 
     def columns(self) -> TickColumns:
         heads = [head for head, _ in self._pieces]

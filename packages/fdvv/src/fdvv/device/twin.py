@@ -139,7 +139,7 @@ class TwinDevice:
         if self._active is None:
             raise DeviceError("twin: press before upload; upload a surface first")
         check_speed("twin", velocity_mm_s)
-        gesture, noise = self._again.popleft() if self._again else self._drawn(velocity_mm_s, self._active)
+        gesture, noise = self._again.popleft() if self._again else self._draw(velocity_mm_s, self._active)
         trace = simulate_program(
             self._rig,
             self._finger,
@@ -158,7 +158,7 @@ class TwinDevice:
             )
         return trace
 
-    def _drawn(self, velocity_mm_s: float, image: bytes) -> tuple[Gesture, Noise]:
+    def _draw(self, velocity_mm_s: float, image: bytes) -> tuple[Gesture, Noise]:
         """Draw a fresh press, and keep it to be repeated."""
         press_s = self._pace_s(velocity_mm_s, self._paced_on)
         travel_m, speed_m_s = m_from_mm(travel_mm_of(image)), m_from_mm(velocity_mm_s)

@@ -106,8 +106,8 @@ class Wire:
             self.repeated += attempt > 0
             # zeros end whatever half a frame the device still holds
             self.port.write(b"\0" + data if attempt else data)
-            if found := self._await(message, timeout_s):
-                return found[0]
+            if reply := self._await(message, timeout_s):
+                return reply[0]
         raise DeviceError(
             f"{self.port.name}: no answer to {message.name.lower()} in {TRIES * timeout_s:g} s; "
             "is it powered, and is this the right port?"
@@ -118,8 +118,8 @@ class Wire:
         while data := self.port.read(until_s):
             replies = [frame for frame in self._decoder.feed(data) if not self._notify(frame)]
             for frame in replies:
-                if frame.sequence == self._sequence and (found := self._reply(frame, message)):
-                    return found
+                if frame.sequence == self._sequence and (reply := self._reply(frame, message)):
+                    return reply
         return None
 
     def _reply(self, frame: Frame, message: Message) -> tuple[Record | None] | None:

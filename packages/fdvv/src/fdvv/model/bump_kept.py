@@ -15,7 +15,7 @@ SAMPLES = 5
 """Of the median that stands for a bench's own sharpness: 25 um on the finest."""
 
 
-def felt_ratio(x_mm: FloatArray, force_cN: FloatArray, fitted_cN: FloatArray) -> float | None:
+def drop_ratio(x_mm: FloatArray, force_cN: FloatArray, fitted_cN: FloatArray) -> float | None:
     """Return the drop of the fitted bump over the measured one, as means over 50 um; None without a bump.
 
     Nothing faster than 1 kHz is felt (noticeable.HIGHEST_Hz). At 50 mm/s, slower than any keystroke that was
@@ -25,7 +25,7 @@ def felt_ratio(x_mm: FloatArray, force_cN: FloatArray, fitted_cN: FloatArray) ->
     return fitted.drop_cN / bump.drop_cN if bump and fitted else None
 
 
-def sampled_ratio(force_cN: FloatArray, fitted_cN: FloatArray) -> float | None:
+def median_drop_ratio(force_cN: FloatArray, fitted_cN: FloatArray) -> float | None:
     """Return the same with medians of 5 samples in place of means over 50 um."""
     drop = _largest_fall_cN(force_cN)
     return _largest_fall_cN(fitted_cN) / drop if drop >= LEAST_DROP_cN else None
@@ -33,13 +33,13 @@ def sampled_ratio(force_cN: FloatArray, fitted_cN: FloatArray) -> float | None:
 
 def is_felt(x_mm: FloatArray, force_cN: FloatArray, fitted_cN: FloatArray) -> bool:
     """Return whether a fit keeps 95 % of the bump that a finger feels, or there is none."""
-    ratio = felt_ratio(x_mm, force_cN, fitted_cN)
+    ratio = drop_ratio(x_mm, force_cN, fitted_cN)
     return ratio is None or ratio >= BUMP_KEPT_ratio
 
 
 def is_kept(x_mm: FloatArray, force_cN: FloatArray, fitted_cN: FloatArray) -> bool:
     """Return whether a fit keeps 95 % of the bump by both measures, or there is none."""
-    ratio = sampled_ratio(force_cN, fitted_cN)
+    ratio = median_drop_ratio(force_cN, fitted_cN)
     return is_felt(x_mm, force_cN, fitted_cN) and (ratio is None or ratio >= BUMP_KEPT_ratio)
 
 

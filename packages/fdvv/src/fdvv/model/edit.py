@@ -61,7 +61,7 @@ def splice(
     """
     _check(base, insert, segment_mm, blend_mm)
     k = max(base.degree, insert.degree, BRIDGE_DEGREE)
-    outer, inner = _elevated(base, k), _elevated(insert, k)
+    outer, inner = _elevate(base, k), _elevate(insert, k)
     a, b = (_onto_knot(outer.t, _onto_knot(inner.t, x)) for x in segment_mm)
     middle = _cut(inner, k, a, b)
     pieces = [middle]
@@ -73,7 +73,7 @@ def splice(
         right = _cut(outer, k, _onto_knot(outer.t, min(base.end_mm, b + blend_mm)), base.end_mm)
         after = right.start(k) if right.c.size else outer.end(k)
         pieces = [*pieces, _bridge(middle.end(k), after, k), *([right] if right.c.size else [])]
-    t, c = _joined_pieces(pieces, k)
+    t, c = _concatenate_pieces(pieces, k)
     return ForceCurve(base.stroke, base.velocity_mm_s, k, t, c)
 
 
@@ -94,7 +94,7 @@ def _onto_knot(t: FloatArray, x: float) -> float:
     return nearest if abs(nearest - x) <= NEAR_mm else x
 
 
-def _elevated(curve: ForceCurve, k: int) -> _Piece:
+def _elevate(curve: ForceCurve, k: int) -> _Piece:
     """Write a curve in a higher degree: every knot gains a repeat, and the larger space holds the curve."""
     t, c = curve.knots_mm, curve.control_points_cN
     for degree in range(curve.degree, k):
@@ -128,12 +128,12 @@ def _cut(piece: _Piece, k: int, a: float, b: float) -> _Piece:
 def _bridge(start: tuple[float, float, float], end: tuple[float, float, float], k: int) -> _Piece:
     """Return one Bézier piece of degree k with the given position, value and slope at either end."""
     (a, y0, m0), (b, y1, m1) = start, end
-    second, last_but_one = y0 + (b - a) * m0 / k, y1 - (b - a) * m1 / k
-    c = np.concatenate([[y0], np.linspace(second, last_but_one, k - 1), [y1]])
+    second, penultimate = y0 + (b - a) * m0 / k, y1 - (b - a) * m1 / k
+    c = np.concatenate([[y0], np.linspace(second, penultimate, k - 1), [y1]])
     return _Piece(np.repeat([a, b], k + 1), c)
 
 
-def _joined_pieces(pieces: list[_Piece], k: int) -> tuple[FloatArray, FloatArray]:
+def _concatenate_pieces(pieces: list[_Piece], k: int) -> tuple[FloatArray, FloatArray]:
     """Join pieces of equal value and slope; a control point at a joint follows from its neighbours."""
     t, c = pieces[0]
     for piece in pieces[1:]:
@@ -186,22 +186,22 @@ def merge(
     curves = [(_label(p), c) for p in parts for c in (p.curves if isinstance(p, FDVVModel) else (p,))]
     vibrations = [(_label(m), v) for m in models for v in m.vibrations]
     stated_mm = [(_label(m), m.travel_mm) for m in models] or [(who, c.end_mm) for who, c in curves]
-    travel_mm = _decided("travel_mm", travel_mm, stated_mm)
+    travel_mm = _agree_on("travel_mm", travel_mm, stated_mm)
     if travel_mm is None or not curves:
         raise ModelError("a merge needs at least one curve or model, got none")
-    actuation = _decided("actuation_mm", actuation_mm, [(_label(m), m.actuation_mm) for m in models])
-    reset = _decided("reset_mm", reset_mm, [(_label(m), m.reset_mm) for m in models])
+    actuation = _agree_on("actuation_mm", actuation_mm, [(_label(m), m.actuation_mm) for m in models])
+    reset = _agree_on("reset_mm", reset_mm, [(_label(m), m.reset_mm) for m in models])
     wanted = None if interpolation is None else Interpolation(interpolation)
-    method = _decided("interpolation", wanted, [(_label(m), m.interpolation) for m in models])
+    method = _agree_on("interpolation", wanted, [(_label(m), m.interpolation) for m in models])
     return FDVVModel(
         name=name,
         travel_mm=travel_mm,
-        curves=_settled("curve", curves, Conflict(conflict)),
+        curves=_resolve_conflicts("curve", curves, Conflict(conflict)),
         actuation_mm=actuation,
         reset_mm=reset,
-        vibrations=_settled("vibration", vibrations, Conflict(conflict)),
+        vibrations=_resolve_conflicts("vibration", vibrations, Conflict(conflict)),
         interpolation=method or Interpolation.PCHIP,
-        provenance=_joined([m.provenance for m in models], "merged from " + ", ".join(map(_label, parts))),
+        provenance=_merge([m.provenance for m in models], "merged from " + ", ".join(map(_label, parts))),
         travel_spread=_common_spread(travel_mm, [(m.travel_mm, m.travel_spread) for m in models]),
         actuation_spread=_common_spread(actuation, [(m.actuation_mm, m.actuation_spread) for m in models]),
         reset_spread=_common_spread(reset, [(m.reset_mm, m.reset_spread) for m in models]),
@@ -236,10 +236,10 @@ def assign(
     placed = replace(curve, stroke=stroke, velocity_mm_s=velocity_mm_s, spread=spread)
     span = ""
     if segment_mm is not None:
-        placed = splice(_found(model, stroke, velocity_mm_s), curve, segment_mm, blend_mm)
+        placed = splice(_find_curve(model, stroke, velocity_mm_s), curve, segment_mm, blend_mm)
         span = f" from {segment_mm[0]:g} to {segment_mm[1]:g} mm"
     others = tuple(c for c in model.curves if not _at(c, stroke, velocity_mm_s))
-    return _noted(model, (*others, placed), f"{_label(placed)}{span} assigned from {_label(curve)}")
+    return _with_note(model, (*others, placed), f"{_label(placed)}{span} assigned from {_label(curve)}")
 
 
 def copy_curve(
@@ -253,22 +253,22 @@ def copy_curve(
 
     Raises ModelError if there is no such curve, and as FDVVModel does.
     """
-    return assign(model, _found(model, stroke, velocity_mm_s), to_stroke, to_velocity_mm_s)
+    return assign(model, _find_curve(model, stroke, velocity_mm_s), to_stroke, to_velocity_mm_s)
 
 
 def remove_curve(model: FDVVModel, stroke: Stroke | str, velocity_mm_s: float | None) -> FDVVModel:
     """Remove a curve of a model; vibrations stay. Raises ModelError if it is not there or the last one."""
-    gone = _found(model, stroke, velocity_mm_s)
+    gone = _find_curve(model, stroke, velocity_mm_s)
     if len(model.curves) == 1:
         raise ModelError(f"the {_label(gone)} is the only curve of {model.name!r}; a model needs one")
-    return _noted(model, tuple(c for c in model.curves if c is not gone), f"{_label(gone)} removed")
+    return _with_note(model, tuple(c for c in model.curves if c is not gone), f"{_label(gone)} removed")
 
 
 def _at(part: ForceCurve | Vibration, stroke: Stroke | str, velocity_mm_s: float | None) -> bool:
     return part.stroke is Stroke(stroke) and part.velocity_mm_s == velocity_mm_s
 
 
-def _found(model: FDVVModel, stroke: Stroke | str, velocity_mm_s: float | None) -> ForceCurve:
+def _find_curve(model: FDVVModel, stroke: Stroke | str, velocity_mm_s: float | None) -> ForceCurve:
     for curve in model.of(stroke):
         if _at(curve, stroke, velocity_mm_s):
             return curve
@@ -288,11 +288,11 @@ def _common_spread(
     point_mm: float | None, stated: Sequence[tuple[float | None, PointSpread | None]]
 ) -> PointSpread | None:
     """Return the spread of a point from the models with that very value; None if their spreads differ."""
-    found = {spread for place_mm, spread in stated if spread is not None and place_mm == point_mm}
-    return found.pop() if len(found) == 1 else None
+    spreads = {spread for place_mm, spread in stated if spread is not None and place_mm == point_mm}
+    return spreads.pop() if len(spreads) == 1 else None
 
 
-def _decided(what: str, given: _Value | None, stated: Sequence[tuple[str, _Value | None]]) -> _Value | None:
+def _agree_on(what: str, given: _Value | None, stated: Sequence[tuple[str, _Value | None]]) -> _Value | None:
     """Return the value given, else the one on which all models that state it agree."""
     if given is not None:
         return given
@@ -304,7 +304,7 @@ def _decided(what: str, given: _Value | None, stated: Sequence[tuple[str, _Value
     return known[0][1] if known else None
 
 
-def _settled(what: str, parts: Sequence[tuple[str, _Part]], rule: Conflict) -> tuple[_Part, ...]:
+def _resolve_conflicts(what: str, parts: Sequence[tuple[str, _Part]], rule: Conflict) -> tuple[_Part, ...]:
     """Keep one part for each stroke and velocity, as the rule says."""
     chosen: dict[tuple[Stroke, float | None], tuple[str, _Part]] = {}
     for who, part in parts:
@@ -323,7 +323,7 @@ def _settled(what: str, parts: Sequence[tuple[str, _Part]], rule: Conflict) -> t
     return tuple(part for _, part in chosen.values())
 
 
-def _joined(provenances: Sequence[Provenance], note: str) -> Provenance:
+def _merge(provenances: Sequence[Provenance], note: str) -> Provenance:
     def once(statements: Iterable[str]) -> tuple[str, ...]:
         return tuple(dict.fromkeys(s for s in statements if s))
 
@@ -337,5 +337,5 @@ def _joined(provenances: Sequence[Provenance], note: str) -> Provenance:
     )
 
 
-def _noted(model: FDVVModel, curves: tuple[ForceCurve, ...], note: str) -> FDVVModel:
-    return replace(model, curves=curves, provenance=_joined([model.provenance], note))
+def _with_note(model: FDVVModel, curves: tuple[ForceCurve, ...], note: str) -> FDVVModel:
+    return replace(model, curves=curves, provenance=_merge([model.provenance], note))

@@ -14,7 +14,7 @@ import numpy as np
 from fdvv.errors import FitError
 from fdvv.model import bspline
 from fdvv.model.bump import find_bottom_out_mm, find_contact_mm
-from fdvv.model.bump_kept import felt_ratio, is_felt, is_kept, sampled_ratio
+from fdvv.model.bump_kept import drop_ratio, is_felt, is_kept, median_drop_ratio
 from fdvv.model.curve import ForceCurve, MeasuredCurve
 from fdvv.model.fit_holds import hold_bump, hold_floor
 from fdvv.model.knot_search import LARGEST, KnotPath, Spline, free_knots, knot_path, refine
@@ -105,7 +105,7 @@ def smooth(x_mm: FloatArray, force_cN: FloatArray, sigma_mm: float) -> FloatArra
     return np.interp(x_mm, grid, smoothed)
 
 
-def _splined(x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size: int) -> Spline:
+def _fit_spline(x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size: int) -> Spline:
     most = min(LARGEST, x.size)
     if not degree < size <= most:
         takes = f"takes {degree + 1} to {most} control points, got {size}"
@@ -116,17 +116,17 @@ def _splined(x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size:
     return t, bspline.least_squares(t, degree, x, y)
 
 
-def _held(x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size: int) -> Spline:
+def _fit_with_holds(x: FloatArray, y: FloatArray, method: FitMethod, degree: int, size: int) -> Spline:
     """Fit a number of control points; free knots keep the bump, and no force lies below the measured ones."""
 
     def search(x: FloatArray, y: FloatArray, weight: FloatArray) -> Spline:
         return free_knots(x, y, degree, size, weight)
 
-    found = _splined(x, y, method, degree, size)
+    spline = _fit_spline(x, y, method, degree, size)
     if method is FitMethod.ADAPTIVE:
-        found = hold_bump(x, y, degree, found, search, is_felt)
-        return hold_floor(x, y, degree, found, search)
-    return hold_floor(x, y, degree, found, lambda *_: found)
+        spline = hold_bump(x, y, degree, spline, search, is_felt)
+        return hold_floor(x, y, degree, spline, search)
+    return hold_floor(x, y, degree, spline, lambda *_: spline)
 
 
 def _auto(x: FloatArray, y: FloatArray, degree: int, penalty: float) -> Spline:
@@ -136,7 +136,7 @@ def _auto(x: FloatArray, y: FloatArray, degree: int, penalty: float) -> Spline:
     """
     if x.size < AUTO_SAMPLES:
         raise FitError(f"auto takes {AUTO_SAMPLES} distinct displacements, got {x.size}: ask for a number")
-    papers = _held(x, y, FitMethod.ADAPTIVE, degree, PAPERS_CONTROL_POINTS)
+    papers = _fit_with_holds(x, y, FitMethod.ADAPTIVE, degree, PAPERS_CONTROL_POINTS)
     bound = _score(x, y, degree, papers, penalty)
     path = knot_path(x, y, degree, (AUTO_LEAST, min(LARGEST, x.size)))
     tried = [papers]
@@ -144,12 +144,12 @@ def _auto(x: FloatArray, y: FloatArray, degree: int, penalty: float) -> Spline:
         # control points first, weight on the bump only where they do not help
         for hold in (False, True):
             for size in range(start, max(path) + 1, AUTO_STEP):
-                found = _from_knots(x, y, degree, path[size][1], hold)
-                if _score(x, y, degree, found, penalty) > bound:
+                fit = _from_knots(x, y, degree, path[size][1], hold)
+                if _score(x, y, degree, fit, penalty) > bound:
                     break
-                if is_kept(x, y, bspline.evaluate(*found, degree, x)):
-                    return found
-                tried.append(found)
+                if is_kept(x, y, bspline.evaluate(*fit, degree, x)):
+                    return fit
+                tried.append(fit)
     return min(tried, key=lambda spline: _score(x, y, degree, spline, penalty))
 
 
@@ -169,10 +169,10 @@ def _from_knots(x: FloatArray, y: FloatArray, degree: int, knots: FloatArray, ho
     def search(x: FloatArray, y: FloatArray, weight: FloatArray) -> Spline:
         return refine(x, y, degree, knots, AUTO_EXCHANGES, weight)
 
-    found = search(x, y, np.ones_like(x))
+    spline = search(x, y, np.ones_like(x))
     if hold:
-        found = hold_bump(x, y, degree, found, search, is_kept)
-    return hold_floor(x, y, degree, found, search)
+        spline = hold_bump(x, y, degree, spline, search, is_kept)
+    return hold_floor(x, y, degree, spline, search)
 
 
 def _score(x: FloatArray, y: FloatArray, degree: int, spline: Spline, penalty: float) -> float:
@@ -205,7 +205,7 @@ def scan_sizes(
     for size in sizes:
         if not chosen < size <= min(LARGEST, x.size):
             continue
-        scores[size] = _score(x, y, chosen, _splined(x, y, method, chosen, size), penalty)
+        scores[size] = _score(x, y, chosen, _fit_spline(x, y, method, chosen, size), penalty)
     return scores
 
 
@@ -246,7 +246,7 @@ def fit_curve(
     if not (math.isfinite(smoothing_mm) and smoothing_mm >= 0):
         raise FitError(f"smoothing_mm must be 0 or more, got {smoothing_mm}")
     y = smooth(x, raw, smoothing_mm) if smoothing_mm else raw
-    x, y = _grouped(x, y)
+    x, y = _average_groups(x, y)
     if control_points is None and method is FitMethod.ADAPTIVE:
         t, c = _auto(x, y, chosen, penalty)
     else:
@@ -254,14 +254,14 @@ def fit_curve(
             smoothed = MeasuredCurve(x, y, measured.stroke, measured.velocity_mm_s)
             by_size = scan_sizes(smoothed, method, degree=chosen, penalty=penalty)
             control_points = min(by_size, key=by_size.__getitem__, default=0)
-        t, c = _held(x, y, method, chosen, control_points)
+        t, c = _fit_with_holds(x, y, method, chosen, control_points)
     curve = ForceCurve(measured.stroke, measured.velocity_mm_s, chosen, t, c)
     scores = _scores(curve, measured, penalty)
     time_s = time.perf_counter() - started
     return CurveFit(curve, method, **scores, samples=x.size, smoothing_mm=smoothing_mm, time_s=time_s)
 
 
-def _grouped(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _average_groups(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Average groups of successive samples, both ends kept, so that at most MOST_SAMPLES remain."""
     if x.size <= MOST_SAMPLES:
         return x, y
@@ -285,7 +285,7 @@ def _scores(curve: ForceCurve, measured: MeasuredCurve, penalty: float) -> dict[
         "rmse_cN": math.sqrt(squared / x.size),
         "max_cN": float(np.abs(error).max()),
         "rows_rmse_cN": float(np.sqrt(np.mean(rows**2))),
-        "bump_kept_ratio": felt_ratio(x, raw, fitted),
-        "bump_kept_samples_ratio": sampled_ratio(raw, fitted),
+        "bump_kept_ratio": drop_ratio(x, raw, fitted),
+        "bump_kept_samples_ratio": median_drop_ratio(raw, fitted),
         "bic_star": bic_star(x.size, curve.control_points_cN.size, squared, penalty),
     }

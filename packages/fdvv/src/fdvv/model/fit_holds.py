@@ -32,7 +32,7 @@ DEAR_ratio = 1.02  # assumed: a smaller rise of the RMSE is not worth a second s
 BETWEEN, BETWEEN_weight = 3, 0.2  # assumed: quarters of a gap, which weigh less than a sample: 0.6
 
 
-def hold_bump(x: FloatArray, y: FloatArray, degree: int, found: Spline, search: Search, kept: Kept) -> Spline:
+def hold_bump(x: FloatArray, y: FloatArray, degree: int, fit: Spline, search: Search, kept: Kept) -> Spline:
     """Repeat a fit that lost more than 5 % of its bump, each time with more weight on peak and valley.
 
     Least squares cares for the sum of errors, a finger for the snap. Returns the first fit that keeps the
@@ -40,9 +40,9 @@ def hold_bump(x: FloatArray, y: FloatArray, degree: int, found: Spline, search: 
     """
     bump = find_bump(x, y)
     if bump is None:
-        return found
+        return fit
     near = np.minimum(np.abs(x - bump.peak_mm), np.abs(x - bump.valley_mm)) < BUMP_REACH_mm
-    weight, trial, bound = np.ones_like(x), found, math.inf
+    weight, trial, bound = np.ones_like(x), fit, math.inf
     for _ in range(BUMP_ROUNDS):
         fitted = bspline.evaluate(*trial, degree, x)
         error = float(np.sum((fitted - y) ** 2))
@@ -53,22 +53,22 @@ def hold_bump(x: FloatArray, y: FloatArray, degree: int, found: Spline, search: 
             return trial
         weight[near] *= BUMP_WEIGHT
         trial = search(x, y, weight)
-    return found
+    return fit
 
 
-def hold_floor(x: FloatArray, y: FloatArray, degree: int, found: Spline, search: Search) -> Spline:
+def hold_floor(x: FloatArray, y: FloatArray, degree: int, fit: Spline, search: Search) -> Spline:
     """Bound a curve that dips below the least measured force: no control point lies below it then.
 
     A spline lies within the range of its control points. Where the bound costs more than 2 % of the error,
     knots are searched again with points on the chords of the samples at the dip, so that the search sees it.
     """
-    floor, at = _floor_cN(y), _lowest_mm(x, degree, found)
-    if float(bspline.evaluate(*found, degree, at)) >= floor:
-        return found
-    free = _error(x, y, degree, found)
-    bounded = _bounded(x, y, degree, found[0], floor)
+    floor, at = _floor_cN(y), _lowest_mm(x, degree, fit)
+    if float(bspline.evaluate(*fit, degree, at)) >= floor:
+        return fit
+    free = _error(x, y, degree, fit)
+    bounded = _fit_above(x, y, degree, fit[0], floor)
     if _error(x, y, degree, bounded) > DEAR_ratio**2 * free:
-        again = _bounded(x, y, degree, search(*_with_chords(x, y, at))[0], floor)
+        again = _fit_above(x, y, degree, search(*_with_chords(x, y, at))[0], floor)
         bounded = min(bounded, again, key=lambda spline: _error(x, y, degree, spline))
     return bounded
 
@@ -90,7 +90,7 @@ def _error(x: FloatArray, y: FloatArray, degree: int, spline: Spline) -> float:
     return float(np.sum((bspline.evaluate(*spline, degree, x) - y) ** 2))
 
 
-def _bounded(x: FloatArray, y: FloatArray, degree: int, t: FloatArray, floor: float) -> Spline:
+def _fit_above(x: FloatArray, y: FloatArray, degree: int, t: FloatArray, floor: float) -> Spline:
     """Find the least squares of given knots with no coefficient below the floor."""
     from scipy.optimize import nnls
 

@@ -92,7 +92,7 @@ class JndRecord(msgspec.Struct, forbid_unknown_fields=True):
     @property
     def origin(self) -> str:
         """Whose JNDs they are, and of what unless it is everything that a study can measure."""
-        there = [one for one in DIMENSIONS if self.of(one)]
+        there = [dimension for dimension in DIMENSIONS if self.of(dimension)]
         of = "" if len(there) == len(DIMENSIONS) else f"of {' and '.join(there)} "
         return f"JNDs {of}of {self.whose}"
 
@@ -103,10 +103,10 @@ class JndRecord(msgspec.Struct, forbid_unknown_fields=True):
     def doubts(self) -> list[str]:
         """Say why these JNDs should not be relied on, a line each; empty if nothing speaks against them."""
         wide = [
-            f"{one.dimension} of {one.button}: the interval is wider than a factor of {WIDE_factor:g} either "
+            f"{jnd.dimension} of {jnd.button}: the interval is wider than a factor of {WIDE_factor:g} either "
             "way; measure more people"
-            for one in self.jnds
-            if one.low is None or one.high is None or one.high > WIDE_factor**2 * one.low
+            for jnd in self.jnds
+            if jnd.low is None or jnd.high is None or jnd.high > WIDE_factor**2 * jnd.low
         ]
         proxy = ["simulated participants are a proxy, no evidence of what people notice"]
         return [*(proxy if self.simulated else ()), *wide]
@@ -125,9 +125,9 @@ def load_jnds(path: Path) -> Jnds:
             raise InputError(path, "project", reason, remedy)
         path = path / FILE_NAME
     record = read_record(path, KIND, JndRecord, LARGEST_bytes)
-    for place, one in enumerate(record.jnds):
-        if (one.dimension == "vibration") != (one.above is not None):
-            reason = f"a JND of {one.dimension} must {'have' if one.above is None else 'not have'} it"
+    for place, jnd in enumerate(record.jnds):
+        if (jnd.dimension == "vibration") != (jnd.above is not None):
+            reason = f"a JND of {jnd.dimension} must {'have' if jnd.above is None else 'not have'} it"
             raise InputError(path, f"$.jnds[{place}].above", reason, REMEDY)
     return jnds_of(record)
 
@@ -145,11 +145,11 @@ def jnds_of(record: JndRecord) -> Jnds:
     at another share than three of four is carried over by d' in proportion to the change. Of several
     references the geometric mean counts.
     """
-    found = replace(LITERATURE, origin=record.origin)
-    for one in DIMENSIONS:
-        if measured := record.of(one):
-            found = _scaled(found, one, geometric_mean(_scale(jnd, record.share_correct) for jnd in measured))
-    return replace(found, sources=tuple(_source(one, found, record) for one in LITERATURE.sources))
+    jnds = replace(LITERATURE, origin=record.origin)
+    for kind in DIMENSIONS:
+        if measured := record.of(kind):
+            jnds = _rescale(jnds, kind, geometric_mean(_scale(jnd, record.share_correct) for jnd in measured))
+    return replace(jnds, sources=tuple(_source(dimension, jnds, record) for dimension in LITERATURE.sources))
 
 
 def _scale(jnd: MeasuredJnd, share: float) -> float:
@@ -162,7 +162,7 @@ def _scale(jnd: MeasuredJnd, share: float) -> float:
     return at_share * jnd.ratio * jnd.standard / float(expected_cN)
 
 
-def _scaled(jnds: Jnds, dimension: Dimension, scale: float) -> Jnds:
+def _rescale(jnds: Jnds, dimension: Dimension, scale: float) -> Jnds:
     if dimension == "force":
         return replace(jnds, force_ratio=scale * jnds.force_ratio)
     if dimension == "snap":
@@ -179,7 +179,7 @@ def _source(literature: JndSource, jnds: Jnds, record: JndRecord) -> JndSource:
     dimension = SOURCE_OF.get(literature.of)
     if dimension is None or not record.of(dimension):
         return literature
-    measured = "; ".join(map(_measured_text, record.of(dimension)))
+    measured = "; ".join(map(_describe, record.of(dimension)))
     source = f"{record.whose}, {100 * record.share_correct:.3g} % right at {measured}"
     value, assumed = _value_and_assumed(dimension, jnds)
     return JndSource(literature.of, value, source, assumed)
@@ -203,7 +203,7 @@ def _value_and_assumed(dimension: Dimension, jnds: Jnds) -> tuple[str, str]:
     }[dimension]
 
 
-def _measured_text(jnd: MeasuredJnd) -> str:
+def _describe(jnd: MeasuredJnd) -> str:
     between = (
         "" if jnd.low is None or jnd.high is None else f" ({100 * jnd.low:.1f} to {100 * jnd.high:.1f} %)"
     )

@@ -174,7 +174,7 @@ def landmark_errors(model: FDVVModel, velocity_mm_s: float | None = None) -> dic
     marks = landmarks(model, velocity_mm_s)
     press, release = (model.nearest(stroke, velocity_mm_s) for stroke in Stroke)
     back = _bump(release, marks.bottom_out_mm)
-    found = {
+    errors = {
         "peak_cN": _force(press, marks.peak_mm),
         "valley_cN": _force(press, marks.valley_mm),
         "bottom_out_cN": _force(press, marks.bottom_out_mm),
@@ -186,7 +186,7 @@ def landmark_errors(model: FDVVModel, velocity_mm_s: float | None = None) -> dic
         "bottom_out_mm": _place(model.travel_spread),
         "travel_mm": _place(model.travel_spread),
     }
-    return {name: error for name, error in found.items() if error is not None}
+    return {name: error for name, error in errors.items() if error is not None}
 
 
 def _bump(curve: ForceCurve | None, end_mm: float) -> Bump | None:

@@ -151,8 +151,8 @@ class FDVVModel:
 
     def vibration(self, stroke: Stroke | str, velocity_mm_s: float) -> Vibration | None:
         """Return the vibration of the stroke nearest in velocity; None if it has none."""
-        found = [v for v in self.vibrations if v.stroke is Stroke(stroke)]
-        return min(found, key=lambda v: abs((v.velocity_mm_s or 0.0) - velocity_mm_s), default=None)
+        candidates = [v for v in self.vibrations if v.stroke is Stroke(stroke)]
+        return min(candidates, key=lambda v: abs((v.velocity_mm_s or 0.0) - velocity_mm_s), default=None)
 
     def renamed(self, name: str) -> FDVVModel:
         return replace(self, name=name)

@@ -96,24 +96,24 @@ class Jnds:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the figures and whose they are, without the sources."""
-        found = asdict(self)
-        del found["sources"]
-        return found
+        record = asdict(self)
+        del record["sources"]
+        return record
 
 
-def _literature(found: Jnds) -> tuple[JndSource, ...]:
+def _literature(jnds: Jnds) -> tuple[JndSource, ...]:
     """Return where the defaults come from."""
     return (
         JndSource(
             "force",
-            f"{100 * found.force_ratio:.0f} % of (force + {found.force_floor_cN:g} cN)",
+            f"{100 * jnds.force_ratio:.0f} % of (force + {jnds.force_floor_cN:g} cN)",
             "Pang, Tan and Durlach 1991: 7 % at 2.5 to 10 N and 25 to 160 mm/s, two plates squeezed",
             "the 30 cN, so that the ratio grows to 10 to 14 % at 30 to 80 cN, where 10 to 15 % are quoted; "
             "that it holds at every place of a stroke. 5.6 cN at 50 cN is half of the sudden change below",
         ),
         JndSource(
             "snap",
-            f"{found.snap_cN:g} cN of a sudden fall of force",
+            f"{jnds.snap_cN:g} cN of a sudden fall of force",
             "Doerrer and Werthschützky 2002, on push-buttons: a sudden change in the middle of the stroke "
             "was noticed above 10 cN, at 50 to 250 cN",
             "that two falls are discriminated by as much as one is noticed",
@@ -128,7 +128,7 @@ def _literature(found: Jnds) -> tuple[JndSource, ...]:
         ),
         JndSource(
             "vibration, strength",
-            f"{100 * found.vibration_ratio:.0f} % of an amplitude well above the faintest, more near it",
+            f"{100 * jnds.vibration_ratio:.0f} % of an amplitude well above the faintest, more near it",
             "Forta, Griffin and Morioka 2012, on the thumb's base and the forearm: 20 % (125 Hz, 10 dB above "
             "threshold) to 58 % (10 Hz, 20 dB); Hatzfeld and Werthschützky 2012: 20 dB on average near "
             "threshold",
@@ -136,20 +136,20 @@ def _literature(found: Jnds) -> tuple[JndSource, ...]:
         ),
         JndSource(
             "vibration, frequency",
-            f"{100 * found.frequency_ratio:.0f} %",
+            f"{100 * jnds.frequency_ratio:.0f} %",
             "",
             "no source was read; 18 to 20 % are quoted",
         ),
         JndSource(
             "vibration, onset",
-            f"{found.onset_ms:g} ms",
+            f"{jnds.onset_ms:g} ms",
             "Hachisu and Kajimoto 2017: a vibration that followed the tap of a rod later than that was "
             "noticed",
             "that it holds for a button's snap, and for one that comes early",
         ),
         JndSource(
             "place along the travel",
-            f"{found.place_mm:g} mm",
+            f"{jnds.place_mm:g} mm",
             "",
             "no source was read; only distances between buttons use it",
         ),

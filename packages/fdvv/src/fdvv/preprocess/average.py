@@ -126,7 +126,7 @@ def _apart(grid: FloatArray, x: FloatArray, left_cN: FloatArray) -> FloatArray:
     return np.interp(grid, x[order], left_cN[order], left=np.nan, right=np.nan)
 
 
-def averaged(
+def average_curve(
     tracks: Sequence[StrokeTrack], pooled: Pooled, velocity_mm_s: float | None, achieved_mm_s: FloatArray
 ) -> AveragedCurve:
     """Return the curve and its spread; the spread at a position is that of the presses seen there."""

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fdvv.errors import ModelError
-from fdvv.preprocess.edges import Edges, match, seen_edges
+from fdvv.preprocess.edges import Edges, find_edges, match
 from fdvv.units import FloatArray
 
 PPM_LARGEST = 2e4
@@ -59,7 +59,7 @@ def align_clocks(
 
     Raises ModelError where no pattern of edges is common to both.
     """
-    seen = seen_edges(frame_s, light, exposure_s)
+    seen = find_edges(frame_s, light, exposure_s)
     pairs = match(board, seen, PPM_LARGEST * 1e-6)
     if not len(pairs):
         raise ModelError(
@@ -91,10 +91,10 @@ def _least(costs: Any, sides: Any, limits: FloatArray, bounds: Sequence[Any]) ->
     """Solve a linear program. Raises ModelError where nothing fits."""
     from scipy.optimize import linprog
 
-    found: Any = linprog(costs, sides, limits, bounds=bounds, method="highs")
-    if not found.success:
-        raise ModelError(f"the two clocks cannot be joined by a line: {found.message}")
-    return np.asarray(found.x)
+    result: Any = linprog(costs, sides, limits, bounds=bounds, method="highs")
+    if not result.success:
+        raise ModelError(f"the two clocks cannot be joined by a line: {result.message}")
+    return np.asarray(result.x)
 
 
 def _polygon(edge_s: FloatArray, low_s: FloatArray, high_s: FloatArray, refused: int) -> ClockFit:

@@ -63,7 +63,7 @@ class SeenEdges:
         return 0.5 * (self.low_s + self.high_s)
 
 
-def seen_edges(frame_s: FloatArray, light: FloatArray, exposure_s: float) -> SeenEdges:
+def find_edges(frame_s: FloatArray, light: FloatArray, exposure_s: float) -> SeenEdges:
     """Find edges in the brightness of frames.
 
     Between a dark and a lit frame the edge lies after the first exposure ends and before the second begins. A
@@ -71,9 +71,9 @@ def seen_edges(frame_s: FloatArray, light: FloatArray, exposure_s: float) -> See
     widen the bounds.
     """
     seen = np.isfinite(light)
-    times, (part, doubt) = frame_s[seen], _scaled(light[seen])
+    times, (part, doubt) = frame_s[seen], _normalize(light[seen])
     lit, dark = part > 1 - doubt, part < doubt
-    found: list[tuple[float, float, bool]] = []
+    edges: list[tuple[float, float, bool]] = []
     state = bool(part[0] > 0.5) if part.size else False
     last = 0
     for i in range(1, times.size):
@@ -81,13 +81,13 @@ def seen_edges(frame_s: FloatArray, light: FloatArray, exposure_s: float) -> See
             last = i
         elif (dark if state else lit)[i]:
             on = not state
-            found.append((*_bounds(times, part, doubt, (last, i), on, exposure_s), on))
+            edges.append((*_bounds(times, part, doubt, (last, i), on, exposure_s), on))
             state, last = on, i
-    low, high, on_flags = (np.array([f[k] for f in found]) for k in range(3))
+    low, high, on_flags = (np.array([f[k] for f in edges]) for k in range(3))
     return SeenEdges(low.astype(np.float64), high.astype(np.float64), on_flags.astype(np.bool_))
 
 
-def _scaled(light: FloatArray) -> tuple[FloatArray, float]:
+def _normalize(light: FloatArray) -> tuple[FloatArray, float]:
     """Scale any brightness to 0 for dark and 1 for lit, with the tolerance of either state."""
     if not light.size or np.ptp(light) == 0:
         return np.zeros_like(light), LEAST_DOUBT
@@ -127,8 +127,8 @@ def match(board: Edges, seen: SeenEdges, rate_error: float) -> npt.NDArray[np.in
     for first in dict.fromkeys(int(part * (len(groups) - 1)) for part in (0.5, 0.25, 0.75, 0.0, 1.0)):
         later, earlier = groups[first:], groups[:first][::-1]
         for lead_s in _likely(board, seen, groups[first]):
-            found = [p for way in (later, earlier) for p in _follow(board, seen, way, lead_s, rate_error)]
-            best = max(best, found, key=len)
+            pairs = [p for way in (later, earlier) for p in _follow(board, seen, way, lead_s, rate_error)]
+            best = max(best, pairs, key=len)
             if len(best) >= enough:
                 return _again(board, seen, best)
     return _again(board, seen, best)
@@ -136,18 +136,18 @@ def match(board: Edges, seen: SeenEdges, rate_error: float) -> npt.NDArray[np.in
 
 def _again(board: Edges, seen: SeenEdges, pairs: Sequence[tuple[int, int]]) -> npt.NDArray[np.int64]:
     """Pair all edges once more, along the line through those already paired."""
-    found = np.array(sorted(pairs), dtype=np.int64).reshape(-1, 2)
-    if len(found) < LEAST_HITS:
-        return found
-    own, theirs = board.t_s[found[:, 0]], seen.t_s[found[:, 1]]
+    paired = np.array(sorted(pairs), dtype=np.int64).reshape(-1, 2)
+    if len(paired) < LEAST_HITS:
+        return paired
+    own, theirs = board.t_s[paired[:, 0]], seen.t_s[paired[:, 1]]
     middle = own.mean()
     rate = np.polyfit(own - middle, theirs, 1)
     at_s = np.asarray(np.polyval(rate, board.t_s - middle), dtype=np.float64)
-    near, hit = _seen_at(seen, at_s, board.on, CLOSE_s)
+    near, hit = _match_times(seen, at_s, board.on, CLOSE_s)
     return np.column_stack([np.flatnonzero(hit), near[hit]])
 
 
-def _seen_at(
+def _match_times(
     seen: SeenEdges, at_s: FloatArray, on: npt.NDArray[np.bool_], slack_s: float
 ) -> tuple[IntArray, npt.NDArray[np.bool_]]:
     """Return the seen edge nearest to each time, and whether it was then and of that direction."""
@@ -185,7 +185,7 @@ def _hits(
     board: Edges, seen: SeenEdges, group: IntArray, lead_s: float, slack_s: float = TOLERANCE_s
 ) -> tuple[IntArray, IntArray]:
     """Return which edges of a group were seen at a lead, and as which."""
-    near, hit = _seen_at(seen, board.t_s[group] + lead_s, board.on[group], slack_s)
+    near, hit = _match_times(seen, board.t_s[group] + lead_s, board.on[group], slack_s)
     return group[hit], near[hit]
 
 
@@ -208,15 +208,15 @@ def _follow(
         expected = lead_s + drift * (at - trail[-1][0]) if trail else lead_s
         leads = _leads(board, seen, group)
         leads = leads[np.abs(leads - expected) <= TOLERANCE_s + doubt * gap]
-        hits, found = _best_lead(board, seen, group, leads)
+        hits, best_s = _best_lead(board, seen, group, leads)
         if hits < min(LEAST_HITS, group.size):
             continue
-        own, theirs = _hits(board, seen, group, found, CLOSE_s)
+        own, theirs = _hits(board, seen, group, best_s, CLOSE_s)
         pairs += zip(own.tolist(), theirs.tolist(), strict=True)
-        lead_s = found
-        trail.append((at, found))
+        lead_s = best_s
+        trail.append((at, best_s))
         span = abs(at - trail[0][0])
         if span > 0:
-            drift = (found - trail[0][1]) / (at - trail[0][0])
+            drift = (best_s - trail[0][1]) / (at - trail[0][0])
             doubt = min(rate_error, 2 * TOLERANCE_s / span)
     return pairs

@@ -162,7 +162,7 @@ def fuse(strokes: Sequence[Seen], known: CurveOfForce, settings: Fusion) -> tupl
         before_N, shared_N = shared_N, _improve(work, basis, shared_N, known, settings)
         if float(np.abs(shared_N - before_N).max()) < SETTLED_N:
             break
-    return [_path(one) for one in work], _curve(basis, shared_N, known)
+    return [_path(stroke) for stroke in work], _curve(basis, shared_N, known)
 
 
 def _stroke(seen: Seen) -> _Stroke:
@@ -180,19 +180,19 @@ def _stroke(seen: Seen) -> _Stroke:
     )
 
 
-def _path(one: _Stroke) -> Path:
-    return Path(one.places @ one.path, one.speeds @ one.path, one.accelerations_m_s2 @ one.path)
+def _path(s: _Stroke) -> Path:
+    return Path(s.places @ s.path, s.speeds @ s.path, s.accelerations_m_s2 @ s.path)
 
 
-def _known_N(known: CurveOfForce, x_mm: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _prior_N(known: CurveOfForce, x_mm: FloatArray) -> tuple[FloatArray, FloatArray]:
     force_cN, stiffness_cN_mm = known(x_mm)
     return N_from_cN(force_cN), N_from_cN(stiffness_cN_mm)
 
 
 def _first(work: Sequence[_Stroke], basis: EvenBasis, known: CurveOfForce) -> FloatArray:
     """Fit the spline to the measured force, as if nothing had mass."""
-    x = np.concatenate([one.places @ one.path for one in work])
-    rest = np.concatenate([one.force_N for one in work]) - _known_N(known, x)[0]
+    x = np.concatenate([stroke.places @ stroke.path for stroke in work])
+    rest = np.concatenate([stroke.force_N for stroke in work]) - _prior_N(known, x)[0]
     smooth = 0.02 * np.sqrt(x.size / basis.size) * rough(basis.size)
     target = np.concatenate([rest, np.zeros(smooth.shape[0])])
     return np.asarray(np.linalg.lstsq(np.vstack([basis.rows(x), smooth]), target, rcond=None)[0])
@@ -207,20 +207,20 @@ def _improve(
     square = penalty.T @ penalty + np.eye(basis.size) / settings.unknown_N**2
     slope = penalty.T @ (penalty @ shared_N) + shared_N / settings.unknown_N**2
     solved = []
-    for one in work:
-        x = one.places @ one.path
+    for stroke in work:
+        x = stroke.places @ stroke.path
         rows, bends = basis.rows(x), basis.rows(x, 1)
-        known_N, known_N_mm = _known_N(known, x)
+        known_N, known_N_mm = _prior_N(known, x)
         button_N, button_N_mm = known_N + rows @ shared_N, known_N_mm + bends @ shared_N
-        moved_N = moving_kg * (one.accelerations_m_s2 @ one.path)
+        moved_N = moving_kg * (stroke.accelerations_m_s2 @ stroke.path)
         # a cap at its upper stop obeys the stop, which no curve shows
         weight_1_N = sure_1_N * np.where(x < settings.seat_mm, SEATED, 1.0)
-        equation = weight_1_N * (moved_N - one.force_N + button_N)
-        off = (one.frames @ one.path - one.frame_mm) / settings.frame_noise_mm
+        equation = weight_1_N * (moved_N - stroke.force_N + button_N)
+        off = (stroke.frames @ stroke.path - stroke.frame_mm) / settings.frame_noise_mm
         miss = np.concatenate([equation, off])
-        by_place = moving_kg * one.accelerations_m_s2 + button_N_mm[:, None] * one.places
-        by_path = np.vstack([weight_1_N[:, None] * by_place, one.frames / settings.frame_noise_mm])
-        by_shared = np.vstack([weight_1_N[:, None] * rows, np.zeros((one.frame_mm.size, basis.size))])
+        by_place = moving_kg * stroke.accelerations_m_s2 + button_N_mm[:, None] * stroke.places
+        by_path = np.vstack([weight_1_N[:, None] * by_place, stroke.frames / settings.frame_noise_mm])
+        by_shared = np.vstack([weight_1_N[:, None] * rows, np.zeros((stroke.frame_mm.size, basis.size))])
         # a trace of the identity keeps this solvable where neither frame nor equation holds a spline
         normal = by_path.T @ by_path + 1e-7 * np.eye(by_path.shape[1])
         answer = np.linalg.solve(normal, by_path.T @ np.column_stack([by_shared, miss]))
@@ -229,18 +229,18 @@ def _improve(
         slope += left.T @ (miss - by_path @ answer[:, -1])
         solved.append(answer)
     change_N = -np.linalg.solve(square, slope)
-    for one, answer in zip(work, solved, strict=True):
-        one.path = one.path - answer[:, -1] - answer[:, :-1] @ change_N
+    for stroke, answer in zip(work, solved, strict=True):
+        stroke.path = stroke.path - answer[:, -1] - answer[:, :-1] @ change_N
     return np.asarray(shared_N + change_N)
 
 
 def _curve(basis: EvenBasis, shared_N: FloatArray, known: CurveOfForce) -> CurveOfForce:
     """Tabulate the button's force without extrapolating a slope."""
     x = np.linspace(basis.start, basis.start + basis.step * basis.pieces, TABLE)
-    return table_curve(x, cN_from_N(_known_N(known, x)[0] + basis.rows(x) @ shared_N))
+    return table_curve(x, cN_from_N(_prior_N(known, x)[0] + basis.rows(x) @ shared_N))
 
 
-def unknown_curve(x_mm: FloatArray) -> tuple[FloatArray, FloatArray]:
+def zero_curve(x_mm: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return zero force and stiffness, the start where nothing is known of the button."""
     return np.zeros_like(x_mm), np.zeros_like(x_mm)
 

@@ -89,12 +89,12 @@ def paper_average(
 
     Raises ModelError if no press is left.
     """
-    used = [one for one in judged if one.reason is None and one.press.velocity_mm_s == velocity_mm_s]
+    used = [entry for entry in judged if entry.reason is None and entry.press.velocity_mm_s == velocity_mm_s]
     if not used:
         raise ModelError("no press is left to average")
-    speeds = np.array([one.achieved_mm_s for one in used])
+    speeds = np.array([entry.achieved_mm_s for entry in used])
     speed_mm_s = float(np.median(speeds))
-    strokes = [_stroke(one, stroke, recipe.streams, zero_mm) for one in used]
+    strokes = [_cut(entry, stroke, recipe.streams, zero_mm) for entry in used]
     end_mm = min(float(x_mm.max()) for x_mm, _ in strokes)
     grid: FloatArray = GRID_mm * np.arange(math.floor(end_mm / GRID_mm) + 1.0)
     forces_cN = np.array([register(x_mm, force_cN, grid) for x_mm, force_cN in strokes])
@@ -108,14 +108,14 @@ def paper_average(
         speed_mm_s,
         float(np.std(speeds, ddof=1)) if several else 0.0,
         grid,
-        filtered(forces_cN.mean(axis=0), curve_mm / GRID_mm),
+        gaussian_smooth(forces_cN.mean(axis=0), curve_mm / GRID_mm),
         np.std(forces_cN, axis=0, ddof=1) if several else np.zeros(grid.size),
         len(used),
         EVEN_WIDTH * math.hypot(stream_mm, curve_mm),
     )
 
 
-def filtered(values: FloatArray, sigma: float) -> FloatArray:
+def gaussian_smooth(values: FloatArray, sigma: float) -> FloatArray:
     """Apply a Gaussian of sigma samples along even samples, (n,); the ends are mirrored."""
     from scipy.ndimage import gaussian_filter1d
 
@@ -132,13 +132,13 @@ def register(x_mm: FloatArray, force_cN: FloatArray, grid_mm: FloatArray) -> Flo
     return np.interp(grid_mm, places, force_cN[order][first])
 
 
-def _stroke(one: Judged, stroke: Stroke, streams: Gaussian, zero_mm: float) -> tuple[FloatArray, FloatArray]:
-    press, speed_mm_s = one.press, one.achieved_mm_s
-    begin_s, end_s = one.spans.of(stroke)
+def _cut(entry: Judged, stroke: Stroke, streams: Gaussian, zero_mm: float) -> tuple[FloatArray, FloatArray]:
+    press, speed_mm_s = entry.press, entry.achieved_mm_s
+    begin_s, end_s = entry.spans.of(stroke)
     columns = []
     for t_s, values in ((press.frame_s, press.frame_mm), (press.t_s, press.force_cN)):
         step_s = float(np.median(np.diff(t_s)))
-        columns.append(filtered(values, streams.in_time_s(step_s, speed_mm_s) / step_s))
+        columns.append(gaussian_smooth(values, streams.in_time_s(step_s, speed_mm_s) / step_s))
     inside = (press.t_s >= begin_s) & (press.t_s <= end_s)
     x_mm = np.interp(press.t_s[inside], press.frame_s, columns[0]) + zero_mm
     return x_mm, columns[1][inside]

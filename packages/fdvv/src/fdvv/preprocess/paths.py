@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fdvv.model.curve import Stroke
-from fdvv.preprocess.fuse import CurveOfForce, Fusion, Path, Seen, fuse, unknown_curve
+from fdvv.preprocess.fuse import CurveOfForce, Fusion, Path, Seen, fuse, zero_curve
 from fdvv.preprocess.press import LEFT_mm, NEAR_mm, StrokeTrack
 from fdvv.preprocess.reject import Judged
 from fdvv.units import FloatArray, N_from_cN, cN_from_N
@@ -99,9 +99,9 @@ class Paths:
     tip_g: float
     zero_mm: float
 
-    def _seen(self, one: Judged, stroke: Stroke) -> Seen | None:
+    def _cut_out(self, entry: Judged, stroke: Stroke) -> Seen | None:
         """Cut one stroke out, from where the cap leaves its rest to the last frame before the stop."""
-        press, spans = one.press, one.spans
+        press, spans = entry.press, entry.spans
         # frames so near to the stop measure the stop, not the stroke
         near = press.frame_mm > spans.bottom_mm - NEAR_mm
         begin_s, end_s = spans.of(stroke)
@@ -137,34 +137,34 @@ class Paths:
         presses show the stroke, else those that do, their tracks and the force. First between frames, then
         once more with what lies between the stop and a frame.
         """
-        whole = [(one, seen) for one in used if (seen := self._seen(one, stroke)) is not None]
+        whole = [(entry, seen) for entry in used if (seen := self._cut_out(entry, stroke)) is not None]
         if len(whole) < FEWEST:
             return None
         moving_g = self.cap_g + self.tip_g
-        fusion = Fusion(moving_g, _frame_noise_mm([one for one, _ in whole]))
+        fusion = Fusion(moving_g, _frame_noise_mm([entry for entry, _ in whole]))
         if known is None:
             fusion = replace(fusion, pieces=UNKNOWN_PIECES, unknown_N=UNKNOWN_N)
-        known = known or unknown_curve
+        known = known or zero_curve
         paths, shape = fuse([seen for _, seen in whole], known, fusion)
         longer = []
-        for (one, short), path in zip(whole, paths, strict=True):
-            recorded = one.press.t_s, one.press.force_cN
-            ends_mm = self.zero_mm + LEFT_mm, one.spans.bottom_mm + self.zero_mm - LEFT_mm
+        for (entry, short), path in zip(whole, paths, strict=True):
+            recorded = entry.press.t_s, entry.press.force_cN
+            ends_mm = self.zero_mm + LEFT_mm, entry.spans.bottom_mm + self.zero_mm - LEFT_mm
             longer.append(extend(short, path, stroke is Stroke.PRESS, recorded, shape, moving_g, ends_mm))
         paths, shape = fuse(longer, known, fusion)
-        used = [one for one, _ in whole]
-        found = zip(used, longer, paths, strict=True)
-        return used, [self._track(one, stroke, seen, path) for one, seen, path in found], shape
+        used = [entry for entry, _ in whole]
+        rows = zip(used, longer, paths, strict=True)
+        return used, [self._track(entry, stroke, seen, path) for entry, seen, path in rows], shape
 
-    def _track(self, one: Judged, stroke: Stroke, seen: Seen, path: Path) -> StrokeTrack:
+    def _track(self, entry: Judged, stroke: Stroke, seen: Seen, path: Path) -> StrokeTrack:
         """Return a stroke with the force between finger and cap, without the inertia of the tip."""
         tip_kg = 1e-3 * self.tip_g
         back = np.flatnonzero(path.displacement_mm < LEFT_mm) if stroke is Stroke.RELEASE else np.zeros(0)
         # what follows the return to rest is the upper stop's
         until = slice(None, int(back[0]) if back.size and back[0] > 3 else None)
         return StrokeTrack(
-            one.press.take,
-            one.press.part,
+            entry.press.take,
+            entry.press.part,
             stroke,
             seen.t_s[until],
             path.displacement_mm[until],
@@ -176,7 +176,7 @@ class Paths:
 
 def _frame_noise_mm(used: Sequence[Judged]) -> float:
     """Estimate the noise of a frame from successive frames while the cap rested."""
-    rests = [one.press.frame_mm[one.press.frame_s < one.spans.rested_s] for one in used]
+    rests = [entry.press.frame_mm[entry.press.frame_s < entry.spans.rest_end_s] for entry in used]
     joined = np.concatenate([np.zeros(0), *map(np.diff, rests)])
     if joined.size < LEAST_STEPS:
         return USUAL_NOISE_mm

@@ -63,7 +63,7 @@ class Spans:
     bottom_mm: float
 
     @property
-    def rested_s(self) -> float:
+    def rest_end_s(self) -> float:
         """End of the rest before the press."""
         return self.start_s - GUARD_s
 
@@ -104,15 +104,15 @@ SPEED_START_mm = 0.1
 
 def excursions(depth_mm: FloatArray) -> list[tuple[int, int]]:
     """Find presses in a record of depth whose rest is 0: (first, last) index of each, rest left out."""
-    found = []
+    spans = []
     start: int | None = None
     for i, depth in enumerate(depth_mm):
         if start is None and depth > MOVED_mm:
             start = i
         elif start is not None and depth < 0.5 * MOVED_mm:
-            found.append((start, i))
+            spans.append((start, i))
             start = None
-    return found if start is None else [*found, (start, depth_mm.size - 1)]
+    return spans if start is None else [*spans, (start, depth_mm.size - 1)]
 
 
 def whole_press(press: RawPress) -> tuple[int, int]:
@@ -153,7 +153,7 @@ def _when(t_s: FloatArray, depth_mm: FloatArray, i: int, level_mm: float) -> flo
     return float(t_s[i] + min(max(part, 0.0), 1.0) * (t_s[i + 1] - t_s[i]))
 
 
-def achieved_mm_s(press: RawPress, spans: Spans) -> float:
+def press_speed_mm_s(press: RawPress, spans: Spans) -> float:
     """Return the mean speed of the press between 0.1 mm and the bottom; NaN where it is undefined.
 
     Both ends lie between frames; they are found on lines, so one press at 200 mm/s is known to some per cent.

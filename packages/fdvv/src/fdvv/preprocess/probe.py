@@ -111,7 +111,7 @@ def _way(take: Take, play_cN: float, zero_cN: float) -> _Way:
         float(np.interp(times[pick], t_s, x_mm)) if (times := take.times_s(name)).size else None
         for name, pick in (("closed", 0), ("open", -1))
     )
-    press_cN, release_cN = (_binned(grid, x_mm[part], force_cN[part]) for part in (down, back))
+    press_cN, release_cN = (_bin_means(grid, x_mm[part], force_cN[part]) for part in (down, back))
     return _Way(press_cN, release_cN, closed, opened)
 
 
@@ -123,12 +123,12 @@ def _touch_mm(x_mm: FloatArray, force_cN: FloatArray) -> float:
 
 def _stop(x_mm: FloatArray, force_cN: FloatArray) -> int:
     whole = int(x_mm.max() / STEP_mm)
-    force = _binned(STEP_mm * np.arange(whole + 1.0), x_mm, force_cN)
+    force = _bin_means(STEP_mm * np.arange(whole + 1.0), x_mm, force_cN)
     steep = np.flatnonzero(np.diff(force)[whole // 2 :] > STOP_cN_mm * STEP_mm)
     return (int(steep[0]) + whole // 2 if steep.size else whole) + 1
 
 
-def _binned(grid_mm: FloatArray, x_mm: FloatArray, force_cN: FloatArray) -> FloatArray:
+def _bin_means(grid_mm: FloatArray, x_mm: FloatArray, force_cN: FloatArray) -> FloatArray:
     """Average samples within half a step of each position; empty bins are interpolated."""
     place = np.rint(x_mm / STEP_mm).astype(np.int64)
     inside = (place >= 0) & (place < grid_mm.size)
@@ -151,22 +151,22 @@ def resting_mm(judged: Sequence[Judged], probe: Probe | None) -> float:
 
     With a probe from its curve; without one from how the place goes with the first force of slow presses.
     """
-    used = [one for one in judged if one.reason is None]
-    rests = [one.press.force_cN[one.press.t_s < one.spans.rested_s] for one in used]
+    used = [entry for entry in judged if entry.reason is None]
+    rests = [entry.press.force_cN[entry.press.t_s < entry.spans.rest_end_s] for entry in used]
     rest_cN = float(np.median([np.median(rest) for rest in rests if rest.size])) if rests else 0.0
     if probe is not None:
         return probe.rest_mm(rest_cN)
-    slowest = sorted(used, key=lambda one: one.achieved_mm_s)[: max(FEWEST, len(used) // SLOWEST_PART)]
+    slowest = sorted(used, key=lambda entry: entry.achieved_mm_s)[: max(FEWEST, len(used) // SLOWEST_PART)]
     return max(rest_cN, 0.0) * _first_give_mm_cN(slowest, rest_cN)
 
 
 def _first_give_mm_cN(used: Sequence[Judged], rest_cN: float) -> float:
     """Return the initial compliance, by the slope of position on force, which is known far better."""
     parts = [np.zeros((2, 0))]
-    for one in used:
-        press = one.press
+    for entry in used:
+        press, spans = entry.press, entry.spans
         place = np.interp(press.t_s, press.frame_s, press.frame_mm)
-        first = (press.t_s > one.spans.start_s - 0.1) & (press.t_s < one.spans.bottom_s) & (place < FIRST_mm)
+        first = (press.t_s > spans.start_s - 0.1) & (press.t_s < spans.bottom_s) & (place < FIRST_mm)
         first &= (press.force_cN > rest_cN - 1) & (press.force_cN < rest_cN + FIRST_cN)
         parts.append(np.stack([place[first], press.force_cN[first]]))
     place, force = np.concatenate(parts, axis=1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.model.curve import Stroke
-from fdvv.preprocess.average import AveragedCurve, averaged, pool
+from fdvv.preprocess.average import AveragedCurve, average_curve, pool
 from fdvv.preprocess.clock import ClockFit
 from fdvv.preprocess.fuse import CurveOfForce
 from fdvv.preprocess.paths import FEWEST, Paths
@@ -71,13 +71,13 @@ class Curves:
     def average(self) -> tuple[list[AveragedCurve], list[list[StrokeTrack]]]:
         """Average both strokes at every velocity that has enough presses, in reading order."""
         known = {stroke: self._probe.curve(stroke) if self._probe else None for stroke in Stroke}
-        found: dict[Stroke, list[_Done]] = {stroke: [] for stroke in Stroke}
-        velocities = {one.press.velocity_mm_s for one in self.judged}
+        averages: dict[Stroke, list[_Done]] = {stroke: [] for stroke in Stroke}
+        velocities = {entry.press.velocity_mm_s for entry in self.judged}
         for requested_mm_s in sorted(velocities, key=lambda v: v or 0.0):
             for stroke, curve in self._at_velocity(requested_mm_s, known).items():
                 known[stroke] = curve.shape
-                found[stroke].append(curve)
-        ordered = [curve for stroke in Stroke for curve in found[stroke]]
+                averages[stroke].append(curve)
+        ordered = [curve for stroke in Stroke for curve in averages[stroke]]
         return [c.average for c in ordered], [c.tracks for c in ordered]
 
     def _at_velocity(
@@ -87,7 +87,7 @@ class Curves:
         while True:
             used = [o for o in self.judged if o.reason is None and o.press.velocity_mm_s == requested_mm_s]
             curves = {stroke: self._curve(used, stroke, requested_mm_s, known[stroke]) for stroke in Stroke}
-            strange = [one for curve in curves.values() if curve for one in curve.strange]
+            strange = [entry for curve in curves.values() if curve for entry in curve.strange]
             if not strange:
                 break
             self.judged = [replace(o, reason=Reason.FORCE) if o in strange else o for o in self.judged]
@@ -99,14 +99,14 @@ class Curves:
     def _curve(
         self, used: Sequence[Judged], stroke: Stroke, requested_mm_s: float | None, known: CurveOfForce | None
     ) -> _Done | None:
-        found = self._paths.find(used, stroke, known)
-        if found is None:
+        paths = self._paths.find(used, stroke, known)
+        if paths is None:
             return None
-        whole, tracks, shape = found
+        whole, tracks, shape = paths
         pooled = pool(tracks, shape, *_extent_mm(tracks))
-        speeds = np.array([one.achieved_mm_s for one in whole])
+        speeds = np.array([entry.achieved_mm_s for entry in whole])
         strange = [whole[i] for i in unlike(pooled, self._limit)]
-        return _Done(averaged(tracks, pooled, requested_mm_s, speeds), tracks, shape, strange)
+        return _Done(average_curve(tracks, pooled, requested_mm_s, speeds), tracks, shape, strange)
 
 
 def _extent_mm(tracks: Sequence[StrokeTrack]) -> tuple[float, float]:
@@ -131,19 +131,19 @@ def travels_mm(used: Sequence[Judged], zero_mm: float, arrival_cN: float) -> lis
     While the finger rests on the stop its force wanders, and the cap with it: from that, over all presses,
     comes how much the stop gives, and so where it was at the force with which the cap arrives.
     """
-    rests = [_rest(one) for one in used]
+    rests = [_rest(entry) for entry in used]
     give_mm_N = _give_mm_N([rest for rest in rests if rest[0].size > 2])
-    found = []
-    for one, (force_cN, _) in zip(used, rests, strict=True):
+    depths_mm = []
+    for entry, (force_cN, _) in zip(used, rests, strict=True):
         more_N = float(N_from_cN(float(np.median(force_cN)) - arrival_cN)) if force_cN.size else 0.0
-        found.append(one.spans.bottom_mm + zero_mm - give_mm_N * max(more_N, 0.0))
-    return found
+        depths_mm.append(entry.spans.bottom_mm + zero_mm - give_mm_N * max(more_N, 0.0))
+    return depths_mm
 
 
-def _rest(one: Judged) -> tuple[FloatArray, FloatArray]:
-    press = one.press
-    there = (press.frame_s >= one.spans.bottom_s) & (press.frame_s <= one.spans.leave_s)
-    there &= press.frame_mm > one.spans.bottom_mm - NEAR_mm
+def _rest(entry: Judged) -> tuple[FloatArray, FloatArray]:
+    press = entry.press
+    there = (press.frame_s >= entry.spans.bottom_s) & (press.frame_s <= entry.spans.leave_s)
+    there &= press.frame_mm > entry.spans.bottom_mm - NEAR_mm
     return np.interp(press.frame_s[there], press.t_s, press.force_cN), press.frame_mm[there]
 
 
@@ -205,32 +205,32 @@ def process(recording: Recording, settings: Settings | None = None) -> Processed
     Raises ModelError where a step finds nothing to work on; the message says which.
     """
     settings = settings or Settings()
-    found = presses_of(recording)
-    if not found.presses:
-        raise ModelError(f"recording {recording.name!r}: no press was seen; {'; '.join(found.lost[:3])}")
-    probe = probe_of(recording, found.zero_cN)
-    spans = [spans_of(p.frame_s, p.frame_mm, whole_press(p)) for p in found.presses]
-    judged = judge(found.presses, spans, settings.limits)
+    raw = presses_of(recording)
+    if not raw.presses:
+        raise ModelError(f"recording {recording.name!r}: no press was seen; {'; '.join(raw.lost[:3])}")
+    probe = probe_of(recording, raw.zero_cN)
+    spans = [spans_of(p.frame_s, p.frame_mm, whole_press(p)) for p in raw.presses]
+    judged = judge(raw.presses, spans, settings.limits)
     if settings.paces_mm_s:
-        judged = [_assigned(one, settings.paces_mm_s) for one in judged]
+        judged = [_assign_pace(entry, settings.paces_mm_s) for entry in judged]
     zero_mm = resting_mm(judged, probe)
     paths = Paths(settings.cap_g, recording.bench.tip_mass_g, zero_mm)
     work = Curves(judged, probe, paths, settings.limits.unlike)
     curves, tracks = work.average()
     if not curves:
         raise ModelError(f"recording {recording.name!r}: fewer than {FEWEST} presses of any pace can be used")
-    used = [one for one in work.judged if one.reason is None]
+    used = [entry for entry in work.judged if entry.reason is None]
     return Processed(
-        found.clock,
+        raw.clock,
         tuple(work.judged),
         probe,
         tuple(curves),
         tuple(tuple(group) for group in tracks),
         _feature(travels_mm(used, zero_mm, _arrival_cN(curves))),
-        _switched(used, tracks, Stroke.PRESS),
-        _switched(used, tracks, Stroke.RELEASE),
+        _switch_point(used, tracks, Stroke.PRESS),
+        _switch_point(used, tracks, Stroke.RELEASE),
         zero_mm,
-        (*found.lost, *work.warnings),
+        (*raw.lost, *work.warnings),
     )
 
 
@@ -240,30 +240,30 @@ def _feature(values: Sequence[float]) -> Feature:
     return Feature(float(np.median(finite)), spread, int(finite.size))
 
 
-def _assigned(one: Judged, paces_mm_s: Sequence[float]) -> Judged:
+def _assign_pace(entry: Judged, paces_mm_s: Sequence[float]) -> Judged:
     """Assign a press without a velocity to the nearest one, in ratio; leave it out if it is near none."""
-    if one.press.velocity_mm_s is not None:
-        return one
-    if not np.isfinite(one.achieved_mm_s):
-        return replace(one, reason=one.reason or Reason.OFF_PACE)
-    apart = np.abs(np.log(np.array(paces_mm_s) / one.achieved_mm_s))
+    if entry.press.velocity_mm_s is not None:
+        return entry
+    if not np.isfinite(entry.achieved_mm_s):
+        return replace(entry, reason=entry.reason or Reason.OFF_PACE)
+    apart = np.abs(np.log(np.array(paces_mm_s) / entry.achieved_mm_s))
     pace = paces_mm_s[int(np.argmin(apart))]
     off = Reason.OFF_PACE if apart.min() > np.log(NEAREST_ratio) else None
-    return replace(one, press=replace(one.press, velocity_mm_s=pace), reason=one.reason or off)
+    return replace(entry, press=replace(entry.press, velocity_mm_s=pace), reason=entry.reason or off)
 
 
 def _arrival_cN(curves: Sequence[AveragedCurve]) -> float:
     return float(np.median([c.force_cN[-1] for c in curves if c.stroke is Stroke.PRESS] or [0.0]))
 
 
-def _switched(
+def _switch_point(
     used: Sequence[Judged], groups: Sequence[Sequence[StrokeTrack]], stroke: Stroke
 ) -> Feature | None:
     tracks = {(t.take, t.part): t for group in groups for t in group if t.stroke is stroke}
     places = []
-    for one in used:
-        moment = one.press.closed_s if stroke is Stroke.PRESS else one.press.open_s
-        track = tracks.get((one.press.take, one.press.part))
+    for entry in used:
+        moment = entry.press.closed_s if stroke is Stroke.PRESS else entry.press.open_s
+        track = tracks.get((entry.press.take, entry.press.part))
         if moment is not None and track is not None and track.t_s[0] <= moment <= track.t_s[-1]:
             # the board looks once a step: the circuit switched half a step before, on average
             half_s = 0.5 * float(track.t_s[1] - track.t_s[0])

@@ -9,7 +9,7 @@ from enum import StrEnum
 import numpy as np
 
 from fdvv.preprocess.average import Pooled
-from fdvv.preprocess.press import NEAR_mm, RawPress, Spans, achieved_mm_s, common_bottom_mm
+from fdvv.preprocess.press import NEAR_mm, RawPress, Spans, common_bottom_mm, press_speed_mm_s
 from fdvv.units import FloatArray
 
 
@@ -73,19 +73,19 @@ def judge(presses: Sequence[RawPress], spans: Sequence[Spans], limits: Limits) -
         return []
     bottom_mm = common_bottom_mm([span.bottom_mm for span in spans])
     several = {press.take for press in presses if press.part > 1}
-    found = []
+    judged = []
     for press, span in zip(presses, spans, strict=True):
         two = press.velocity_mm_s is not None and press.take in several
         reason = _reason(press, span, bottom_mm, two, limits)
-        found.append(Judged(press, span, achieved_mm_s(press, span), reason))
-    return _off_pace(found, limits)
+        judged.append(Judged(press, span, press_speed_mm_s(press, span), reason))
+    return _off_pace(judged, limits)
 
 
 def _reason(press: RawPress, span: Spans, bottom_mm: float, two: bool, limits: Limits) -> Reason | None:
     during = (press.frame_s >= span.start_s) & (press.frame_s <= span.end_s)
     if during.sum() < 4:
         return Reason.UNSEEN
-    if _knocked(press, span, limits.apart_mm):
+    if _was_knocked(press, span, limits.apart_mm):
         return Reason.MARKERS
     if span.bottom_mm > bottom_mm + 1.5 * limits.short_mm:
         return Reason.TOO_DEEP
@@ -93,10 +93,10 @@ def _reason(press: RawPress, span: Spans, bottom_mm: float, two: bool, limits: L
         return Reason.INCOMPLETE
     if two:
         return Reason.TWO
-    return Reason.HESITATION if _stopped(press, span, limits.stop_ratio) else None
+    return Reason.HESITATION if _has_pause(press, span, limits.stop_ratio) else None
 
 
-def _knocked(press: RawPress, span: Spans, apart_mm: float) -> bool:
+def _was_knocked(press: RawPress, span: Spans, apart_mm: float) -> bool:
     before = press.apart_mm[press.frame_s < span.start_s]
     after = press.apart_mm[press.frame_s > span.end_s]
     before, after = before[np.isfinite(before)], after[np.isfinite(after)]
@@ -105,7 +105,7 @@ def _knocked(press: RawPress, span: Spans, apart_mm: float) -> bool:
     return abs(float(np.median(after)) - float(np.median(before))) > apart_mm
 
 
-def _stopped(press: RawPress, span: Spans, stop_ratio: float) -> bool:
+def _has_pause(press: RawPress, span: Spans, stop_ratio: float) -> bool:
     """Return whether the cap rested between a tenth and four fifths of the way down.
 
     The longest time within a twentieth of the travel is compared with the time of the stroke.
@@ -121,20 +121,20 @@ def _stopped(press: RawPress, span: Spans, stop_ratio: float) -> bool:
     return longest > stop_ratio * (span.bottom_s - span.start_s) and longest > 2.5 * frame_s
 
 
-def _off_pace(found: Sequence[Judged], limits: Limits) -> list[Judged]:
+def _off_pace(entries: Sequence[Judged], limits: Limits) -> list[Judged]:
     speeds: dict[float, list[float]] = {}
-    for one in found:
-        if one.press.velocity_mm_s is not None and one.reason is None:
-            speeds.setdefault(one.press.velocity_mm_s, []).append(one.achieved_mm_s)
+    for entry in entries:
+        if entry.press.velocity_mm_s is not None and entry.reason is None:
+            speeds.setdefault(entry.press.velocity_mm_s, []).append(entry.achieved_mm_s)
     usual = {requested_mm_s: float(np.nanmedian(achieved)) for requested_mm_s, achieved in speeds.items()}
     judged = []
-    for one in found:
-        if one.press.velocity_mm_s is not None and one.reason is None:
-            ratio = one.achieved_mm_s / usual[one.press.velocity_mm_s]
+    for entry in entries:
+        if entry.press.velocity_mm_s is not None and entry.reason is None:
+            ratio = entry.achieved_mm_s / usual[entry.press.velocity_mm_s]
             # an unknown speed is off, too
             if not limits.slowest_ratio <= ratio <= limits.fastest_ratio:
-                one = replace(one, reason=Reason.OFF_PACE)
-        judged.append(one)
+                entry = replace(entry, reason=Reason.OFF_PACE)
+        judged.append(entry)
     return judged
 
 
@@ -148,7 +148,7 @@ FEWEST = 3
 
 def unlike(pooled: Pooled, limit: float) -> list[int]:
     """Find presses that differ from the mean by much more than presses do, the worst first."""
-    slipped = _slipped(pooled)
+    slipped = _find_slips(pooled)
     if slipped:
         return slipped
     apart = np.sqrt(np.nanmean(pooled.apart_cN**2, axis=1))
@@ -161,7 +161,7 @@ def _worst(off: FloatArray, limit: float) -> list[int]:
     return far.tolist() if off.size > FEWEST else []
 
 
-def _slipped(pooled: Pooled) -> list[int]:
+def _find_slips(pooled: Pooled) -> list[int]:
     """Find presses whose force is the others' times a number: the sensor slipped or was tilted."""
     gains = []
     for apart in pooled.apart_cN:

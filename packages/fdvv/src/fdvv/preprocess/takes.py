@@ -9,7 +9,7 @@ import numpy as np
 
 from fdvv.errors import ModelError
 from fdvv.preprocess.clock import ClockFit, align_clocks
-from fdvv.preprocess.edges import Edges, seen_edges
+from fdvv.preprocess.edges import Edges, find_edges
 from fdvv.preprocess.fuse import even, undo_filter, undo_play
 from fdvv.preprocess.press import GUARD_s, RawPress, excursions
 from fdvv.recording.types import Bench, Quantity, Recording, Stage, Stream, Take
@@ -78,14 +78,14 @@ def depth_of(take: Take, axis: FloatArray | None) -> Depth | None:
     """
     sensors = take.of(Quantity.DISPLACEMENT)
     if sensors:
-        return _one(sensors[0].t_s, sensors[0].values)
+        return _finite(sensors[0].t_s, sensors[0].values)
     markers = take.of(Quantity.MARKER)
     if not markers:
         return None
     if len(markers) > 2:
         raise ModelError(f"take {take.number} has {len(markers)} markers; name the one or two on the cap")
     times, columns = _together([_along(marker, axis) for marker in markers])
-    return _one(times, columns[0]) if len(columns) == 1 else _two(times, *columns)
+    return _finite(times, columns[0]) if len(columns) == 1 else _two(times, *columns)
 
 
 def _along(marker: Stream, axis: FloatArray | None) -> tuple[FloatArray, FloatArray]:
@@ -103,7 +103,7 @@ def _together(columns: Sequence[tuple[FloatArray, FloatArray]]) -> tuple[FloatAr
     return times, list(joined)
 
 
-def _one(times: FloatArray, values: FloatArray) -> Depth:
+def _finite(times: FloatArray, values: FloatArray) -> Depth:
     seen = np.isfinite(values)
     return Depth(times[seen], values[seen], np.full(int(seen.sum()), np.nan))
 
@@ -111,7 +111,7 @@ def _one(times: FloatArray, values: FloatArray) -> Depth:
 def _two(times: FloatArray, left: FloatArray, right: FloatArray) -> Depth:
     both = np.isfinite(left) & np.isfinite(right)
     if both.sum() < 3:
-        return _one(times, np.where(np.isfinite(left), left, right))
+        return _finite(times, np.where(np.isfinite(left), left, right))
     half = 0.5 * (left - right)
     middle = 0.5 * (left + right)
     for marker, sign in ((left, -1.0), (right, 1.0)):
@@ -160,9 +160,9 @@ def presses_of(recording: Recording) -> Presses:
     clock = join_clocks(recording)
     axis = press_axis(takes)
     zero_cN = idle_cN(recording)
-    found = {take.number: _of_take(take, recording.bench, clock, axis, zero_cN) for take in takes}
-    lost = tuple(f"take {number}: no press was seen" for number, presses in found.items() if not presses)
-    return Presses(tuple(press for presses in found.values() for press in presses), clock, zero_cN, lost)
+    by_take = {take.number: _of_take(take, recording.bench, clock, axis, zero_cN) for take in takes}
+    lost = tuple(f"take {number}: no press was seen" for number, presses in by_take.items() if not presses)
+    return Presses(tuple(press for presses in by_take.values() for press in presses), clock, zero_cN, lost)
 
 
 def join_clocks(recording: Recording) -> ClockFit:
@@ -177,16 +177,16 @@ def join_clocks(recording: Recording) -> ClockFit:
     board, camera = known.pop()
     if board == camera:
         return ClockFit(0.0)
-    edges, frame_s, light = switched_light(recording, board, camera)
+    edges, frame_s, light = light_edges(recording, board, camera)
     return align_clocks(edges, frame_s, light, 1e-3 * recording.bench.exposure_ms, camera)
 
 
-def switched_light(recording: Recording, board: str, camera: str) -> tuple[Edges, FloatArray, FloatArray]:
+def light_edges(recording: Recording, board: str, camera: str) -> tuple[Edges, FloatArray, FloatArray]:
     """Return when one clock switched the light, and times and brightness of the frames by the other."""
     lights = [s for take in recording.takes for s in take.of(Quantity.LIGHT) if s.clock == camera]
     if not lights:
         raise ModelError(f"nothing joins the clocks {board!r} and {camera!r}: no stream shows the light")
-    edges = Edges.of(*(_marked(recording.takes, f"light {way}", board) for way in ("on", "off")))
+    edges = Edges.of(*(_mark_times(recording.takes, f"light {way}", board) for way in ("on", "off")))
     if not edges.t_s.size:
         raise ModelError(f"nothing joins the clocks {board!r} and {camera!r}: no mark tells of the light")
     times, first = np.unique(np.concatenate([s.t_s for s in lights]), return_index=True)
@@ -198,7 +198,7 @@ def _clocks(take: Take) -> tuple[str, str] | None:
     return (forces[0].clock, places[0].clock) if forces and places else None
 
 
-def _marked(takes: Sequence[Take], name: str, clock: str) -> FloatArray:
+def _mark_times(takes: Sequence[Take], name: str, clock: str) -> FloatArray:
     return np.unique([m.t_s for take in takes for m in take.marks if m.name == name and m.clock == clock])
 
 
@@ -223,14 +223,14 @@ def _of_take(
         return []
     frame_s = clock.board_s(depth.t_s + 0.5e-3 * bench.exposure_ms)
     rough_mm = depth.depth_mm - np.quantile(depth.depth_mm, 0.15)
-    found = excursions(rough_mm)
+    spans = excursions(rough_mm)
     force = take.of(Quantity.FORCE)[0]
     t_s, force_cN = true_force_cN(force, bench, zero_cN)
-    ends = [frame_s[0] - GUARD_s, *(frame_s[last] for _, last in found)]
-    begins = [*(frame_s[first] for first, _ in found), frame_s[-1] + GUARD_s]
+    ends = [frame_s[0] - GUARD_s, *(frame_s[last] for _, last in spans)]
+    begins = [*(frame_s[first] for first, _ in spans), frame_s[-1] + GUARD_s]
     closed, opened = take.times_s("closed"), take.times_s("open")
     presses = []
-    for k, _ in enumerate(found):
+    for k, _ in enumerate(spans):
         rest_mm = _rest_mm(frame_s, depth, ends[k], begins[k], begins[0])
         low, high = ends[k] + GUARD_s, begins[k + 1] - GUARD_s
         seen = (frame_s >= low) & (frame_s <= high)
@@ -290,9 +290,9 @@ def edge_bounds(recording: Recording, clock: ClockFit) -> EdgeBounds | None:
     marks = [m.clock for take in recording.takes for m in take.marks if m.name.startswith("light")]
     if not clock.edges or not lights or not marks:
         return None
-    edges, frame_s, light = switched_light(recording, marks[0], lights[0])
-    seen = seen_edges(frame_s, light, 1e-3 * recording.bench.exposure_ms)
-    found = []
+    edges, frame_s, light = light_edges(recording, marks[0], lights[0])
+    seen = find_edges(frame_s, light, 1e-3 * recording.bench.exposure_ms)
+    columns = []
     for direction in (True, False):
         board_s = edges.t_s[edges.on == direction]
         there = np.flatnonzero(seen.on == direction)
@@ -300,6 +300,6 @@ def edge_bounds(recording: Recording, clock: ClockFit) -> EdgeBounds | None:
             continue
         line_s = clock.offset_s + clock.rate * board_s
         nearest = there[np.abs(seen.t_s[there][None, :] - line_s[:, None]).argmin(axis=1)]
-        found.append(np.stack([board_s, seen.low_s[nearest] - line_s, seen.high_s[nearest] - line_s]))
-    table: FloatArray = np.concatenate(found, axis=1).astype(np.float64)
+        columns.append(np.stack([board_s, seen.low_s[nearest] - line_s, seen.high_s[nearest] - line_s]))
+    table: FloatArray = np.concatenate(columns, axis=1).astype(np.float64)
     return EdgeBounds(*table[:, np.argsort(table[0])])

@@ -71,11 +71,11 @@ def vibrations_of(model: FDVVModel) -> tuple[tuple[Signal, ...], tuple[Vibration
     signals: dict[tuple[float, tuple[Mode, ...]], Signal] = {}
     events: list[VibrationEvent] = []
     for stroke in Stroke:
-        found = sorted((v for v in model.vibrations if v.stroke is stroke), key=reading_order)
-        speeds = [v.velocity_mm_s or 0.0 for v in found]
+        vibrations = sorted((v for v in model.vibrations if v.stroke is stroke), key=reading_order)
+        speeds = [v.velocity_mm_s or 0.0 for v in vibrations]
         # a vibration is played at the velocities nearest to its own: from half-way to half-way
         edges = [None, *((slow + fast) / 2 for slow, fast in pairwise(speeds)), None]
-        for vibration, (slowest, fastest) in zip(found, pairwise(edges), strict=False):
+        for vibration, (slowest, fastest) in zip(vibrations, pairwise(edges), strict=False):
             fresh = Signal(f"snap {len(signals) + 1}", vibration.duration_s, vibration.modes)
             signal = signals.setdefault((fresh.duration_s, fresh.modes), fresh)
             during = During(str(stroke))
@@ -90,7 +90,7 @@ def ranges(program: str, base: FDVVModel, levels: int = 1, **_: float) -> Ranges
     """
     half_mm = base.travel_mm / 2 - 0.1
     below_actuation_mm = base.travel_mm - key_points_mm(base)[0]
-    found: dict[str, Ranges] = {
+    by_program: dict[str, Ranges] = {
         "fast-tapping": {
             "trigger_mm": (0.4, base.travel_mm - 2 * NEAR_BOTTOM_mm),
             "pull_cN": (6, 200),
@@ -121,7 +121,7 @@ def ranges(program: str, base: FDVVModel, levels: int = 1, **_: float) -> Ranges
             ("press_mm", "release_mm", "top_dead_mm", "bottom_dead_mm"), (0.01, half_mm)
         ),
     }
-    return found.get(program, {})
+    return by_program.get(program, {})
 
 
 def check_ranges(program: str, base: FDVVModel, **given: float) -> None:

@@ -84,9 +84,9 @@ def check_program(program: Program, limits: Limits | None = None) -> Report:
     docs/explanation/programs.md says what is proven.
     """
     limits = limits or Limits()
-    refusal, margin_cN = _compiled(program, limits)
+    refusal, margin_cN = _try_compile(program, limits)
     returning = ReturnAnalysis(program, limits, margin_cN)
-    rests = [_held_at_bottom_cN(program, state, limits) for state in program.states]
+    rests = [_force_at_bottom_cN(program, state, limits) for state in program.states]
     findings = [
         *refusal,
         *_travel(program, limits),
@@ -122,7 +122,7 @@ _refused = partial(Finding, Severity.REFUSED)
 _warning = partial(Finding, Severity.WARNING)
 
 
-def _compiled(program: Program, limits: Limits) -> tuple[list[Finding], float]:
+def _try_compile(program: Program, limits: Limits) -> tuple[list[Finding], float]:
     """Return the refusal to compile, and how far the image's forces are from the program's."""
     try:
         compiled = compile_program(program, limits)
@@ -201,7 +201,7 @@ def _slope_cN_mm(surface: Surface, limits: Limits) -> tuple[float, float]:
     return float(slopes.max()), surface.displacement_mm[column]
 
 
-def _held_at_bottom_cN(program: Program, state: State, limits: Limits) -> float:
+def _force_at_bottom_cN(program: Program, state: State, limits: Limits) -> float:
     """Return the strongest force, weight included, that a state holds against a finger at the bottom."""
     bottom = np.array([program.travel_mm])
     forces = [
@@ -237,9 +237,9 @@ def _unreachable(program: Program) -> Iterator[Finding]:
 
 
 def _hang(program: Program) -> Iterator[Finding]:
-    found = find_hang(program)
-    if found:
-        cycle, stillness = found
+    hang = find_hang(program)
+    if hang:
+        cycle, stillness = hang
         place = f"at {stillness.displacement_mm:.2f} mm"
         reason = f"without any motion it goes {' → '.join(cycle)} for ever"
         yield _refused(cycle[0], place, reason, "move two of their conditions apart, or add an after_ms")

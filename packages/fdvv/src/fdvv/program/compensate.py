@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fdvv.compensation.force_loop.method import lifted_target_cN
+from fdvv.compensation.force_loop.method import lift_target_cN
 from fdvv.compensation.identification.rig_file import LearnedRig
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.compensation.method import CompensationJob
@@ -31,51 +31,51 @@ Table = Callable[[Surface, FloatArray, FloatArray], FloatArray]
 
 def loop_targets(program: Program) -> Program:
     """Return a program as the targets of a closed force loop: the same, lifted just under the top stop."""
-    return _with_tables(program, lambda s, x, table: lifted_target_cN(x, table) if _returns(s) else table)
+    return _with_tables(program, lambda s, x, table: lift_target_cN(x, table) if _returns(s) else table)
 
 
 def commands(program: Program, known: LearnedRig, force_limit_cN: float) -> Program:
     """Return a program whose surfaces and biases are the commands that render it on a rig without a cell.
 
     The rig's weight and gain are in the surfaces; drag, friction and lag belong to the controller
-    (`tuning_of`). What the rig has taught is added where a finger moves the cap (`_led`), in rows of the
-    speeds at which it was learned. A surface that brings the cap back also holds it up at rest. A bias is
-    divided by the gain at mid travel. Compile the result without a weight.
+    (`tuning_of`). What the rig has taught is added where a finger moves the cap (`_finger_surfaces`), in rows
+    of the speeds at which it was learned. A surface that brings the cap back also holds it up at rest. A bias
+    is divided by the gain at mid travel. Compile the result without a weight.
     """
-    rig, led = known.rig, _led(program)
+    rig, led = known.rig, _finger_surfaces(program)
 
     def table_cN(surface: Surface, x_mm: FloatArray, table: FloatArray) -> FloatArray:
         learned = led.get(surface.name)
         more = 0.0 if learned is None else _residual_cN(known, learned, surface, x_mm, program.travel_mm)
         if not _returns(surface):
             return np.clip(command_cN(rig, x_mm, table) + more, -force_limit_cN, force_limit_cN)
-        return _held_cN(rig, program, x_mm, table, force_limit_cN, more)
+        return _commands_cN(rig, program, x_mm, table, force_limit_cN, more)
 
-    wide = replace(program, surfaces=tuple(_rowed(s, known, s.name in led) for s in program.surfaces))
+    wide = replace(program, surfaces=tuple(_add_rows(s, known, s.name in led) for s in program.surfaces))
     gain = float(rig.gain_at(np.array(0.5 * program.travel_mm)))
     made = _with_tables(wide, table_cN)
-    return replace(made, states=tuple(_biased(state, gain) for state in made.states))
+    return replace(made, states=tuple(_scale_bias(state, gain) for state in made.states))
 
 
-def learned_surfaces(made: Program, program: Program, learned: ForceSurface, button: FDVVModel) -> Program:
+def with_learned(made: Program, program: Program, learned: ForceSurface, button: FDVVModel) -> Program:
     """Return a rendering with the tables that were learned for a button where the program has its surfaces.
 
     made : the rendering of program. What is not exactly the button's own stays as it was made.
     """
     own = {s: (of_model(button, s), returning(of_model(button, s))) for s in Stroke}
-    found = {
+    strokes = {
         surface.name: stroke
         for surface in program.surfaces
         for stroke in Stroke
-        if any(surface.force_cN == one.force_cN for one in own[stroke])
+        if any(surface.force_cN == variant.force_cN for variant in own[stroke])
     }
     surfaces = tuple(
-        of_surface(learned, found[s.name], s.name) if s.name in found else s for s in made.surfaces
+        of_surface(learned, strokes[s.name], s.name) if s.name in strokes else s for s in made.surfaces
     )
     return replace(made, surfaces=surfaces)
 
 
-def _held_cN(
+def _commands_cN(
     rig: RigModel,
     program: Program,
     x_mm: FloatArray,
@@ -91,7 +91,7 @@ def _held_cN(
     return command_surface(job, rig, (learned, learned), FRICTION_mm_s).press_cN
 
 
-def _led(program: Program) -> dict[str, str]:
+def _finger_surfaces(program: Program) -> dict[str, str]:
     """Return the surfaces that a finger moves the cap along, each with its stroke.
 
     Not among them: surfaces of both strokes, which move the cap by themselves, and those of states that look
@@ -104,7 +104,7 @@ def _led(program: Program) -> dict[str, str]:
     return {**dict.fromkeys(press - both, "press"), **dict.fromkeys(release - both, "release")}
 
 
-def _rowed(surface: Surface, known: LearnedRig, led: bool) -> Surface:
+def _add_rows(surface: Surface, known: LearnedRig, led: bool) -> Surface:
     """Return a surface with rows at the speeds that were learned, besides its own."""
     if not led:
         return surface
@@ -134,7 +134,7 @@ def _returns(surface: Surface) -> bool:
     return bool((surface.table_cN[:, 0] >= 0).all())
 
 
-def _biased(state: State, gain: float) -> State:
+def _scale_bias(state: State, gain: float) -> State:
     return replace(state, bias_cN=state.bias_cN / gain, bias_end_cN=state.bias_end_cN / gain)
 
 

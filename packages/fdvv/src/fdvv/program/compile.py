@@ -92,7 +92,7 @@ def _fit(
     """Coarsen all grids alike until the image is small enough, or the worst bound is reached."""
     bound_cN = min(limits.grid_error_cN, limits.worst_grid_error_cN)
     while True:
-        grids = [found.grid(found.coarsest(bound_cN)) for found in candidates]
+        grids = [candidate.grid(candidate.coarsest(bound_cN)) for candidate in candidates]
         image = lay_out(program, grids, [c.slot for c in converted], limits.weight_cN)
         if len(image) <= IMAGE_BYTES or bound_cN >= limits.worst_grid_error_cN:
             return grids, image

@@ -93,7 +93,7 @@ class Condition:
             raise ModelError(f"{when} takes {wanted}, got {json.dumps(value)}")
         return cls(when, 0.0 if value is True else value)
 
-    def stated(self) -> dict[str, float | Literal[True]]:
+    def to_dict(self) -> dict[str, float | Literal[True]]:
         """Return the condition as a file states it."""
         return {str(self.when): True if self.when in BARE else float(self.value)}
 

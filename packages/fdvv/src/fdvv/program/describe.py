@@ -80,9 +80,9 @@ class _Parts:
 
     def _take(self, kind: type[R], count: int) -> list[R]:
         size = kind.length_bytes()
-        found = [kind.unpack(self.image[self.at + i * size :][:size]) for i in range(count)]
+        records = [kind.unpack(self.image[self.at + i * size :][:size]) for i in range(count)]
         self.at += count * size
-        return found
+        return records
 
     def description(self) -> Description:
         head = self.head

@@ -47,7 +47,7 @@ def _is_written(field: Field[Any], value: object) -> bool:
 
 
 def _state_condition(value: Any) -> Any:
-    return value.stated() if isinstance(value, Condition) else value
+    return value.to_dict() if isinstance(value, Condition) else value
 
 
 def program_from_json(text: str | bytes, source: object = "program") -> Program:

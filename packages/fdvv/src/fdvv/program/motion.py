@@ -59,7 +59,7 @@ class Motion:
     def _energy_cN_mm(self, speed_m_s: float) -> float:
         return 0.5 * self.limits.mass_kg * speed_m_s**2 * cN_mm_PER_J
 
-    def _spent_at(self, state: int, first: int, last: int, speed_m_s: float) -> int:
+    def _stopping_edge(self, state: int, first: int, last: int, speed_m_s: float) -> int:
         """Return the first edge beyond cells first to last that a cap leaving them downward cannot pass."""
         work = self._work_cN_mm[state]
         needed = float(work[first : last + 2].max()) + self._energy_cN_mm(speed_m_s)
@@ -68,12 +68,12 @@ class Motion:
 
     def coast_cells(self, state: int, cell: int) -> range:
         """Return the cells through which the cap may still go down after it entered a lifting state."""
-        return range(cell, max(cell + 1, self._spent_at(state, cell, cell, self.down_m_s)))
+        return range(cell, max(cell + 1, self._stopping_edge(state, cell, cell, self.down_m_s)))
 
     def top_cells(self, state: int) -> range:
         """Return the cells in which a cap that came to the top in a lifting state bounces and rests."""
         last = max(self.first - 1, 0)
-        return range(self._spent_at(state, 0, last, self.limits.rebound_ratio * self.up_m_s))
+        return range(self._stopping_edge(state, 0, last, self.limits.rebound_ratio * self.up_m_s))
 
     def bottom_zone_mm(self, state: int) -> float:
         """Bound how high a cap that was pulled to the bottom bounces."""
@@ -101,12 +101,12 @@ class Motion:
 
     def longest_stay_s(self, state: int) -> float | None:
         """Return when a state is left wherever the cap is, by an `after_ms` of its own; None if never."""
-        found = [
+        exits_s = [
             t.when.value / 1000
             for t in self.program.states[state].transitions
             if t.when.when is When.AFTER and (t.only_if is None or t.only_if.when is When.ALWAYS)
         ]
-        return min(found, default=None)
+        return min(exits_s, default=None)
 
     def stay_at_top_s(self, state: int) -> float | None:
         """Return when a lifting state is left by a cap at rest at the top; None if never."""

@@ -220,11 +220,11 @@ class Program:
 
 
 def _names(names: Iterable[str], what: str) -> Collection[str]:
-    found = Counter(names)
-    twice = [name for name, count in found.items() if count > 1]
+    counts = Counter(names)
+    twice = [name for name, count in counts.items() if count > 1]
     if twice:
         raise ModelError(f"two {what}s are called {min(twice)!r}")
-    return found
+    return counts
 
 
 def _check_known(name: str, known: Collection[str], what: str, place: str) -> None:

@@ -86,8 +86,8 @@ def _stillnesses(program: Program) -> Iterator[RestAnalysis]:
     places = _values(program, (When.DEEPER_THAN, When.SHALLOWER_THAN), None)
     speeds = [_values(program, (When.FASTER_THAN, When.SLOWER_THAN), source) for source in Velocity]
     here = _representatives(SHALLOWEST_mm, places, program.travel_mm)
-    for place, *found in product(here, *(_representatives(0.0, v, FASTEST_mm_s) for v in speeds)):
-        yield RestAnalysis(place, dict(zip(Velocity, found, strict=True)))
+    for place, *speeds_mm_s in product(here, *(_representatives(0.0, v, FASTEST_mm_s) for v in speeds)):
+        yield RestAnalysis(place, dict(zip(Velocity, speeds_mm_s, strict=True)))
 
 
 def conditions(program: Program) -> Iterator[tuple[State, Condition]]:
@@ -139,8 +139,8 @@ class Cells:
 
     def of(self, place_mm: float) -> int:
         """Return the cell in which a displacement lies; an edge belongs to the cell below it."""
-        found = int(np.searchsorted(self.edges_mm, place_mm, side="right")) - 1
-        return min(max(found, 0), self.count - 1)
+        cell = int(np.searchsorted(self.edges_mm, place_mm, side="right")) - 1
+        return min(max(cell, 0), self.count - 1)
 
     def may_hold(self, condition: Condition, cell: int, way: Direction) -> bool:
         """Return whether a condition may hold somewhere in a cell with the finger off."""
@@ -180,20 +180,20 @@ class Cells:
         both = (transition.when, guard)
         if not all(self.may_hold(c, cell, way) for c in both):
             return False
-        return all(_fits_way(one, other, way) for one, other in (both, both[::-1]))
+        return all(_fits_way(condition, other, way) for condition, other in (both, both[::-1]))
 
     def must_fire(self, transition: Transition, cell: int) -> bool:
         return all(self.must_hold(c, cell) for c in transition.conditions)
 
 
-def _fits_way(one: Condition, other: Condition, way: Direction) -> bool:
+def _fits_way(condition: Condition, other: Condition, way: Direction) -> bool:
     """A rise begins to count on the way up, a fall on the way down; it may still count on the way back, where
     only another condition, which comes true later, has kept the transition from firing."""
-    if one.value == 0:
+    if condition.value == 0:
         return True
-    if one.when is When.RISEN_BY and other.when in (When.ALWAYS, When.SHALLOWER_THAN):
+    if condition.when is When.RISEN_BY and other.when in (When.ALWAYS, When.SHALLOWER_THAN):
         return way is Direction.UP
-    if one.when is When.FALLEN_BY and other.when in (When.ALWAYS, When.DEEPER_THAN):
+    if condition.when is When.FALLEN_BY and other.when in (When.ALWAYS, When.DEEPER_THAN):
         return way is Direction.DOWN
     return True
 

@@ -71,9 +71,9 @@ def render_vibration(
     """
     chosen = settings or InverseSettings()
     wave = _wave(drive_for(exciter, vibration, chosen))
-    inverse = _judged(wave, SynthesisMethod.INVERSE, vibration, exciter, chosen.lead_s)
+    inverse = _judge(wave, SynthesisMethod.INVERSE, vibration, exciter, chosen.lead_s)
     sine = _plain(vibration, exciter, chosen.limit_V)
-    plain = _judged(sine, SynthesisMethod.PLAIN, vibration, exciter, 0.0)
+    plain = _judge(sine, SynthesisMethod.PLAIN, vibration, exciter, 0.0)
     return plain if plain.likeness >= inverse.likeness - NO_WORSE else inverse
 
 
@@ -126,7 +126,7 @@ def _plain(vibration: Vibration, exciter: KnownExciter, limit_V: float) -> Slot:
     return slot_of_vibration(vibration, counts * min(1.0, limit_V * COUNTS_V / strength)).slot
 
 
-def _judged(
+def _judge(
     slot: Slot, way: SynthesisMethod, vibration: Vibration, exciter: KnownExciter, lead_s: float
 ) -> RenderedVibration:
     """Compare what the exciter makes of the board's samples with the vibration."""

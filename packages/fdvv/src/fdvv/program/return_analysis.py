@@ -59,18 +59,18 @@ class ReturnAnalysis:
         self.index = {state.name: i for i, state in enumerate(program.states)}
         self._known: dict[tuple[int, int, Direction], tuple[list[int], bool]] = {}
 
-    def fired(self, state: int, cell: int, way: Direction) -> tuple[list[int], bool]:
+    def successors(self, state: int, cell: int, way: Direction) -> tuple[list[int], bool]:
         """Return the states that may follow at once in a cell, and whether one of them must."""
         key = (state, cell, way)
         if key not in self._known:
-            found, must = [], False
+            states, must = [], False
             for transition in self.program.states[state].transitions:
                 if self.cells.may_fire(transition, cell, way):
-                    found.append(self.index[transition.to])
+                    states.append(self.index[transition.to])
                     must = self.cells.must_fire(transition, cell)
                 if must:
                     break
-            self._known[key] = found, must
+            self._known[key] = states, must
         return self._known[key]
 
     def enter(self, state: int, cell: int, way: Direction, pulled: bool = False) -> Node:
@@ -84,9 +84,9 @@ class ReturnAnalysis:
             return Node(state, HazardKind.PULLED, cell)
         return Node(state, HazardKind.ANYHOW)
 
-    def _entered(self, node: Node, cell: int, way: Direction) -> Iterator[Node]:
+    def _follow(self, node: Node, cell: int, way: Direction) -> Iterator[Node]:
         pulled = node.kind in (HazardKind.PULLED, HazardKind.ANYHOW, HazardKind.FADING)
-        for state in self.fired(node.state, cell, way)[0]:
+        for state in self.successors(node.state, cell, way)[0]:
             yield self.enter(state, cell, way, pulled)
 
     def followers(self, node: Node) -> tuple[list[Node], list[Node]]:
@@ -98,12 +98,12 @@ class ReturnAnalysis:
                 return self._up(node)
             case HazardKind.TOP:
                 near = self.motion.top_cells(node.state)
-                return [], [e for c in near for way in Direction for e in self._entered(node, c, way)]
+                return [], [e for c in near for way in Direction for e in self._follow(node, c, way)]
             case HazardKind.PULLED:
-                return self._pulled(node)
+                return self._after_pull(node)
             case _:
                 everywhere = range(self.cells.count)
-                entered = [e for c in everywhere for way in Direction for e in self._entered(node, c, way)]
+                entered = [e for c in everywhere for way in Direction for e in self._follow(node, c, way)]
                 kinds = (HazardKind.DOWN, HazardKind.UP) if node.kind is HazardKind.FADING else ()
                 return [Node(node.state, kind, c) for c in everywhere for kind in kinds], entered
 
@@ -111,30 +111,30 @@ class ReturnAnalysis:
         turned: list[Node] = []
         entered: list[Node] = []
         for cell in self.motion.coast_cells(node.state, node.cell):
-            entered += self._entered(node, cell, Direction.DOWN)
-            if self.fired(node.state, cell, Direction.DOWN)[1]:
+            entered += self._follow(node, cell, Direction.DOWN)
+            if self.successors(node.state, cell, Direction.DOWN)[1]:
                 break
             turned = [Node(node.state, HazardKind.UP, cell)]
         return turned, entered
 
     def _up(self, node: Node) -> tuple[list[Node], list[Node]]:
-        entered = list(self._entered(node, node.cell, Direction.UP))
-        if self.fired(node.state, node.cell, Direction.UP)[1]:
+        entered = list(self._follow(node, node.cell, Direction.UP))
+        if self.successors(node.state, node.cell, Direction.UP)[1]:
             return [], entered
         if node.cell in self.motion.top_cells(node.state):
             return [Node(node.state, HazardKind.TOP)], entered
         return [Node(node.state, HazardKind.UP, node.cell - 1)], entered
 
-    def _pulled(self, node: Node) -> tuple[list[Node], list[Node]]:
+    def _after_pull(self, node: Node) -> tuple[list[Node], list[Node]]:
         edges_mm = self.cells.edges_mm
         zone_mm = edges_mm[-1] - self.motion.bottom_zone_mm(node.state)
         entered: list[Node] = []
         for cell in range(self.cells.count):
             bounces = edges_mm[cell + 1] > zone_mm
             if cell >= node.cell or bounces:
-                entered += self._entered(node, cell, Direction.DOWN)
+                entered += self._follow(node, cell, Direction.DOWN)
             if bounces:
-                entered += self._entered(node, cell, Direction.UP)
+                entered += self._follow(node, cell, Direction.UP)
         return [], entered
 
     # -- flaws ---------------------------------------------------------------------------------------------
@@ -145,21 +145,21 @@ class ReturnAnalysis:
 
     def dead_ends(self) -> list[ReturnHazard]:
         """Return the states in which the cap may stay for ever, other than at the top in the start state."""
-        found = []
+        hazards = []
         for i, state in enumerate(self.program.states):
             lifts = self.motion.lifts(i)
             if not lifts and state.name == self.program.start:
                 reason = "may not lift the cap, and is the start state"
-                found.append(ReturnHazard(state.name, self._weakest(i), reason, "raise its forces there"))
+                hazards.append(ReturnHazard(state.name, self._weakest(i), reason, "raise its forces there"))
             elif not lifts and self.motion.longest_stay_s(i) is None:
                 reason = "may not lift the cap, and no after_ms without a guard ends it"
                 remedy = "raise its forces there, or let an after_ms without only_if end it"
-                found.append(ReturnHazard(state.name, self._weakest(i), reason, remedy))
+                hazards.append(ReturnHazard(state.name, self._weakest(i), reason, remedy))
             elif lifts and self.motion.stay_at_top_s(i) is None and state.name != self.program.start:
                 reason = "nothing is sure to lead on to the start state"
                 remedy = "let a shallower_than_mm lead towards it"
-                found.append(ReturnHazard(state.name, "at the top", reason, remedy))
-        return found
+                hazards.append(ReturnHazard(state.name, "at the top", reason, remedy))
+        return hazards
 
     def _weakest(self, state: int) -> str:
         first = self.motion.first

@@ -254,8 +254,8 @@ class Candidates:
 
     def coarsest(self, bound_cN: float) -> int:
         """Return the fewest columns within the bound; where none is, the best there are."""
-        found = next((n for n in self.columns if self._error_cN(n) <= bound_cN), None)
-        return min(self.columns, key=self._error_cN) if found is None else found
+        fewest = next((n for n in self.columns if self._error_cN(n) <= bound_cN), None)
+        return min(self.columns, key=self._error_cN) if fewest is None else fewest
 
     def grid(self, columns: int) -> Grid:
         """Sample the surface on that many columns."""

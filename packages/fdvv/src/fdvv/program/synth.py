@@ -164,7 +164,7 @@ def slot_of_vibration(vibration: Vibration, counts_per_m_s2: float) -> Converted
     mode = vibration.modes[0]
     simple = len(vibration.modes) == 1 and mode.phase_rad == 0 and mode.amplitude_m_s2 >= 0
     duration_samples = max(1, round(vibration.duration_s * RATE_HZ))
-    slot = (_sine if simple else _sampled)(vibration, counts_per_m_s2, duration_samples)
+    slot = (_sine if simple else _sample)(vibration, counts_per_m_s2, duration_samples)
     return _measure(slot, vibration, counts_per_m_s2)
 
 
@@ -180,7 +180,7 @@ def _sine(vibration: Vibration, counts_per_m_s2: float, duration_samples: int) -
     )
 
 
-def _sampled(vibration: Vibration, counts_per_m_s2: float, duration_samples: int) -> Slot:
+def _sample(vibration: Vibration, counts_per_m_s2: float, duration_samples: int) -> Slot:
     rate_Hz16 = int(16 * min(FASTEST_WAVE_Hz, (WAVE_SAMPLES - 2) / vibration.duration_s))
     fastest_Hz = max(mode.frequency_Hz for mode in vibration.modes)
     if fastest_Hz >= rate_Hz16 / 32:

@@ -169,7 +169,7 @@ def velocity_progress(
     )
 
 
-def uncompensated(
+def start_surface(
     device: Device,
     model: FDVVModel,
     velocities_mm_s: Sequence[float],

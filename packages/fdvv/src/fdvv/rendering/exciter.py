@@ -114,7 +114,7 @@ def _records(device: Remote, count: int, tone_s: float, progress: Progress) -> l
     try:
         client.arm()
         client.listen(port.now_s() + SETTLE_s)
-        found = []
+        records = []
         for slot in range(count):
             client.vibrate(slot)
             client.listen(port.now_s() + START_s)
@@ -124,9 +124,9 @@ def _records(device: Remote, count: int, tone_s: float, progress: Progress) -> l
             if telemetry.tick.size < 20:
                 raise DeviceError(f"{port.name}: no telemetry arrived during a tone")
             t_s = (telemetry.tick - telemetry.tick[0]) * 1e-6 * device.settings().tick_us
-            found.append((t_s, 1e-3 * telemetry.displacement_mm))
+            records.append((t_s, 1e-3 * telemetry.displacement_mm))
             client.listen(port.now_s() + END_s + START_s)
             progress(slot + 1, count)
-        return found
+        return records
     finally:
         device.stop()

@@ -13,12 +13,12 @@ from fdvv.compensation.feasibility.limits import (
     Motion,
     RigLimits,
     achievable_stroke,
+    inverse_dynamics_cN,
     minimum_jerk,
-    needed_cN,
 )
 from fdvv.compensation.feasibility.stability import NominalFinger, Stability, stability
 from fdvv.compensation.feasibility.thermal import ThermalDose, thermal_dose
-from fdvv.compensation.feasibility.verdict import ExpectedError, FollowVerdict, expected_error, follow_verdict
+from fdvv.compensation.feasibility.verdict import ExpectedError, FollowVerdict, estimate_error, follow_verdict
 from fdvv.compensation.identification.rig_model import RigModel
 from fdvv.device.contract import DeviceInfo
 from fdvv.errors import ModelError
@@ -116,9 +116,9 @@ def feasible_curves(report: FeasibilityReport) -> list[FeasibleCurve]:
     for curve in report.curves:
         reached = curve.reached
         measured: dict[str, Any] = {}
-        if found := curve.measured:
-            low, middle, high = np.percentile(found.rendered_cN, [25, 50, 75], axis=0)
-            measured = {"band_mm": found.displacement_mm, "band": RenderedBand("measured", middle, low, high)}
+        if probe := curve.measured:
+            low, middle, high = np.percentile(probe.rendered_cN, [25, 50, 75], axis=0)
+            measured = {"band_mm": probe.displacement_mm, "band": RenderedBand("measured", middle, low, high)}
         columns = reached.displacement_mm, reached.intended_cN, reached.achievable_cN
         cut, text = reached.saturated | reached.slewed, str(curve.verdict)
         simulated = report.simulated and bool(measured)
@@ -152,7 +152,7 @@ def feasibility(
     limits, made = RigLimits.of_settings(settings), motions or {}
     stop_mm = info.travel_limit_mm if info else None
     x = np.linspace(0.0, model.travel_mm, 1 + max(2, round(model.travel_mm / STEP_mm)))
-    doses, found = [], []
+    doses, curves = [], []
     for speed in speeds:
         # without a release curve the press serves for both
         forces = [model.force_cN(x, speed, stroke if model.of(stroke) else Stroke.PRESS) for stroke in Stroke]
@@ -167,14 +167,14 @@ def feasibility(
             over = forces[0] if stroke is Stroke.RELEASE else None
             stable = stability(known, limits, x, force, over, finger)
             verdict = follow_verdict(reached, limits, stable, doses[-1], stop_mm)
-            expected = expected_error(known, reached, motion, speed)
-            seen = _measured(measured, stroke, speed)
-            found.append(CurveFeasibility(stroke, speed, verdict, reached, stable, expected, seen))
+            expected = estimate_error(known, reached, motion, speed)
+            seen = _probe_curve(measured, stroke, speed)
+            curves.append(CurveFeasibility(stroke, speed, verdict, reached, stable, expected, seen))
     return FeasibilityReport(
         model.name,
         model.travel_mm,
         tuple(speeds),
-        tuple(sorted(found, key=reading_order)),
+        tuple(sorted(curves, key=reading_order)),
         tuple(doses),
         known.presses,
         info.name if info else "rig",
@@ -186,7 +186,7 @@ def _dose(
     known: RigModel, limits: RigLimits, x: FloatArray, forces: list[FloatArray], motions: list[Motion]
 ) -> ThermalDose:
     along = [
-        needed_cN(known, motion, np.interp(motion.displacement_mm, x, force))
+        inverse_dynamics_cN(known, motion, np.interp(motion.displacement_mm, x, force))
         for motion, force in zip(motions, forces, strict=True)
     ]
     # nothing moves before a press: no friction, drag or inertia counts
@@ -195,6 +195,6 @@ def _dose(
     return thermal_dose(limits, along[0], along[1], float(motions[0].t_s[-1]), rest)
 
 
-def _measured(measured: ProbeResult | None, stroke: Stroke, speed_mm_s: float) -> ProbeCurve | None:
+def _probe_curve(measured: ProbeResult | None, stroke: Stroke, speed_mm_s: float) -> ProbeCurve | None:
     curves = measured.curves if measured else ()
     return next((c for c in curves if c.stroke is stroke and c.velocity_mm_s == speed_mm_s), None)

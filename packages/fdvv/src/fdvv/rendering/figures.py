@@ -45,7 +45,7 @@ def plot_rendering(curves: Sequence[RenderedCurve], title: str = "", simulated: 
     axes = _draw_grid(curves, (4.2, 2.3, 0.4), lambda ax, c: _draw_cell(ax, c, methods, simulated), True)
     handles = [style.handle("target", **INTENDED)]
     handles += [style.handle(style.name_text(name), color=colour) for name, colour in methods.items()]
-    handles += _noticed_handles(curves)
+    handles += _legend_handles(curves)
     _legend_below(axes, handles, min(len(handles), 3 * axes.shape[1]), title)
     return axes
 
@@ -86,7 +86,7 @@ def _methods(curves: Sequence[RenderedCurve]) -> dict[str, str]:
     return {name: order[i % len(order)] for i, name in enumerate(names)}
 
 
-def _noticed_handles(curves: Sequence[RenderedCurve]) -> list[Line2D]:
+def _legend_handles(curves: Sequence[RenderedCurve]) -> list[Line2D]:
     handles = []
     if any(curve.jnd_cN is not None for curve in curves):
         handles.append(style.handle("± 1 JND of force", linewidth=7.0, color=JND_BAND["color"]))
@@ -114,8 +114,8 @@ def _mark_noticed(ax: Axes, curve: RenderedCurve, methods: dict[str, str]) -> No
     step_mm = float(np.median(np.diff(curve.displacement_mm)))
     shown = [band for band in curve.bands if band.noticed_ratio is not None]
     for i, band in enumerate(shown):
-        noticed = np.flatnonzero(np.asarray(band.noticed_ratio) > 0.5)
-        runs = np.split(noticed, np.flatnonzero(np.diff(noticed) > 1) + 1) if noticed.size else []
+        rows = np.flatnonzero(np.asarray(band.noticed_ratio) > 0.5)
+        runs = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1) if rows.size else []
         for run in runs:
             span = curve.displacement_mm[run[0]] - step_mm / 2, curve.displacement_mm[run[-1]] + step_mm / 2
             look: Any = {"color": methods[band.method], "linewidth": NOTICED_pt, "solid_capstyle": "butt"}

@@ -26,7 +26,7 @@ class RigCheck:
 
     def __init__(self, rig: RigModel, travel_mm: float, loop_closed: bool) -> None:
         self._rig, self._travel_mm, self._loop_closed = rig, travel_mm, loop_closed
-        self._found: list[str] = []
+        self._summaries: list[str] = []
         self._over = False
 
     def difference(self, press: Press) -> PartFault | None:
@@ -37,13 +37,13 @@ class RigCheck:
         if self._over:
             return None
         with suppress(FitError):
-            found = find_drift(self._rig, press, self._travel_mm, loop_closed=self._loop_closed)
-            self._found.append(found.summary)
-            whole = len(self._found) == CHECKED_presses
-            differs = found.unexplained or (whole and all(self._found))
+            drift = find_drift(self._rig, press, self._travel_mm, loop_closed=self._loop_closed)
+            self._summaries.append(drift.summary)
+            whole = len(self._summaries) == CHECKED_presses
+            differs = drift.unexplained or (whole and all(self._summaries))
             self._over = whole or differs
-            seen = f"the rig is not as its file says: {found.summary}"
-            return PartFault(found.part, seen, REMEDY) if differs else None
+            seen = f"the rig is not as its file says: {drift.summary}"
+            return PartFault(drift.part, seen, REMEDY) if differs else None
         return None
 
 
@@ -62,9 +62,9 @@ def with_rig_check(
         return progress
     check = RigCheck(rig, travel_mm, loop_closed)
 
-    def checked(done: PressDone) -> None:
-        if done.press is not None and not done.skipped and (found := check.difference(done.press)):
-            notice(f"warning: {found}")
+    def check_press(done: PressDone) -> None:
+        if done.press is not None and not done.skipped and (fault := check.difference(done.press)):
+            notice(f"warning: {fault}")
         progress(done)
 
-    return checked
+    return check_press

@@ -77,7 +77,7 @@ def check_parts(
     device.upload(check_surface(guard.travel_mm, _most_cN(device)), guard.travel_mm)
     for _ in range(TRIES):
         ask(CHECK_mm_s, guard.travel_mm)
-        facts = _pressed(device, guard)
+        facts = _press(device, guard)
         if facts is not None and (fault := _at_fault(facts, guard)):
             raise PartFaultError(fault)
         if facts is not None and (was_touched(facts) or not guard.has_force):
@@ -103,7 +103,7 @@ def check_surface(travel_mm: float, most_cN: float = PUSH_cN) -> ForceSurface:
     return ForceSurface(x, np.array([CHECK_mm_s]), tables[0], tables[1])
 
 
-def _pressed(device: Remote, guard: PartGuard) -> PressFacts | None:
+def _press(device: Remote, guard: PartGuard) -> PressFacts | None:
     """Have someone press; a record of nobody pressing counts too, a fault of the board raises."""
     try:
         return guard.facts(device.press(CHECK_mm_s))
@@ -114,14 +114,14 @@ def _pressed(device: Remote, guard: PartGuard) -> PressFacts | None:
         raise
 
 
-def confirmed(device: Remote, fault: PartFault) -> PartFault:
+def confirm(device: Remote, fault: PartFault) -> PartFault:
     """Return a fault of the mover as it is, or the position sensor's: a place that is read has noise.
 
     With the force loop closed a record holds the loop's estimate of the place instead.
     """
     if fault.part != MOVER:
         return fault
-    place = _watched(device, REST_s).displacement_mm
+    place = _watch(device, REST_s).displacement_mm
     if place.size < FEWEST_ticks or np.ptp(place) > EXACT_mm:
         return fault
     return frozen_fault(float(place[0]), "while the finger pushed it")
@@ -144,9 +144,9 @@ def _at_fault(facts: PressFacts, guard: PartGuard) -> PartFault | None:
 
 def _unseen(guard: PartGuard, ramp: _Ramp) -> tuple[str, ...]:
     if not guard.has_force:
-        lifted = () if ramp.lifted else (f"{COIL} (30 cN do not move the cap)",)
+        is_lifted = () if ramp.is_lifted else (f"{COIL} (30 cN do not move the cap)",)
         none = "the settings have no force sensor"
-        return (*lifted, f"how strong the {COIL} is, {MOVER}, {FORCE} ({none})")
+        return (*is_lifted, f"how strong the {COIL} is, {MOVER}, {FORCE} ({none})")
     if guard.balance.gain[1] <= KNOWN_gain_error:
         return ()
     return (f"how strong the {COIL} is (30 cN do not hold the cap up)",)
@@ -168,10 +168,10 @@ class _Ramp:
     def of(cls, device: Remote, travel_mm: float) -> _Ramp:
         most_cN = _most_cN(device)
         _load(device, travel_mm, most_cN)
-        rest = _watched(device, REST_s)
-        up, after = _armed(device), _watched(device, REST_s)
+        rest = _watch(device, REST_s)
+        up, after = _arm_and_watch(device), _watch(device, REST_s)
         _load(device, travel_mm, -most_cN)
-        down = _armed(device)
+        down = _arm_and_watch(device)
         up_mm, down_mm = (_last_mm(device, columns) for columns in (up, down))
         whole = [np.concatenate([getattr(c, name) for c in (rest, up, after, down)]) for name in COLUMNS]
         tick_s = device.settings().tick_us * 1e-6
@@ -180,7 +180,7 @@ class _Ramp:
         return cls(up_mm, down_mm, _lies(rest) and _lies(after), facts)
 
     @property
-    def lifted(self) -> bool:
+    def is_lifted(self) -> bool:
         return self.free and self.down_mm - self.up_mm > MOVED_mm
 
     def fault(self, travel_mm: float) -> PartFault | None:
@@ -190,7 +190,7 @@ class _Ramp:
             seen = f"the coil pushes the other way: {PUSH_cN:.0f} cN up took the cap down"
             return PartFault(COIL, seen, "exchange its two wires")
         # a cap that came down again lies on the stop
-        stop_mm = self.down_mm if self.lifted else travel_mm
+        stop_mm = self.down_mm if self.is_lifted else travel_mm
         if not -LOW_mm < stop_mm - travel_mm < DEEP_mm:
             return limiter_fault(stop_mm, travel_mm)
         return None
@@ -203,17 +203,17 @@ def _load(device: Remote, travel_mm: float, force_cN: float) -> None:
     device.upload_program(force_ramp_image(device.settings(), travel_mm, 0.0, force_cN, RAMP_s))
 
 
-def _watched(device: Remote, span_s: float) -> TickColumns:
+def _watch(device: Remote, span_s: float) -> TickColumns:
     pieces = list(watch(device, span_s))
     raise_part(device)
     columns = {name: np.concatenate([getattr(p, name) for p in pieces]) for name in vars(pieces[0])}
     return TickColumns(**columns)
 
 
-def _armed(device: Remote) -> TickColumns:
+def _arm_and_watch(device: Remote) -> TickColumns:
     try:
         device.client.arm()
-        return _watched(device, RAMP_s + HOLD_s)
+        return _watch(device, RAMP_s + HOLD_s)
     except DeviceError as error:
         if not isinstance(error, PartFaultError):
             raise_part(device)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from fdvv.compensation.parts.guard import Found, PartGuard
+from fdvv.compensation.parts.guard import Diagnosis, PartGuard
 from fdvv.device.contract import Device
 from fdvv.device.remote import Remote
 from fdvv.eventlog import read_bodies
@@ -40,12 +40,12 @@ class PartWatch:
         if checked.unseen:
             guide.notice(str(checked))
 
-    def confirmed(self, device: Device, found: Found) -> Found:
+    def confirm(self, device: Device, diagnosis: Diagnosis) -> Diagnosis:
         """Return what was found, after a look at the rig at rest where a press cannot tell parts apart."""
-        from fdvv.rendering.part_check import confirmed
+        from fdvv.rendering.part_check import confirm
 
         assert isinstance(device, Remote)
-        return replace(found, fault=confirmed(device, found.fault))
+        return replace(diagnosis, fault=confirm(device, diagnosis.fault))
 
 
 def watch_of(device: Device, travel_mm: float, checked_in: tuple[Path, ...] = ()) -> PartWatch | None:
@@ -62,10 +62,10 @@ def watch_of(device: Device, travel_mm: float, checked_in: tuple[Path, ...] = ()
 def _last_check(folder: Path) -> CheckRecord | None:
     """Return the last check in a session's folder; None without one, and since a part was at fault."""
     path = folder / PRESSES
-    found: CheckRecord | None = None
+    check: CheckRecord | None = None
     for key, body, _ in read_bodies(path, PRESSES_KIND) if path.is_file() else ():
-        found = body if key == "check" else None if key == "part" else found
-    return found
+        check = body if key == "check" else None if key == "part" else check
+    return check
 
 
 def _is_today(made: str) -> bool:

@@ -76,7 +76,7 @@ def check_device_recording(path: Path) -> FileCheck:
         key = next(iter(line), "")
         held[key] += 1
         try:
-            _unpacked(key, line.get(key))
+            _try_unpack(key, line.get(key))
         except (ValueError, TypeError, KeyError, AttributeError, zlib.error, binascii.Error) as error:
             place = f"record {number} of the last session"
             problems.append(FileProblem(place, f"{key or 'nothing'}: {error}", "record it again"))
@@ -96,14 +96,14 @@ def check_device_recording(path: Path) -> FileCheck:
     return FileCheck(path, A_DEVICE_RECORDING, facts, tuple(problems))
 
 
-def _unpacked(key: str, found: Any) -> None:
+def _try_unpack(key: str, body: Any) -> None:
     """Read a record as a replay would; ValueError and its like if it cannot be."""
     if key == "press":
-        unpack_press(found)
+        unpack_press(body)
     elif key == "upload":
-        unpack_surface(found["surface"])
+        unpack_surface(body["surface"])
     elif key == "program":
-        base64.b64decode(found, validate=True)
+        base64.b64decode(body, validate=True)
     elif key not in ("settings", "error"):
         raise ValueError("is no record of a session")
 
@@ -126,7 +126,7 @@ class RenderedPress:
     release_cN: FloatArray
 
 
-def rendered_press(press: Press, travel_mm: float) -> RenderedPress:
+def bin_press(press: Press, travel_mm: float) -> RenderedPress:
     """Bin the force on the finger of both strokes; a press that turned early has what it has."""
     grid = grid_mm(travel_mm, BIN_mm)
     x, force = press.displacement_mm, press.force_cN
@@ -134,8 +134,8 @@ def rendered_press(press: Press, travel_mm: float) -> RenderedPress:
     return RenderedPress(grid, down, up)
 
 
-def intended_press(model: FDVVModel, velocity_mm_s: float) -> RenderedPress:
-    """Return what a model intends at a speed, on the grid of rendered_press."""
+def target_press(model: FDVVModel, velocity_mm_s: float) -> RenderedPress:
+    """Return what a model intends at a speed, on the grid of bin_press."""
     grid = grid_mm(model.travel_mm, BIN_mm)
     # without a release curve the press serves for both, as on a device
     served = (stroke if model.of(stroke) else Stroke.PRESS for stroke in Stroke)
@@ -145,7 +145,7 @@ def intended_press(model: FDVVModel, velocity_mm_s: float) -> RenderedPress:
 
 def noticeable_cN(model: FDVVModel, velocity_mm_s: float, jnds: Jnds) -> tuple[float, float]:
     """Return the just noticeable difference of force, press and release: its mean over the judged places."""
-    wanted = intended_press(model, velocity_mm_s)
+    wanted = target_press(model, velocity_mm_s)
     judged = (wanted.displacement_mm >= FROM_mm) & (wanted.displacement_mm <= model.travel_mm - STOP_GUARD_mm)
     forces = (wanted.press_cN, wanted.release_cN)
     down, up = (float(jnds.force_cN(row[judged]).mean()) for row in forces)

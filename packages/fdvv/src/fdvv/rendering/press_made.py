@@ -30,12 +30,12 @@ class PressMade:
         return str(self.part or self.error or "")
 
 
-def made_press(device: Device, velocity_mm_s: float) -> PressMade:
+def attempt_press(device: Device, velocity_mm_s: float) -> PressMade:
     """Ask for a press. Raises DeviceError where nothing is known of it and the board has no fault."""
     try:
         return PressMade(device.press(velocity_mm_s))
     except DeviceError as error:
-        if _faulted(device):
+        if _has_fault(device):
             return PressMade(None, error, True, cast(ProgramDevice, device).fault().part_fault)
         if isinstance(error, PressError) and error.press:
             return PressMade(error.press, error)
@@ -44,10 +44,10 @@ def made_press(device: Device, velocity_mm_s: float) -> PressMade:
 
 def clear_latched(device: Device, notice: Callable[[str], None]) -> None:
     """Clear a latched fault, with a notice. Raises DeviceError while its cause lasts."""
-    if _faulted(device):
+    if _has_fault(device):
         part = cast(ProgramDevice, device).fault().part_fault
         try:
-            report = _cleared(device)
+            report = _clear_fault(device)
         except DeviceError as error:
             raise (PartFaultError(part) if part else error) from error
         notice(f"warning: {device.info().name} had fallen to zero force, {report}; cleared")
@@ -59,7 +59,7 @@ def lasting_part(device: Device, part: PartFault | None, last: PartFault | None)
     Raises DeviceError if the fault of no part lasts.
     """
     try:
-        _cleared(device)
+        _clear_fault(device)
     except DeviceError:
         if part is None:
             raise
@@ -67,7 +67,7 @@ def lasting_part(device: Device, part: PartFault | None, last: PartFault | None)
     return part if part and last and last.part == part.part else None
 
 
-def _faulted(device: Device) -> bool:
+def _has_fault(device: Device) -> bool:
     """Return whether the device is connected and has a latched fault."""
     try:
         return hasattr(device, "fault") and device.fault().fault is not Fault.NONE
@@ -75,7 +75,7 @@ def _faulted(device: Device) -> bool:
         return False
 
 
-def _cleared(device: Device) -> FaultReport:
+def _clear_fault(device: Device) -> FaultReport:
     """Clear and return the fault of a device. Raises DeviceError while its cause lasts."""
     board = cast(ProgramDevice, device)
     report = board.fault()

@@ -20,7 +20,7 @@ from fdvv.model.press import Press
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.compensate import check_force_sensor, check_speeds
 from fdvv.rendering.evaluation.noticed import overall
-from fdvv.rendering.evaluation.probe_curve import ProbeCurve, judged_curves, with_vibrations
+from fdvv.rendering.evaluation.probe_curve import ProbeCurve, judge_curves, with_vibrations
 from fdvv.rendering.evaluation.verdict import RenderingMeans, next_step, verdict
 from fdvv.rendering.evaluation.vibration_presses import (
     Playback,
@@ -36,7 +36,7 @@ from fdvv.rendering.session import MANIFEST, Session, plain, read_manifest, tabl
 from fdvv.rendering.session_log import PressEntry, PressLog
 from fdvv.rendering.session_run import Guide, Progress, SessionPlan, VelocityProgress, run
 
-Found = tuple[tuple[Press, ...], ...]
+Groups = tuple[tuple[Press, ...], ...]
 """Presses of every velocity, in the order of the plan: silent ones, then those that play the vibrations."""
 
 
@@ -58,42 +58,42 @@ class ProbePlan:
     tuning: Tuning = UNTUNED
     vibrating: int = 0
 
-    def init(self) -> Found:
+    def init(self) -> Groups:
         return ((),) * (2 * len(self.velocities_mm_s))
 
-    def trial(self, found: Found) -> Trial | None:
+    def trial(self, groups: Groups) -> Trial | None:
         """Return the first velocity that lacks presses; None when none does."""
-        at = self._at(found)
+        at = self._at(groups)
         if at is None:
             return None
         return Trial(self.surface, self.velocities_mm_s[at // 2], self.tuning, vibrating=at % 2 == 1)
 
-    def of(self, found: Found) -> list[tuple[float, tuple[Press, ...], tuple[Press, ...]]]:
+    def of(self, groups: Groups) -> list[tuple[float, tuple[Press, ...], tuple[Press, ...]]]:
         """Return every velocity with its silent presses and its vibrating ones."""
-        return list(zip(self.velocities_mm_s, found[::2], found[1::2], strict=True))
+        return list(zip(self.velocities_mm_s, groups[::2], groups[1::2], strict=True))
 
-    def step(self, press: Press, found: Found) -> Found:
+    def step(self, press: Press, groups: Groups) -> Groups:
         """Add a press to those of the velocity that was asked for. ModelError if none was."""
-        at = self._at(found)
+        at = self._at(groups)
         if at is None:
             raise ModelError("the probe is finished; no press was asked for")
-        return (*found[:at], (*found[at], press), *found[at + 1 :])
+        return (*groups[:at], (*groups[at], press), *groups[at + 1 :])
 
-    def count(self, found: Found) -> PressCount:
-        wanted = (self.presses + self.vibrating_after(found),) * len(self.velocities_mm_s)
-        return PressCount(sum(map(len, found)), sum(wanted), wanted)
+    def count(self, groups: Groups) -> PressCount:
+        wanted = (self.presses + self.vibrating_after(groups),) * len(self.velocities_mm_s)
+        return PressCount(sum(map(len, groups)), sum(wanted), wanted)
 
-    def explain(self, found: Found) -> str:
+    def explain(self, groups: Groups) -> str:
         return ""
 
-    def vibrating_after(self, found: Found) -> int:
+    def vibrating_after(self, groups: Groups) -> int:
         """Return how many presses play vibrations: none once a record has shown that it cannot hold them."""
-        first = next((press for presses in found for press in presses), None)
+        first = next((press for presses in groups for press in presses), None)
         return self.vibrating if first is None or shows_vibration(first) else 0
 
-    def _at(self, found: Found) -> int | None:
-        wanted = (self.presses, self.vibrating_after(found))
-        return next((i for i, presses in enumerate(found) if len(presses) < wanted[i % 2]), None)
+    def _at(self, groups: Groups) -> int | None:
+        wanted = (self.presses, self.vibrating_after(groups))
+        return next((i for i, presses in enumerate(groups) if len(presses) < wanted[i % 2]), None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,7 +196,7 @@ def probe(
     for line in lacking(device, vibrating=bool(playback and model.vibrations)):
         if line != NO_FORCE_SENSOR:  # a simulated rig's truth is judged without one
             guide.notice(line)
-    if playback and not (model.vibrations and has_exciter(device) and not _begun_without(session)):
+    if playback and not (model.vibrations and has_exciter(device) and not _lacks_vibrations(session)):
         playback = None
     if playback and playback.exciter:
         prepare_exciter(device, playback.exciter)
@@ -216,7 +216,7 @@ def probe(
         model.travel_mm,
         lambda press, _pace_ratio: judge_press(press, model.travel_mm, bounds, true_position=True),
         bounds.patience,
-        lambda found: _standings(model, plan, found),
+        lambda groups: _standings(model, plan, groups),
         progress or (lambda _done: None),
         guide,
         partial(upload_vibrating, model=model, playback=playback) if playback else None,
@@ -227,13 +227,13 @@ def probe(
             about = known_rig, model.travel_mm, tuning.loop is not None
             heard = with_rig_check(session_plan.progress, session_plan.guide.notice, *about)
             session_plan = replace(session_plan, progress=heard)
-        found = run(device, session_plan, plan.init(), log)
-        curves = _with_vibrations(model, plan, found, jnds)
+        groups = run(device, session_plan, plan.init(), log)
+        curves = _with_vibrations(model, plan, groups, jnds)
         outcomes = [curve.outcome for curve in curves]
         receipt = write_run_summary(session.folder, manifest, log.runs, log.entries, outcomes)
         skipped = tuple(str(entry) for entry in log.entries if not entry.used)
     info, range_mm = device.info(), (FROM_mm, model.travel_mm - STOP_GUARD_mm)
-    played = sum(len(vibrating) for *_, vibrating in plan.of(found))
+    played = sum(len(vibrating) for *_, vibrating in plan.of(groups))
     presses, names = _silent(log.entries, plan), (method, model.name, info.name)
     means = RenderingMeans(
         learned=method not in NOT_LEARNED,
@@ -245,7 +245,7 @@ def probe(
     return replace(result, vibration_presses=played, jnds=jnds)
 
 
-def _begun_without(session: Session) -> bool:
+def _lacks_vibrations(session: Session) -> bool:
     """Return whether a session in its folder was begun without vibrations, as older versions did."""
     path = session.folder / MANIFEST if session.folder else None
     return path is not None and path.is_file() and "playback" not in read_manifest(path).settings
@@ -260,21 +260,21 @@ def _silent(entries: Sequence[PressEntry], plan: ProbePlan) -> int:
     return count
 
 
-def _all_curves(model: FDVVModel, plan: ProbePlan, found: Found, jnds: Jnds = LITERATURE) -> list[ProbeCurve]:
+def _curves(model: FDVVModel, plan: ProbePlan, groups: Groups, jnds: Jnds = LITERATURE) -> list[ProbeCurve]:
     curves = [
         curve
-        for speed, silent, _ in plan.of(found)
+        for speed, silent, _ in plan.of(groups)
         if silent
-        for curve in judged_curves(model, speed, silent, jnds)
+        for curve in judge_curves(model, speed, silent, jnds)
     ]
     return sorted(curves, key=reading_order)
 
 
-def _with_vibrations(model: FDVVModel, plan: ProbePlan, found: Found, jnds: Jnds) -> list[ProbeCurve]:
-    curves = _all_curves(model, plan, found, jnds)
+def _with_vibrations(model: FDVVModel, plan: ProbePlan, groups: Groups, jnds: Jnds) -> list[ProbeCurve]:
+    curves = _curves(model, plan, groups, jnds)
     judged = [
         curve
-        for speed, silent, vibrating in plan.of(found)
+        for speed, silent, vibrating in plan.of(groups)
         for curve in with_vibrations(
             model, [c for c in curves if c.velocity_mm_s == speed], silent, vibrating
         )
@@ -282,14 +282,14 @@ def _with_vibrations(model: FDVVModel, plan: ProbePlan, found: Found, jnds: Jnds
     return sorted(judged, key=reading_order)
 
 
-def _standings(model: FDVVModel, plan: ProbePlan, found: Found) -> tuple[VelocityProgress, ...]:
-    curves = [curve.outcome for curve in _all_curves(model, plan, found)]
+def _standings(model: FDVVModel, plan: ProbePlan, groups: Groups) -> tuple[VelocityProgress, ...]:
+    curves = [curve.outcome for curve in _curves(model, plan, groups)]
     return tuple(
         VelocityProgress(
             speed,
             len(silent) + len(vibrating),
-            plan.presses + plan.vibrating_after(found),
+            plan.presses + plan.vibrating_after(groups),
             tuple(c for c in curves if c.velocity_mm_s == speed),
         )
-        for speed, silent, vibrating in plan.of(found)
+        for speed, silent, vibrating in plan.of(groups)
     )

@@ -20,13 +20,13 @@ from fdvv.force_text import force_number, force_text
 from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.program.check import require_accepted
-from fdvv.program.compensate import commands, learned_surfaces, loop_targets
+from fdvv.program.compensate import commands, loop_targets, with_learned
 from fdvv.program.compile import compile_program
 from fdvv.program.program import Program
 from fdvv.program.surface import Limits
 from fdvv.protocol.tables import CellSpec, ForceLoopGains
 from fdvv.rendering.compensate import CompensationResult, check_speeds
-from fdvv.rendering.evaluation.program_probe import StateError, all_errors_cN, judged_states
+from fdvv.rendering.evaluation.program_probe import StateError, all_errors_cN, judge_states
 from fdvv.rendering.tuning import tune
 
 JUDGED_mm_s = 100.0
@@ -82,7 +82,7 @@ def rendering_of(
         tuning = tuning_with(known, program.travel_mm, gains)
     made = loop_targets(program) if cell else commands(program, known, device.info().force_limit_cN)
     if learned and button:
-        made = learned_surfaces(made, program, learned.surface, button)
+        made = with_learned(made, program, learned.surface, button)
     bare = Limits(settings=settings, weight_cN=0.0)
     return ProgramRendering(
         compile_program(made, bare).image,
@@ -144,19 +144,19 @@ class ProgramReport:
         return [row for row in rows if row.velocity_mm_s == velocity_mm_s]
 
     @property
-    def judged_mm_s(self) -> float:
+    def verdict_mm_s(self) -> float:
         """Return the speed that the verdict names."""
         return min((row.velocity_mm_s for row in self.rendered), key=lambda v: abs(v - JUDGED_mm_s))
 
     @property
     def median_cN(self) -> float:
         """Return the median error over all bins at the judged speed."""
-        return float(np.median(all_errors_cN(self.at(self.judged_mm_s))))
+        return float(np.median(all_errors_cN(self.at(self.verdict_mm_s))))
 
     @property
     def as_written(self) -> bool:
         """Return whether half of the bins at the judged speed are off by less than a finger would notice."""
-        steps = np.concatenate([row.errors_JND for row in self.at(self.judged_mm_s)])
+        steps = np.concatenate([row.errors_JND for row in self.at(self.verdict_mm_s)])
         return bool(np.median(steps) <= 1)
 
     @property
@@ -165,13 +165,13 @@ class ProgramReport:
 
         Both in mean and in the sum over the way: after a step of force fewer bins are off, each by as much.
         """
-        before = {(r.state, r.stroke): r.errors_cN for r in self.at(self.judged_mm_s, False) if r.bins}
-        found = []
-        for row in self.at(self.judged_mm_s):
+        before = {(r.state, r.stroke): r.errors_cN for r in self.at(self.verdict_mm_s, False) if r.bins}
+        worse = []
+        for row in self.at(self.verdict_mm_s):
             was = before.get((row.state, row.stroke))
             if row.bins and was is not None and row.mean_cN > was.mean() and row.errors_cN.sum() > was.sum():
-                found.append(row)
-        return found
+                worse.append(row)
+        return worse
 
     @property
     def impact_cN(self) -> float:
@@ -181,7 +181,7 @@ class ProgramReport:
     @property
     def verdict(self) -> str:
         """Say in one sentence whether the program is felt as it is written."""
-        speed = self.judged_mm_s
+        speed = self.verdict_mm_s
         after, before = self.at(speed), self.at(speed, False)
         errors, median = all_errors_cN(after), self.median_cN
         worst = max(after, key=lambda row: row.mean_cN)
@@ -242,19 +242,19 @@ def judge_rendering(
     tune(device, UNTUNED)
     as_it_is = compile_program(start_alone(program)).image
     device.upload_program(compile_program(program).image, paced_on=as_it_is)
-    as_is = pressed(device, program, speeds, presses, jnds)
+    as_is = press_and_judge(device, program, speeds, presses, jnds)
     rendering.put_on(device)
-    rendered = pressed(device, program, speeds, presses, jnds)
+    rendered = press_and_judge(device, program, speeds, presses, jnds)
     closed = rendering.tuning.loop is not None
     return ProgramReport(program.name, device.info().name, closed, presses, as_is, rendered, jnds)
 
 
-def pressed(
+def press_and_judge(
     device: TwinDevice, program: Program, velocities_mm_s: Sequence[float], presses: int, jnds: Jnds
 ) -> tuple[StateError, ...]:
     """Press what is active and judge it by what a program intends."""
-    found: list[StateError] = []
+    errors: list[StateError] = []
     for speed in velocities_mm_s:
         traces = [device.press_trace(speed) for _ in range(presses)]
-        found += judged_states(program, traces, speed, jnds)
-    return tuple(found)
+        errors += judge_states(program, traces, speed, jnds)
+    return tuple(errors)

@@ -146,11 +146,11 @@ class RigCatalog:
         """Return the rig files by name; an id is looked up here, never made into a path."""
         if not self._folder.is_dir():
             return {}
-        found = {p.name: p for p in self._folder.iterdir() if p.name.endswith(SUFFIX) and p.is_file()}
+        files = {p.name: p for p in self._folder.iterdir() if p.name.endswith(SUFFIX) and p.is_file()}
         for old, name in OLD_RIG_NAMES.items():
-            if path := found.pop(f"{old}{SIMULATED}", None):
-                found.setdefault(f"{name}{SIMULATED}", path)
-        return found
+            if path := files.pop(f"{old}{SIMULATED}", None):
+                files.setdefault(f"{name}{SIMULATED}", path)
+        return files
 
 
 def _current_id(rig_id: str) -> str:
@@ -179,7 +179,7 @@ class LimitedRange:
     limit: Limit
 
 
-def limited_ranges(reached: AchievableStroke) -> list[LimitedRange]:
+def ranges_at_limit(reached: AchievableStroke) -> list[LimitedRange]:
     x, cuts = reached.displacement_mm, {"force": reached.saturated, "slew": reached.slewed}
     return [
         LimitedRange(float(x[a]), float(x[b - 1]), cast(Limit, limit))

@@ -91,9 +91,9 @@ class RunSummary(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     pressing_s: float
 
     def to_dict(self) -> dict[str, Any]:
-        found = msgspec.to_builtins(self)
-        assert isinstance(found, dict)
-        return found
+        record = msgspec.to_builtins(self)
+        assert isinstance(record, dict)
+        return record
 
 
 def make_run_summary(

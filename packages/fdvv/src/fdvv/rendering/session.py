@@ -72,13 +72,13 @@ class Manifest(msgspec.Struct, forbid_unknown_fields=True):
 
 def identity(device: Device) -> dict[str, Any]:
     """Return what distinguishes a device, without the settings that a session itself configures."""
-    found: dict[str, Any] = dataclasses.asdict(device.info())
+    record: dict[str, Any] = dataclasses.asdict(device.info())
     if isinstance(device, Remote):
         hello = device.client.hello
-        found |= {"serial": hello.serial, "firmware": hello.firmware, "protocol": hello.hash}
+        record |= {"serial": hello.serial, "firmware": hello.firmware, "protocol": hello.hash}
         settings = dataclasses.asdict(device.settings())
-        found["settings"] = {name: value for name, value in settings.items() if name not in TUNED}
-    return found
+        record["settings"] = {name: value for name, value in settings.items() if name not in TUNED}
+    return record
 
 
 def plain(settings: Any) -> dict[str, Any]:
@@ -86,9 +86,9 @@ def plain(settings: Any) -> dict[str, Any]:
 
     A field goes by the "key" of its metadata if it has one: the name it has in older sessions.
     """
-    found = json.loads(json.dumps(settings, default=_jsonable))
-    assert isinstance(found, dict)
-    return found
+    record = json.loads(json.dumps(settings, default=_jsonable))
+    assert isinstance(record, dict)
+    return record
 
 
 def _jsonable(value: Any) -> Any:
@@ -244,10 +244,10 @@ def _open(folder: Path, manifest: Manifest, kind: type[Log]) -> Log:
     try:
         # checked again under the lock: another process may have started the session
         if (folder / MANIFEST).exists():
-            found = differences(read_manifest(folder / MANIFEST), manifest)
-            if found:
-                more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
-                reason = f"is another session: {found[0]}{more}"
+            changes = differences(read_manifest(folder / MANIFEST), manifest)
+            if changes:
+                more = f" (and {len(changes) - 1} more)" if len(changes) > 1 else ""
+                reason = f"is another session: {changes[0]}{more}"
                 raise InputError(folder, "session", reason, "repeat its options, or name another folder")
         else:
             write_atomic(folder / MANIFEST, pretty(msgspec.to_builtins(manifest)) + "\n")

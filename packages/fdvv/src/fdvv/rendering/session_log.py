@@ -213,7 +213,7 @@ class PressLog(SessionFile[PressEntry]):
 
     def add(self, record: PressRecord) -> None:
         if self.path is not None:
-            self._write({"press": _packed(record)})
+            self._write({"press": _pack(record)})
         self.entries.append(record.entry)
 
     def add_check(self, check: CheckRecord) -> None:
@@ -236,20 +236,20 @@ class PressLog(SessionFile[PressEntry]):
         ]
 
 
-def _packed(record: PressRecord) -> dict[str, Any]:
+def _pack(record: PressRecord) -> dict[str, Any]:
     columns = pack_record(record.press) if record.press else None
     tuning = {} if record.tuning == UNTUNED else {"tuning": record.tuning.to_dict()}
-    found = {**msgspec.to_builtins(record.entry), "surface": pack_record(record.surface), "columns": columns}
-    return found | tuning | ({"vibrating": True} if record.vibrating else {})
+    body = {**msgspec.to_builtins(record.entry), "surface": pack_record(record.surface), "columns": columns}
+    return body | tuning | ({"vibrating": True} if record.vibrating else {})
 
 
-def _record(path: Path | None, found: dict[str, Any], number: int) -> PressRecord:
+def _record(path: Path | None, body: dict[str, Any], number: int) -> PressRecord:
     """Unpack a press, which must have this number."""
     try:
-        surface, columns = unpack_surface(found.pop("surface")), found.pop("columns")
-        tuning = msgspec.convert(found.pop("tuning", {}), Tuning)
-        vibrating = bool(found.pop("vibrating", False))
-        entry = msgspec.convert(found, PressEntry)
+        surface, columns = unpack_surface(body.pop("surface")), body.pop("columns")
+        tuning = msgspec.convert(body.pop("tuning", {}), Tuning)
+        vibrating = bool(body.pop("vibrating", False))
+        entry = msgspec.convert(body, PressEntry)
         if entry.number != number:
             raise ValueError(f"bears the number {entry.number}")
         return PressRecord(entry, surface, unpack_press(columns) if columns else None, tuning, vibrating)

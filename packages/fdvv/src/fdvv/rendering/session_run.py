@@ -10,13 +10,13 @@ from typing import Any, Generic, NoReturn, Protocol, TypeVar
 import numpy as np
 
 from fdvv.compensation.method import CurveOutcome, Trial, TrialSource
-from fdvv.compensation.parts.guard import Found, PartGuard
+from fdvv.compensation.parts.guard import Diagnosis, PartGuard
 from fdvv.compensation.presses import PressAcceptance
 from fdvv.device.contract import Device
 from fdvv.errors import DeviceError, InputError, ModelError, PartFault, PartFaultError
 from fdvv.io.files import defer_interrupt
 from fdvv.model.press import Press
-from fdvv.rendering.press_made import PressMade, clear_latched, lasting_part, made_press
+from fdvv.rendering.press_made import PressMade, attempt_press, clear_latched, lasting_part
 from fdvv.rendering.session import now
 from fdvv.rendering.session_log import REMEDY, PartRecord, PressEntry, PressLog, PressRecord, SessionFile
 from fdvv.rendering.tuning import tune
@@ -135,7 +135,7 @@ class PartWatch(Protocol):
     def check(self, device: Device, guide: Guide, log: PressLog) -> None:
         """Check the parts, unless the log has a check of today. Raises PartFaultError."""
 
-    def confirmed(self, device: Device, found: Found) -> Found:
+    def confirm(self, device: Device, diagnosis: Diagnosis) -> Diagnosis:
         """Return what was found, after a look at the rig at rest where a press cannot tell parts apart."""
 
 
@@ -172,12 +172,12 @@ def run(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S:
     for text in (*(f"warning: {warning}" for warning in log.warnings), _resume_notice(plan, state, log)):
         if text:
             plan.guide.notice(text)
-    with released(device, lambda: how_to_resume(log, log.used, "press", "presses")):
-        return _pressed(device, plan, state, log)
+    with release_on_error(device, lambda: how_to_resume(log, log.used, "press", "presses")):
+        return _press_until_done(device, plan, state, log)
 
 
 @contextmanager
-def released(device: Device, resume: Callable[[], str]) -> Iterator[None]:
+def release_on_error(device: Device, resume: Callable[[], str]) -> Iterator[None]:
     """Leave a device at zero force where the block fails; Ctrl-C and DeviceError then say how to resume."""
     try:
         yield
@@ -235,7 +235,7 @@ def _refuse(log: PressLog, record: PressRecord, reason: str) -> NoReturn:
     raise InputError(log.path, f"press {record.entry.number}", why, REMEDY)
 
 
-def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S:
+def _press_until_done(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S:
     before, in_a_row = None, 0
     clear_latched(device, plan.guide.notice)
     if plan.parts and plan.source.trial(state) is not None:
@@ -245,19 +245,19 @@ def _pressed(device: Device, plan: SessionPlan[S], state: S, log: PressLog) -> S
         prepare(device, trial, plan.travel_mm, before, plan.upload_vibrating)
         count = plan.source.count(state)
         plan.guide.ask(PressRequest(trial.velocity_mm_s, plan.travel_mm, count.made + 1, count.total))
-        made = made_press(device, trial.velocity_mm_s)
+        made = attempt_press(device, trial.velocity_mm_s)
         if made.error and not made.faulted:
             _stop_or_raise(device, plan, trial, made.press, made.error, log)
         # a person cannot repeat a press: Ctrl-C waits until it is on file
         with defer_interrupt():
-            entry, state, found = _taken(device, plan, state, trial, made, log)
+            entry, state, diagnosis = _take_press(device, plan, state, trial, made, log)
         _report(plan, state, entry, made.press)
-        if found:
-            _stop_at(log, found, entry)
+        if diagnosis:
+            _stop_at(log, diagnosis, entry)
         before = trial
         if made.faulted:
             if lasting := lasting_part(device, made.part, last):
-                _stop_at(log, Found(lasting), entry)
+                _stop_at(log, Diagnosis(lasting), entry)
             before = None  # a cleared device needs its program again
         last = made.part
         in_a_row = 0 if entry.used else in_a_row + 1
@@ -285,35 +285,35 @@ def _stop_or_raise(
     log: PressLog,
 ) -> NoReturn:
     """End the session with the part that a failed press shows to be at fault, else with its own error."""
-    found = None if press is None else _looked(device, plan, press, used=False, sure=True)
-    if found is None:
+    diagnosis = None if press is None else _look(device, plan, press, used=False, sure=True)
+    if diagnosis is None:
         raise error
-    entry = PressEntry(len(log.entries) + 1, trial.velocity_mm_s, str(found.fault), None, now())
+    entry = PressEntry(len(log.entries) + 1, trial.velocity_mm_s, str(diagnosis.fault), None, now())
     log.add(PressRecord(entry, trial.surface, press, trial.tuning, trial.vibrating))
-    _stop_at(log, found, entry)
+    _stop_at(log, diagnosis, entry)
 
 
-def _stop_at(log: PressLog, found: Found, entry: PressEntry) -> NoReturn:
+def _stop_at(log: PressLog, diagnosis: Diagnosis, entry: PressEntry) -> NoReturn:
     """Set the presses of a rig that is another now apart, and end the session."""
-    log.set_apart(_part_record(found.fault, max(1, entry.number - found.presses + 1)))
-    raise PartFaultError(found.fault)
+    log.set_apart(_part_record(diagnosis.fault, max(1, entry.number - diagnosis.presses + 1)))
+    raise PartFaultError(diagnosis.fault)
 
 
 def _part_record(fault: PartFault, from_press: int) -> PartRecord:
     return PartRecord(from_press, fault.part, fault.seen, fault.remedy, now())
 
 
-def _taken(
+def _take_press(
     device: Device, plan: SessionPlan[S], state: S, trial: Trial, made: PressMade, log: PressLog
-) -> tuple[PressEntry, S, Found | None]:
+) -> tuple[PressEntry, S, Diagnosis | None]:
     """Judge and log a press, and use it if it is usable; return the part at fault, if it shows one."""
-    press, found = made.press, None
+    press, diagnosis = made.press, None
     if press is None:
         verdict = PressAcceptance(made.reason, float("nan"))
     else:
         verdict = plan.judge(press, trial.pace_ratio)
-        found = _looked(device, plan, press, not verdict.reason)
-    reason, after = str(found.fault) if found else verdict.reason, state
+        diagnosis = _look(device, plan, press, not verdict.reason)
+    reason, after = str(diagnosis.fault) if diagnosis else verdict.reason, state
     if press is not None and not reason:
         try:
             after = plan.source.step(press, state)
@@ -322,17 +322,17 @@ def _taken(
     achieved = verdict.achieved_mm_s if np.isfinite(verdict.achieved_mm_s) else None
     entry = PressEntry(len(log.entries) + 1, trial.velocity_mm_s, reason, achieved, now())
     log.add(PressRecord(entry, trial.surface, press, trial.tuning, trial.vibrating))
-    return entry, after, found
+    return entry, after, diagnosis
 
 
-def _looked(
+def _look(
     device: Device, plan: SessionPlan[S], press: Press, used: bool, sure: bool = False
-) -> Found | None:
+) -> Diagnosis | None:
     """Look at the parts before a person is blamed for a press."""
     if plan.parts is None:
         return None
-    found = plan.parts.guard.look(press, used, sure)
-    return plan.parts.confirmed(device, found) if found else None
+    diagnosis = plan.parts.guard.look(press, used, sure)
+    return plan.parts.confirm(device, diagnosis) if diagnosis else None
 
 
 def _report(plan: SessionPlan[S], state: S, entry: PressEntry, press: Press | None) -> None:
@@ -340,8 +340,8 @@ def _report(plan: SessionPlan[S], state: S, entry: PressEntry, press: Press | No
     achieved = float("nan") if entry.achieved_mm_s is None else entry.achieved_mm_s
     message = plan.source.explain(state) if entry.used else ""
     place = plan.stage, entry.velocity_mm_s, count.made, count.total
-    found = press, entry.reason, achieved, message
-    plan.progress(PressDone(*place, *found, lambda: plan.velocity_progress(state)))
+    outcome = press, entry.reason, achieved, message
+    plan.progress(PressDone(*place, *outcome, lambda: plan.velocity_progress(state)))
 
 
 def release_force(device: Any) -> None:

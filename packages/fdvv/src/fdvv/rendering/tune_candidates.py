@@ -62,7 +62,7 @@ def candidates_for(
     exciter : gives m/s² per volt at the vibration's frequency, which decides where templates reach the
     limit; without it Limits does. Raises InputError if the model has no vibration of the press.
     """
-    found = []
+    sets = []
     for velocity in velocities_mm_s:
         measured = model.vibration(Stroke.PRESS, velocity)
         if measured is None:
@@ -71,8 +71,8 @@ def candidates_for(
         own = replace(measured, velocity_mm_s=float(velocity))
         m_s2_V = acceleration_per_volt(own, exciter)
         made = [t.vibration(own, m_s2_V) for t in templates_around(own, m_s2_V, grid)]
-        found.append(Candidates(float(velocity), (own, *(v for v in made if not _alike(v, own)))))
-    return tuple(found)
+        sets.append(Candidates(float(velocity), (own, *(v for v in made if not _alike(v, own)))))
+    return tuple(sets)
 
 
 def acceleration_per_volt(vibration: Vibration, exciter: KnownExciter | None) -> float:
@@ -83,7 +83,7 @@ def acceleration_per_volt(vibration: Vibration, exciter: KnownExciter | None) ->
     return abs(complex(exciter.response(strongest.frequency_Hz)))
 
 
-def tuned_model(model: FDVVModel, chosen: Sequence[Vibration]) -> FDVVModel:
+def replace_vibrations(model: FDVVModel, chosen: Sequence[Vibration]) -> FDVVModel:
     """Return a model with these vibrations of the press instead of its own at their velocities.
 
     One that served every velocity is replaced by them all.
@@ -123,9 +123,9 @@ def simulated_observer(candidates: Sequence[Candidates], seed: int = 0) -> Simul
     """Return an observer with a random favourite per velocity, who prefers the others by similarity."""
     random = np.random.default_rng([seed, 1])
     likes = []
-    for found in candidates:
-        favourite = found.vibrations[int(random.integers(len(found.vibrations)))]
-        likes.append([_like(vibration, favourite) for vibration in found.vibrations])
+    for candidate_set in candidates:
+        favourite = candidate_set.vibrations[int(random.integers(len(candidate_set.vibrations)))]
+        likes.append([_like(vibration, favourite) for vibration in candidate_set.vibrations])
     return SimulatedObserver(likes, seed=seed)
 
 

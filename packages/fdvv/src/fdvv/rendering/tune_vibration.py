@@ -24,8 +24,8 @@ from fdvv.rendering.press_made import clear_latched
 from fdvv.rendering.run_summary import RunSummary, write_run_summary
 from fdvv.rendering.session import Session, now, plain, table_digest
 from fdvv.rendering.session_log import REMEDY, AnswerLog, AnswerRecord
-from fdvv.rendering.session_run import Guide, PressRequest, how_to_resume, released
-from fdvv.rendering.tune_candidates import Candidates, candidate_image, candidates_for, tuned_model
+from fdvv.rendering.session_run import Guide, PressRequest, how_to_resume, release_on_error
+from fdvv.rendering.tune_candidates import Candidates, candidate_image, candidates_for, replace_vibrations
 from fdvv.rendering.tuning import tune
 from fdvv.vibration.exciter import KnownExciter
 from fdvv.vibration.templates import TemplateGrid
@@ -174,17 +174,17 @@ def tune_vibration(
     settings = _about(method, setup, candidates, surface)
     manifest = session.manifest("tune", device, model, speeds, name, settings)
     with session.open_log(manifest, AnswerLog) as log:
-        state = _replayed(method, candidates, log)
-        _greet(guide, log, method.done(state))
+        state = _replay(method, candidates, log)
+        _greet(guide, log, method.is_done(state))
         if not has_exciter(device):
             guide.notice(NOTHING_VIBRATES)
         plan = _TuningPlan(device, candidates, upload, answer, session, guide, model.travel_mm, answered)
         state = _ask_questions(plan, method, state, log)
         entries = [given.entry for given in log.entries]
         receipt = write_run_summary(session.folder, manifest, log.runs, entries)
-    found = _standing(candidates, method, state)
+    ranking = _standing(candidates, method, state)
     simulated = device.info().simulated or setup.observer != OBSERVERS[0]
-    result = TuneResult(model, name, device.info().name, setup.observer, simulated, found, receipt)
+    result = TuneResult(model, name, device.info().name, setup.observer, simulated, ranking, receipt)
     return replace(result, model=_with_provenance(result))
 
 
@@ -231,7 +231,7 @@ def _about(
     }
 
 
-def _replayed(method: Method, candidates: Sequence[Candidates], log: AnswerLog) -> TuningState:
+def _replay(method: Method, candidates: Sequence[Candidates], log: AnswerLog) -> TuningState:
     """Rebuild the state from the answers on file. Raises InputError if they belong to other questions."""
     state = method.init(Job(tuple(len(c.vibrations) for c in candidates)))
     for given in log.entries:
@@ -266,9 +266,9 @@ def _standing(
 
 def _ask_questions(plan: _TuningPlan, method: Method, state: TuningState, log: AnswerLog) -> TuningState:
     clear_latched(plan.device, plan.guide.notice)
-    with released(plan.device, lambda: how_to_resume(log, len(log.entries), "answer", "answers")):
+    with release_on_error(plan.device, lambda: how_to_resume(log, len(log.entries), "answer", "answers")):
         while (question := method.ask(state)) is not None:
-            reply, speeds = _answered(plan, question)
+            reply, speeds = _ask_until_answered(plan, question)
             with defer_interrupt():
                 after = method.tell(state, reply)
                 stored = str(reply) if isinstance(reply, Preferred) else reply
@@ -280,21 +280,21 @@ def _ask_questions(plan: _TuningPlan, method: Method, state: TuningState, log: A
     return state
 
 
-def _answered(plan: _TuningPlan, question: Question) -> tuple[int | Preferred, list[float | None]]:
+def _ask_until_answered(plan: _TuningPlan, question: Question) -> tuple[int | Preferred, list[float | None]]:
     """Have the vibrations pressed, as often as the person wants, until there is an answer."""
     while True:
-        speeds = [_pressed(plan, question, template) for template in question.templates]
+        speeds = [_press(plan, question, template) for template in question.templates]
         if (reply := plan.answer(question)) is not None:
             return reply, speeds
 
 
-def _pressed(plan: _TuningPlan, question: Question, template: int) -> float | None:
+def _press(plan: _TuningPlan, question: Question, template: int) -> float | None:
     """Have one vibration pressed at the requested speed; return the mean speed of the press."""
-    found = plan.candidates[question.place]
+    options = plan.candidates[question.place]
     for _ in range(PATIENCE):
-        plan.upload(found.vibrations[template])
-        plan.guide.ask(PressRequest(found.velocity_mm_s, plan.travel_mm, question.number, question.total))
-        press = plan.device.press(found.velocity_mm_s)
+        plan.upload(options.vibrations[template])
+        plan.guide.ask(PressRequest(options.velocity_mm_s, plan.travel_mm, question.number, question.total))
+        press = plan.device.press(options.velocity_mm_s)
         verdict = judge_press(press, plan.travel_mm, plan.session.acceptance)
         if not verdict.reason:
             return float(verdict.achieved_mm_s) if np.isfinite(verdict.achieved_mm_s) else None
@@ -306,7 +306,7 @@ def _pressed(plan: _TuningPlan, question: Question, template: int) -> float | No
 def _with_provenance(result: TuneResult) -> FDVVModel:
     """Return the tuned model, with the tuning in its provenance."""
     chosen = [replace(t.vibration, velocity_mm_s=t.candidates.velocity_mm_s) for t in result.tuned]
-    model = tuned_model(result.model, chosen)
+    model = replace_vibrations(result.model, chosen)
     about = model.provenance
     speeds = ", ".join(f"{t.candidates.velocity_mm_s:g}" for t in result.tuned)
     by = "a person" if result.observer == OBSERVERS[0] else "a simulated observer (evidence of nothing)"

@@ -79,7 +79,7 @@ def chart_svg(
         return TOP + (bottom - TOP) * (1 - (y - y_range[0]) / (y_range[1] - y_range[0]))
 
     named = [line for line in lines if line.name]
-    shown = [(line, *_thinned(line)) for line in lines]
+    shown = [(line, *_thin(line)) for line in lines]
     text = (
         environment()
         .get_template("chart.svg")
@@ -118,7 +118,7 @@ def _steps(low: float, high: float) -> list[float]:
     return [step * i for i in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
 
 
-def _thinned(line: ChartLine) -> tuple[FloatArray, FloatArray]:
+def _thin(line: ChartLine) -> tuple[FloatArray, FloatArray]:
     """Keep the lowest and the highest of each stretch of a long line, so that no peak is lost."""
     x, y = np.asarray(line.x, dtype=np.float64), np.asarray(line.y, dtype=np.float64)
     if x.size <= MOST_POINTS:

@@ -210,11 +210,11 @@ def _mark_points(ax: Axes, model: FDVVModel, velocity_mm_s: float | None, colour
     release = model.nearest(Stroke.RELEASE, velocity_mm_s)
     points: list[tuple[str, float | None, float | None]] = []
     if model.of(Stroke.PRESS):
-        found = landmarks(model, velocity_mm_s)
+        marks = landmarks(model, velocity_mm_s)
         points += [
-            ("peak and valley", found.peak_mm, found.peak_cN),
-            ("peak and valley", found.valley_mm, found.valley_cN),
-            ("actuation", found.actuation_mm, found.actuation_cN),
+            ("peak and valley", marks.peak_mm, marks.peak_cN),
+            ("peak and valley", marks.valley_mm, marks.valley_cN),
+            ("actuation", marks.actuation_mm, marks.actuation_cN),
         ]
     if release is not None and model.reset_mm is not None:
         points.append(("reset", model.reset_mm, float(release.force_cN(model.reset_mm))))

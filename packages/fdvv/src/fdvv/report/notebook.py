@@ -61,7 +61,7 @@ def _curves(model: FDVVModel) -> list[ChartLine]:
             opacity = 1.0 if len(curves) == 1 else 1.0 - 0.6 * rank / (len(curves) - 1)
             colour = 0 if stroke is Stroke.PRESS else 1
             x = np.linspace(curve.start_mm, curve.end_mm, POINTS)
-            name = _named(curve, len(curves)) if rank in (0, len(curves) - 1) else ""
+            name = _label(curve, len(curves)) if rank in (0, len(curves) - 1) else ""
             lines.append(
                 ChartLine(x, shown_force(curve.force_cN(x)), name, colour, stroke is Stroke.RELEASE, opacity)
             )
@@ -74,7 +74,7 @@ def _curves(model: FDVVModel) -> list[ChartLine]:
     return lines
 
 
-def _named(curve: ForceCurve, of: int) -> str:
+def _label(curve: ForceCurve, of: int) -> str:
     speed = "" if curve.velocity_mm_s is None else f" {curve.velocity_mm_s:g} mm/s"
     return f"{curve.stroke}{speed}" if of > 1 or speed else str(curve.stroke)
 
@@ -82,9 +82,9 @@ def _named(curve: ForceCurve, of: int) -> str:
 def _facts(model: FDVVModel) -> list[tuple[str, str]]:
     rows = [("curves", str(len(model.curves))), ("vibrations", str(len(model.vibrations)))]
     if model.of(Stroke.PRESS):
-        found = landmarks(model).to_dict()
+        marks = landmarks(model).to_dict()
         names = ("preload_cN", "peak_mm", "peak_cN", "valley_cN", "snap_ratio", "bottom_out_cN", "work_mJ")
-        rows += [_landmark_row(name, found[name]) for name in names if found[name] is not None]
+        rows += [_landmark_row(name, marks[name]) for name in names if marks[name] is not None]
     if model.provenance.licence:
         licence = model.provenance.licence
         short = licence if len(licence) <= LONGEST_LICENCE else f"{licence[:LONGEST_LICENCE]}…"
@@ -107,9 +107,9 @@ def _with_unit(value: float, unit: str) -> str:
     return f"{value:.3g}" if unit == "1" else f"{value:.2f} {unit}"
 
 
-def landmarks_html(found: Landmarks) -> str:
+def landmarks_html(marks: Landmarks) -> str:
     """Show landmarks as a table; what a button has not is a dash."""
-    rows = [_landmark_row(name, value) for name, value in found.to_dict().items()]
+    rows = [_landmark_row(name, value) for name, value in marks.to_dict().items()]
     half = (len(rows) + 1) // 2
     return block("landmarks", "", [table(rows[:half]), table(rows[half:])])
 
@@ -139,7 +139,7 @@ def recording_html(recording: Recording) -> str:
     if len(recording.takes) > MOST_TAKES:
         rows.append((f"… {len(recording.takes) - MOST_TAKES} more", "", "", ""))
     parts = [table(rows, ("take", "stage", "mm/s", "streams"))]
-    drawn = _drawn_stream(recording)
+    drawn = _choose_stream(recording)
     if drawn:
         parts.append(_stream_chart(*drawn))
     note = f"{len(recording.takes)} takes" + (", simulated" if recording.simulated else "")
@@ -152,7 +152,7 @@ def _take_row(take: Take) -> tuple[str, str, str, str]:
     return str(take.number), str(take.stage), speed, streams if len(streams) <= 80 else f"{streams[:79]}…"
 
 
-def _drawn_stream(recording: Recording) -> tuple[Take, Stream] | None:
+def _choose_stream(recording: Recording) -> tuple[Take, Stream] | None:
     """Choose what is drawn: something of a press if there is one."""
     for take in sorted(recording.takes, key=lambda take: (take.stage != "press", take.number)):
         for quantity in DRAWN:

@@ -15,9 +15,9 @@ from fdvv.units import FloatArray
 
 def _check_columns(record: object, names: Sequence[str], shape: tuple[int, ...], whose: str = "") -> None:
     for name in names:
-        found = getattr(record, name).shape
-        if found != shape:
-            raise ModelError(f"{whose}{name} must match displacement_mm, got {found} and {shape}")
+        actual = getattr(record, name).shape
+        if actual != shape:
+            raise ModelError(f"{whose}{name} must match displacement_mm, got {actual} and {shape}")
 
 
 @dataclass(frozen=True, eq=False)

@@ -99,11 +99,11 @@ def in_house_style(draw: Callable[P, R]) -> Callable[P, R]:
     """Make a function draw in the house style; it raises BuildError where matplotlib is absent."""
 
     @functools.wraps(draw)
-    def styled(*args: P.args, **kwargs: P.kwargs) -> R:
+    def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
         with house_style():
             return draw(*args, **kwargs)
 
-    return styled
+    return wrapper
 
 
 @in_house_style
@@ -150,7 +150,7 @@ def name_text(name: str) -> str:
     return f" {short}" if short.startswith("_") else short
 
 
-def wrapped(text: str, width: int = 30) -> str:
+def wrap(text: str, width: int = 30) -> str:
     return "\n".join(textwrap.wrap(text, width))
 
 
@@ -179,16 +179,16 @@ def show_force_unit(fig: Figure) -> None:
             _scale(axis, in_cN(unit))
 
 
-def _scale(axis: Any, one: float) -> None:
+def _scale(axis: Any, unit: float) -> None:
     """Set round ticks in a unit of so many cN."""
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
     log = axis.get_scale() == "log"
     base = LogLocator(subs=(1.0, 2.0, 5.0)) if log else MaxNLocator(6, steps=[1, 2, 2.5, 5, 10])
     low, high = sorted(axis.get_view_interval())
-    ticks = np.array([one * tick for tick in base.tick_values(low / one, high / one)])
+    ticks = np.array([unit * tick for tick in base.tick_values(low / unit, high / unit)])
     axis.set_ticks(ticks[(ticks >= low) & (ticks <= high)])
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / one:.4g}".replace("-", "−")))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / unit:.4g}".replace("-", "−")))
     axis.set_minor_formatter(NullFormatter())
 
 

@@ -18,7 +18,7 @@ from fdvv.twin.cam import Cam, CELL_m, identify
 from fdvv.twin.finger import Finger
 from fdvv.twin.gesture import Gesture
 from fdvv.twin.rig import ForceSensor
-from fdvv.twin.rig_kernel import HUNT_CROSSLEY, finger_part, gesture_times, picked, worn_part
+from fdvv.twin.rig_kernel import HUNT_CROSSLEY, finger_part, gesture_times, pick, sensor_part
 from fdvv.units import FloatArray
 
 BUTTON_COLUMNS = 13
@@ -136,7 +136,7 @@ def button_plant(
     parts = {
         "finger": finger_part(finger, gesture.stiffness_N_m, gesture.damping_N_s_m),
         "gesture": gesture_times(gesture),
-        **worn_part(worn),
+        **sensor_part(worn),
         "sensor_rc_s": worn.filter_s,
         **_button_part(button),
         **_leaf_part(button),
@@ -159,8 +159,8 @@ def _button_part(button: ButtonPhysics) -> dict[str, float]:
         "law_ratio": dome.log_ratio if rubber and dome.law == "log" else 0.0,
         "law_speed_m_s": dome.log_speed_m_s,
         "law_s_m": dome.linear_s_m if rubber and dome.law == "linear" else 0.0,
-        **picked(curve, "travel_m close_m open_m"),
-        **picked(housing, "bottom_stiffness_N_m top_stiffness_N_m snap_ratio"),
+        **pick(curve, "travel_m close_m open_m"),
+        **pick(housing, "bottom_stiffness_N_m top_stiffness_N_m snap_ratio"),
         "bottom_loss_s_m": HUNT_CROSSLEY * housing.bottom_loss_s_m,
         "top_loss_s_m": HUNT_CROSSLEY * housing.top_loss_s_m,
     }
@@ -173,7 +173,7 @@ def _leaf_part(button: ButtonPhysics) -> dict[str, float]:
         "leaf_stiffness_N_m": leaf.stiffness_N_m,
         "leaf_preload_N": prepare(button).cam.preload_N,
         "leaf_damping_N_s_m": 2 * leaf.damping_ratio * math.sqrt(leaf.stiffness_N_m * leaf.mass_kg),
-        **picked(leaf, "cam_stiffness_N_m fixed_stiffness_N_m"),
+        **pick(leaf, "cam_stiffness_N_m fixed_stiffness_N_m"),
         "cam_loss_s_m": HUNT_CROSSLEY * leaf.cam_loss_s_m,
         "fixed_loss_s_m": HUNT_CROSSLEY * leaf.fixed_loss_s_m,
     }

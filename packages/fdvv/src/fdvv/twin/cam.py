@@ -58,7 +58,7 @@ def identify(button: ButtonPhysics) -> Cam:
     A button with a built cam is taken as it is built.
     """
     if button.cam is not None:
-        return _built(button, button.cam)
+        return _sample_cam(button, button.cam)
     x, middle_N, half_N = _curves(button)
     if button.curve.kind == "dome":
         nothing = np.zeros_like(x)
@@ -70,22 +70,22 @@ def _curves(button: ButtonPhysics) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return x with margins, the middle of the two curves and half their difference."""
     x = _places(button.curve.travel_m)
     press_N, release_N = (
-        button.curve.force_ratio * _laid(button, force, x) for force in (button.press_N, button.release_N)
+        button.curve.force_ratio * _interp(button, force, x) for force in (button.press_N, button.release_N)
     )
     # curves that cross show the bench's play, not friction that helps
     return x, 0.5 * (press_N + release_N), np.maximum(0.5 * (press_N - release_N), 0.0)
 
 
-def _built(button: ButtonPhysics, cam: BuiltCam) -> Cam:
+def _sample_cam(button: ButtonPhysics, cam: BuiltCam) -> Cam:
     """Lay a built cam over the table's places."""
     x, leaf = _places(button.curve.travel_m), button.leaf
-    elastic_N, height_m, rail_N, ratio = (_laid(button, getattr(cam, name), x) for name in BUILT)
+    elastic_N, height_m, rail_N, ratio = (_interp(button, getattr(cam, name), x) for name in BUILT)
     stiffness = np.where(height_m >= 0.0, 0.0, leaf.fixed_stiffness_N_m) + leaf.stiffness_N_m
     normal_N = np.maximum(cam.preload_N + stiffness * height_m, 0.0)
     return Cam(x, elastic_N, height_m, normal_N, rail_N, ratio, cam.preload_N)
 
 
-def _laid(button: ButtonPhysics, column: FloatArray, x: FloatArray) -> FloatArray:
+def _interp(button: ButtonPhysics, column: FloatArray, x: FloatArray) -> FloatArray:
     """Interpolate a column that is given at the places of press_N; its ends are held level."""
     from scipy.interpolate import PchipInterpolator
 

@@ -36,21 +36,21 @@ def draw_around(rig: Rig, random: np.random.Generator) -> Rig:
 
 def _around(own: Any, usual: Any, drawn: Any) -> Any:
     """Return a section with every number in proportion to its draw; what is 0 by default as it is drawn."""
-    found = {}
+    numbers = {}
     for name, was in vars(usual).items():
         now = getattr(drawn, name)
         if isinstance(was, float) and was != now:
-            found[name] = getattr(own, name) * now / was if was else now
-    return dataclasses.replace(own, **(_as_strong(own, found) if isinstance(own, Coil) else found))
+            numbers[name] = getattr(own, name) * now / was if was else now
+    return dataclasses.replace(own, **(_as_strong(own, numbers) if isinstance(own, Coil) else numbers))
 
 
-def _as_strong(own: Coil, found: dict[str, Any]) -> dict[str, Any]:
+def _as_strong(own: Coil, numbers: dict[str, Any]) -> dict[str, Any]:
     """Return a coil's numbers, with a resistance that keeps its force and a slope that it bears."""
-    ratio = found.get("force_constant_N_A", own.force_constant_N_A) / own.force_constant_N_A
-    found |= {"resistance_ohm": ratio * own.resistance_ohm, "bridge_ohm": ratio * own.bridge_ohm}
-    flat = dataclasses.replace(own, **{**found, "reluctance_H_m": 0.0})
-    slope_H_m = found.get("reluctance_H_m", own.reluctance_H_m)
-    return found | {"reluctance_H_m": min(slope_H_m, flat.steepest_H_m, STEEPEST_H_m)}
+    ratio = numbers.get("force_constant_N_A", own.force_constant_N_A) / own.force_constant_N_A
+    numbers |= {"resistance_ohm": ratio * own.resistance_ohm, "bridge_ohm": ratio * own.bridge_ohm}
+    flat = dataclasses.replace(own, **{**numbers, "reluctance_H_m": 0.0})
+    slope_H_m = numbers.get("reluctance_H_m", own.reluctance_H_m)
+    return numbers | {"reluctance_H_m": min(slope_H_m, flat.steepest_H_m, STEEPEST_H_m)}
 
 
 def draw_finger(random: np.random.Generator) -> Finger:
@@ -62,8 +62,8 @@ def draw_parts(record: Record, random: np.random.Generator) -> Record:
     """Draw every section of a record afresh; what is not fitted stays. Fields are drawn in order."""
     whole: Any = record
     sections = {f.name: getattr(whole, f.name) for f in dataclasses.fields(whole)}
-    fitted = {name: one for name, one in sections.items() if getattr(one, "fitted", "yes") == "yes"}
-    parts = sections | {name: draw_section(one, random) for name, one in fitted.items()}
+    fitted = {name: part for name, part in sections.items() if getattr(part, "fitted", "yes") == "yes"}
+    parts = sections | {name: draw_section(part, random) for name, part in fitted.items()}
     return type(record)(**parts)
 
 

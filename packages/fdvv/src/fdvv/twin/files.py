@@ -64,11 +64,11 @@ def current_rig_name(name: Path | str) -> Path | str:
     return OLD_RIG_NAMES.get(name, name) if isinstance(name, str) else name
 
 
-def shipped_rigs() -> dict[str, Path]:
+def rig_files() -> dict[str, Path]:
     """Return the files of the shipped rigs by their names, FIRST_RIG first."""
     folder = Path(str(resources.files("fdvv.twin"))) / "rigs"
-    found = {path.stem: path for path in sorted(folder.glob("*.toml"))}
-    return {FIRST_RIG: found[FIRST_RIG], **found}
+    files = {path.stem: path for path in sorted(folder.glob("*.toml"))}
+    return {FIRST_RIG: files[FIRST_RIG], **files}
 
 
 def load_finger(name: Path | str) -> Finger:
@@ -123,7 +123,7 @@ def _load(path: Path, kind: type[Record], readers: Mapping[str, Reader] = Mappin
     names = [*readers, *sections]
     for name in data:
         if name not in names:
-            raise _unknown(path, name, names, "key" if readers else "section")
+            raise _name_error(path, name, names, "key" if readers else "section")
     try:
         parts: dict[str, Any] = {name: read(path, name, data.get(name)) for name, read in readers.items()}
         parts |= {name: _section(path, name, field, data.get(name, {})) for name, field in sections.items()}
@@ -149,7 +149,7 @@ def _section(path: Path, name: str, field: dataclasses.Field[Any], values: objec
     fields = {f.name: f for f in dataclasses.fields(kind)}
     for key, value in values.items():
         if key not in fields:
-            raise _unknown(path, f"{name}.{key}", list(fields), "parameter")
+            raise _name_error(path, f"{name}.{key}", list(fields), "parameter")
         wrong = check_value(key, value, about(fields[key]), int if fields[key].type == "int" else float)
         if wrong:
             raise InputError(path, f"{name}.{key}", wrong, _advice(about(fields[key])))
@@ -166,16 +166,16 @@ def _advice(known: About) -> str:
     return " ".join(f"choose a value in range, plausible is {low:g} to {high:g} {known.unit}".split())
 
 
-def _unknown(path: Path, place: str, names: list[str], what: str) -> InputError:
+def _name_error(path: Path, place: str, names: list[str], what: str) -> InputError:
     return InputError(path, place, f"unknown {what}", did_you_mean(place.rpartition(".")[2], names))
 
 
 def button_names() -> tuple[str, ...]:
     """Return the names of the shipped buttons, sorted."""
-    return tuple(sorted(_shipped()))
+    return tuple(sorted(_button_files()))
 
 
-def _shipped() -> dict[str, Traversable]:
+def _button_files() -> dict[str, Traversable]:
     folder = resources.files("fdvv.twin").joinpath("buttons")
     return {f.name.removesuffix(SUFFIX): f for f in folder.iterdir() if f.name.endswith(SUFFIX)}
 
@@ -185,7 +185,7 @@ def load_button(name: Path | str) -> ButtonPhysics:
 
     InputError names file, key, bound and remedy of the first thing that is wrong.
     """
-    shipped = _shipped()
+    shipped = _button_files()
     if str(name) in shipped:
         with resources.as_file(shipped[str(name)]) as path:
             return _load_button(path)
@@ -237,7 +237,7 @@ def button_to_toml(button: ButtonPhysics) -> str:
     text = "# slow force at 0, curve.step_m, ... up to the bottom stop; press upward, release downward"
     lines += ["", text]
     for name in FORCES:
-        lines += [f"{name} = [", *_wrapped(getattr(button, name)), "]"]
+        lines += [f"{name} = [", *_wrap(getattr(button, name)), "]"]
     return "\n".join(lines + _section_lines(button) + _cam_lines(button.cam)) + "\n"
 
 
@@ -247,10 +247,10 @@ def _cam_lines(cam: BuiltCam | None) -> list[str]:
     head = "# coil, cam and friction as built, at the places of press_N; the slow curves tell nothing then"
     lines = ["", head, f"[{CAM}]", f"{PRELOAD} = {cam.preload_N:.5f}"]
     for name in BUILT:
-        lines += [f"{name} = [", *_wrapped(getattr(cam, name), CAM_DIGITS[name]), "]"]
+        lines += [f"{name} = [", *_wrap(getattr(cam, name), CAM_DIGITS[name]), "]"]
     return lines
 
 
-def _wrapped(forces_N: FloatArray, digits: int = 5) -> list[str]:
+def _wrap(forces_N: FloatArray, digits: int = 5) -> list[str]:
     words, n = [f"{force:.{digits}f}" for force in forces_N], FORCES_PER_LINE
     return [f"    {', '.join(words[i : i + n])}," for i in range(0, len(words), n)]

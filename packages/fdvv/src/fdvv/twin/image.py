@@ -139,24 +139,24 @@ def _pack(
         ).pack()
         for at in places
     ]
-    placed = _placed(events, waves, places[1] + len(forces[1]))
+    placed = _place(events, waves, places[1] + len(forces[1]))
     body = b"".join([*parts, *(event.pack() for event in placed), speeds, *forces, *waves])
     body += bytes(-len(body) % 4)
-    return _sealed(body, round(UM16_PER_mm * travel_mm), events)
+    return _seal(body, round(UM16_PER_mm * travel_mm), events)
 
 
-def _placed(events: Sequence[Vibration | Slot], waves: Sequence[bytes], at: int) -> list[Vibration | Slot]:
+def _place(events: Sequence[Vibration | Slot], waves: Sequence[bytes], at: int) -> list[Vibration | Slot]:
     """Return the events with each slot at its own samples, which lie one after the other from ``at``."""
-    found: list[Vibration | Slot] = []
+    placed: list[Vibration | Slot] = []
     left = list(waves)
     for event in events:
         wave = left.pop(0) if isinstance(event, Slot) and left else b""
         if isinstance(event, Slot) and wave:
-            found.append(replace(event, wave_at=at, wave_samples=len(wave)))
+            placed.append(replace(event, wave_at=at, wave_samples=len(wave)))
         else:
-            found.append(event)
+            placed.append(event)
         at += len(wave)
-    return found
+    return placed
 
 
 def _state(source: VelocitySource) -> State:
@@ -164,7 +164,7 @@ def _state(source: VelocitySource) -> State:
     return replace(nothing, release_surface=1, velocity_source=source, enter_slot=NONE, repeat_slot=NONE)
 
 
-def _sealed(body: bytes, travel_um16: int, events: Sequence[Vibration | Slot]) -> bytes:
+def _seal(body: bytes, travel_um16: int, events: Sequence[Vibration | Slot]) -> bytes:
     head = ImageHeader(
         magic=IMAGE_MAGIC,
         crc32=0,

@@ -84,7 +84,7 @@ class InteractiveTicks:
         )
 
     @classmethod
-    def joined(cls, parts: Sequence[InteractiveTicks]) -> InteractiveTicks:
+    def concatenate(cls, parts: Sequence[InteractiveTicks]) -> InteractiveTicks:
         """Join stretches that followed each other."""
         if len(parts) == 1:
             return parts[0]

@@ -126,10 +126,10 @@ def solve_button_pace(
         return SHORTEST_s
     if miss(high) >= 0:
         return min(math.exp(high), LONGEST_s)
-    found = brentq(miss, low, high, xtol=0.5 * TOLERANCE_ratio)
-    while miss(found) >= math.log(DIVERGED_mm_s / velocity_mm_s):
-        found += TOLERANCE_ratio
-    return math.exp(found)
+    root = brentq(miss, low, high, xtol=0.5 * TOLERANCE_ratio)
+    while miss(root) >= math.log(DIVERGED_mm_s / velocity_mm_s):
+        root += TOLERANCE_ratio
+    return math.exp(root)
 
 
 def _speed_mm_s(button: ButtonPhysics, finger: Finger, press_s: float, sensor: ForceSensor | None) -> float:

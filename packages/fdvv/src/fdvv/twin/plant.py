@@ -128,8 +128,8 @@ class RigPlant(RunningRig):
     @property
     def inputs(self) -> np.void:
         """What the board reads at the tick that now begins: one record of fdvv.firmware.core.INPUTS."""
-        one: np.void = self._inputs[0].copy()
-        return one
+        record: np.void = self._inputs[0].copy()
+        return record
 
     def step(self, duty_q15: int, enable: bool, stop_us: int, slot: int = NONE) -> np.void:
         """Let one tick pass under these outputs of a board; give the readings at its end.

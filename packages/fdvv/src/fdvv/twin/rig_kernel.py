@@ -63,14 +63,14 @@ class Rows(NamedTuple):
     outputs: RecordArray
 
 
-def picked(record: object, names: str, prefix: str = "") -> dict[str, float]:
+def pick(record: object, names: str, prefix: str = "") -> dict[str, float]:
     """Return fields of a record, named in one text, under the kernel's names: those with a prefix."""
     return {prefix + name: getattr(record, name) for name in names.split()}
 
 
 def gesture_times(gesture: Gesture) -> ctypes.Structure:
     """Return fdvv_gesture."""
-    return fill("fdvv_gesture", picked(gesture, "start_m end_m onset_s press_s dwell_s release_s"))
+    return fill("fdvv_gesture", pick(gesture, "start_m end_m onset_s press_s dwell_s release_s"))
 
 
 def noise_pointers(arrays: Sequence[FloatArray]) -> ctypes.Structure:
@@ -128,7 +128,7 @@ def run(
     n = max(ticks, 0)  # fewer than none are refused by the kernel
     plan = {
         "gesture": gesture_times(gesture),
-        **picked(gesture, "stiffness_N_m damping_N_s_m"),
+        **pick(gesture, "stiffness_N_m damping_N_s_m"),
         "settle_ticks": settle_ticks,
         "ticks": ticks,
         "announced_mm_s16": round(16 * announced_mm_s),
@@ -182,7 +182,7 @@ def finger_part(finger: Finger, stiffness_N_m: float, damping_N_s_m: float) -> d
         "finger_mass_kg": finger.impedance.mass_kg,
         "finger_stiffness_N_m": stiffness_N_m,
         "finger_damping_N_s_m": damping_N_s_m,
-        **picked(pulp, "scale_N exponent_1_m relaxed_ratio fast_s slow_s", "pulp_"),
+        **pick(pulp, "scale_N exponent_1_m relaxed_ratio fast_s slow_s", "pulp_"),
         "pulp_fast_ratio": relaxing * pulp.fast_share,
         "pulp_slow_ratio": relaxing * (1 - pulp.fast_share),
         "strap_N": pulp.strap_N,
@@ -190,7 +190,7 @@ def finger_part(finger: Finger, stiffness_N_m: float, damping_N_s_m: float) -> d
     }
 
 
-def worn_part(sensor: ForceSensor) -> dict[str, float]:
+def sensor_part(sensor: ForceSensor) -> dict[str, float]:
     """Return the fields of the force sensor on the fingertip."""
     return {
         "sensor_mass_kg": sensor.mass_kg,
@@ -203,7 +203,7 @@ def _contact_part(rig: Rig) -> dict[str, float]:
     """Return what lies between pulp and cap: the worn cone's contact, or the plate on the load cell."""
     cell = rig.load_cell
     if not rig.has_cell:
-        return {**worn_part(rig.force_sensor), "cell_damping_N_s_m": 0.0}
+        return {**sensor_part(rig.force_sensor), "cell_damping_N_s_m": 0.0}
     return {
         "sensor_mass_kg": cell.plate_kg,
         "contact_stiffness_N_m": cell.stiffness_N_m,
@@ -215,8 +215,8 @@ def _contact_part(rig: Rig) -> dict[str, float]:
 def _coil_part(rig: Rig) -> dict[str, float]:
     coil = rig.coil
     return {
-        **picked(coil, "resistance_ohm bridge_ohm source_ohm inductance_H reluctance_H_m copper_1_K"),
-        **picked(coil, "force_constant_N_A heat_K_W heat_s supply_V"),
+        **pick(coil, "resistance_ohm bridge_ohm source_ohm inductance_H reluctance_H_m copper_1_K"),
+        **pick(coil, "force_constant_N_A heat_K_W heat_s supply_V"),
         "droop_1_m2": coil.droop_ratio / (coil.stroke_m / 2) ** 2,
         "droop_centre_m": coil.centre_m,
         "current_loop_s": 0.0 if coil.drive == "voltage" else coil.current_loop_s,
@@ -230,7 +230,7 @@ def _mechanics_part(rig: Rig) -> dict[str, float]:
     return {
         "mover_mass_kg": mover.mass_kg,
         "frame_mass_kg": rig.frame_kg,
-        **picked(mover, "gravity_m_s2 coulomb_N presliding_m viscous_N_s_m"),
+        **pick(mover, "gravity_m_s2 coulomb_N presliding_m viscous_N_s_m"),
         "stop_stiffness_N_m": stops.bottom_stiffness_N_m,
         "stop_loss_s_m": HUNT_CROSSLEY * stops.bottom_loss_s_m,
         "top_stiffness_N_m": stops.top_stiffness_N_m,
@@ -242,7 +242,7 @@ def _servo_part(rig: Rig) -> dict[str, float]:
     servo = rig.servo
     per_us = 1e-3 / servo.pulse_us_mm
     return {
-        **picked(servo, "frame_s lag_s play_m", "servo_"),
+        **pick(servo, "frame_s lag_s play_m", "servo_"),
         "servo_zero_us": servo.pulse_zero_us,
         "servo_m_us": per_us,
         "servo_deadband_m": per_us * servo.deadband_us,
@@ -264,7 +264,7 @@ def _exciter_part(rig: Rig) -> dict[str, float]:
         "amplifier_V_count": e.drive_V / 2047,  # a converter of 12 bits, signed
         "amplifier_clip_V": e.clip_V,
         "amplifier_rate": 2 * math.pi * e.filter_Hz,
-        **picked(e, "latency_s jitter_s", "vibration_"),
+        **pick(e, "latency_s jitter_s", "vibration_"),
     }
 
 
@@ -277,7 +277,7 @@ def _sensing_part(rig: Rig) -> dict[str, float]:
         "lvdt_steps": 2.0**position.converter_bits,
         "sensor_rate": 1 / force.filter_s,
         "sensor_gain": 1 + force.gain_error_ratio,
-        **picked(force, "hysteresis_N full_scale_N", "sensor_"),
+        **pick(force, "hysteresis_N full_scale_N", "sensor_"),
         "sensor_lsb_N": lsb_of(force.full_scale_N, force.converter_bits),
     }
 

@@ -113,10 +113,10 @@ def compare_vibration(
     """
     if played is not None and (played.since_s.size, played.before) != (silent.since_s.size, silent.before):
         raise ModelError("presses with and without the vibration must be cut alike")
-    found = _Comparison(vibration, silent, played, jnds)
+    comparison = _Comparison(vibration, silent, played, jnds)
     if played is None:
-        return found.silent_error()
-    return found.error()
+        return comparison.silent_error()
+    return comparison.error()
 
 
 def without_slow_motion(vibration: Vibration, since_s: FloatArray, rows: FloatArray) -> FloatArray:
@@ -157,7 +157,7 @@ class _Comparison:
         self._vibration, self._since_s, self._jnds = vibration, silent.since_s, jnds
         self._asked = self._still(vibration.acceleration_m_s2(self._since_s)[None, :])
         self._silent = self._still(silent.acceleration_m_s2)
-        self._apart = _left_out(self._silent, silent.speed_mm_s)
+        self._apart = _cross_validate(self._silent, silent.speed_mm_s)
         if played is not None and played.paired:
             self._apart = np.zeros_like(self._silent)
         self._played: FloatArray | None = None
@@ -169,7 +169,7 @@ class _Comparison:
         """Return what the played presses would have been without the vibration."""
         if played.paired:
             return self._silent
-        return _expected(self._silent, silent.speed_mm_s, played.speed_mm_s)
+        return _predict(self._silent, silent.speed_mm_s, played.speed_mm_s)
 
     def _still(self, rows: FloatArray) -> FloatArray:
         return without_slow_motion(self._vibration, self._since_s, rows)
@@ -194,28 +194,28 @@ class _Comparison:
         powers = [band_power(rows).mean(axis=0) for rows in (self._played, self._apart)]
         added = np.clip(powers[0] - powers[1], 0.0, None)
         onset_s, likeness = self._onset()
-        found = replace(
+        error = replace(
             self.silent_error(),
             played=True,
             added_m_s2=_rms(added),
             level_dB=_dB(added, self._powers[0]),
             likeness=likeness,
-            level_JND=self._level_JND(max(_felt(self._played) - _felt(self._apart), 0.0)),
+            level_JND=self._level_JND(max(_excess_power(self._played) - _excess_power(self._apart), 0.0)),
         )
         if onset_s is None:
-            return found
+            return error
         late_ms = 1e3 * onset_s
         onset_JND = abs(late_ms) / self._jnds.onset_ms
-        found = replace(found, onset_ms=late_ms, onset_mm=onset_s * self._speed_mm_s, onset_JND=onset_JND)
+        error = replace(error, onset_ms=late_ms, onset_mm=onset_s * self._speed_mm_s, onset_JND=onset_JND)
         if self._since_s[-1] - onset_s < FREQUENCY_periods / _slowest_Hz(self._vibration):
-            return found
+            return error
         ratio = self._frequency_ratio(onset_s)
         apart = abs(float(np.log(ratio))) / float(np.log1p(self._jnds.frequency_ratio))
-        return replace(found, frequency_ratio=ratio, frequency_JND=apart)
+        return replace(error, frequency_ratio=ratio, frequency_JND=apart)
 
     def _level_JND(self, added: float) -> float:
         """Compare what is felt, the cap's own motion included, with that motion and the vibration."""
-        own, asked = _felt(self._silent), _felt(self._asked)
+        own, asked = _excess_power(self._silent), _excess_power(self._asked)
         steps = self._jnds.vibration_steps(np.sqrt([own + added, own + asked]))
         return abs(float(steps[0] - steps[1]))
 
@@ -229,26 +229,26 @@ class _Comparison:
             return None, None
         latest_s = min(AROUND_s, float(self._since_s[-1]) - least_s(self._vibration))
         delays_s = np.arange(-round(AROUND_s * RATE_Hz), round(latest_s * RATE_Hz) + 1) / RATE_Hz
-        explained = np.array([self._explained(float(delay_s)) for delay_s in delays_s])
+        explained = np.array([self._energy_of_shape(float(delay_s)) for delay_s in delays_s])
         at = int(np.argmax(explained))
         likeness = float(np.sqrt(np.clip(explained[at] / added, 0.0, 1.0)))
         return (float(delays_s[at]) if likeness >= ALIKE else None), likeness
 
     def _frequency_ratio(self, onset_s: float) -> float:
-        explained = [self._explained(onset_s, float(ratio)) for ratio in FREQUENCY_ratios]
+        explained = [self._energy_of_shape(onset_s, float(ratio)) for ratio in FREQUENCY_ratios]
         return float(FREQUENCY_ratios[int(np.argmax(explained))])
 
-    def _explained(self, delay_s: float, ratio: float = 1.0) -> float:
+    def _energy_of_shape(self, delay_s: float, ratio: float = 1.0) -> float:
         """Return the added energy that the shape explains with this delay, frequency, at any phase."""
         assert self._played is not None
-        shapes = [_turned(self._vibration, ratio, phase) for phase in (0.0, np.pi / 2)]
+        shapes = [_retune(self._vibration, ratio, phase) for phase in (0.0, np.pi / 2)]
         rows = np.stack([shape.acceleration_m_s2(self._since_s - delay_s) for shape in shapes])
         basis = np.linalg.qr(self._still(rows).T)[0]
         with_it, without = (np.mean(np.sum((x @ basis) ** 2, axis=1)) for x in (self._played, self._apart))
         return float(with_it - without)
 
 
-def _turned(vibration: Vibration, ratio: float, phase_rad: float) -> Vibration:
+def _retune(vibration: Vibration, ratio: float, phase_rad: float) -> Vibration:
     modes = tuple(
         replace(mode, frequency_Hz=ratio * mode.frequency_Hz, phase_rad=mode.phase_rad + phase_rad)
         for mode in vibration.modes
@@ -260,7 +260,7 @@ def _slowest_Hz(vibration: Vibration) -> float:
     return max(min(mode.frequency_Hz for mode in vibration.modes), LOWEST_Hz)
 
 
-def _expected(rows: FloatArray, speed_mm_s: FloatArray, at_mm_s: FloatArray) -> FloatArray:
+def _predict(rows: FloatArray, speed_mm_s: FloatArray, at_mm_s: FloatArray) -> FloatArray:
     """Return the motion that rows, (presses, n), let expect at other speeds: their mean, and its change."""
     middle = speed_mm_s.mean()
     columns = [np.ones_like(speed_mm_s), speed_mm_s - middle]
@@ -271,18 +271,18 @@ def _expected(rows: FloatArray, speed_mm_s: FloatArray, at_mm_s: FloatArray) -> 
     return np.asarray(there @ weights)
 
 
-def _left_out(rows: FloatArray, speed_mm_s: FloatArray) -> FloatArray:
+def _cross_validate(rows: FloatArray, speed_mm_s: FloatArray) -> FloatArray:
     """Return each row less what the others let expect; a single row as it is."""
     if rows.shape[0] == 1:
         return rows
-    found = np.empty_like(rows)
+    residuals = np.empty_like(rows)
     for i in range(rows.shape[0]):
         others = np.arange(rows.shape[0]) != i
-        found[i] = rows[i] - _expected(rows[others], speed_mm_s[others], speed_mm_s[i : i + 1])[0]
-    return found
+        residuals[i] = rows[i] - _predict(rows[others], speed_mm_s[others], speed_mm_s[i : i + 1])[0]
+    return residuals
 
 
-def _felt(rows: FloatArray) -> float:
+def _excess_power(rows: FloatArray) -> float:
     """Return the mean square of how far rows, (presses, n), lie above the faintest that is felt."""
     return float(np.mean([acceleration_above_threshold(row, RATE_Hz) ** 2 for row in rows]))
 

@@ -84,7 +84,7 @@ def fit_damped(
     frequency_Hz: Sequence[float],
     decay_1_s: Sequence[float],
     degree: int = -1,
-    one_phase: bool = False,
+    same_phase: bool = False,
 ) -> DampedFit:
     """Fit decaying sinusoids that several records share, by least squares from a first guess.
 
@@ -97,7 +97,7 @@ def fit_damped(
     Weights are solved exactly at each step (variable projection, Golub and Pereyra 1973), so only f and d
     are searched. Raises FitError if there are fewer samples than parameters.
     """
-    records = Records(times_s, signals, degree, one_phase)
+    records = Records(times_s, signals, degree, same_phase)
     start = np.concatenate([np.asarray(frequency_Hz, dtype=np.float64), np.maximum(decay_1_s, 1e-3)])
     return fit_records(records, start)
 
@@ -141,23 +141,23 @@ def _descend(records: Records, start: FloatArray, free: npt.NDArray[np.bool_]) -
     return at
 
 
-def _summary(records: Records, found: Solved, free: npt.NDArray[np.bool_]) -> DampedFit:
-    modes = found.theta.size // 2
-    f, d = np.split(found.theta, 2)
+def _summary(records: Records, solved: Solved, free: npt.NDArray[np.bool_]) -> DampedFit:
+    modes = solved.theta.size // 2
+    f, d = np.split(solved.theta, 2)
     needed = records.parameters(modes)
-    power = found.power / (records.samples - needed)
+    power = solved.power / (records.samples - needed)
     inner = np.ix_(free, free)
-    covariance = np.zeros(found.curvatures.shape[1:])
-    covariance[inner] = power * np.linalg.pinv(found.curvatures.sum(axis=0)[inner], hermitian=True)
-    spreads = between_records(found, free)
+    covariance = np.zeros(solved.curvatures.shape[1:])
+    covariance[inner] = power * np.linalg.pinv(solved.curvatures.sum(axis=0)[inner], hermitian=True)
+    spreads = between_records(solved, free)
     sd = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     if spreads is not None:
-        sd = np.maximum(sd, spreads / math.sqrt(len(found.weights)))
-    sines, cosines = found.weights[:, 0::2], found.weights[:, 1::2]
+        sd = np.maximum(sd, spreads / math.sqrt(len(solved.weights)))
+    sines, cosines = solved.weights[:, 0::2], solved.weights[:, 1::2]
     # what each record has at its first sample, drawn back to the moment that the modes start
     amplitudes = np.hypot(sines, cosines) * np.exp(d * records.starts_s[:, None])
     phases = np.arctan2(cosines[0], sines[0]) - 2 * np.pi * f * records.starts_s[0]
-    doubts = np.sqrt(amplitude_variances(records, found, covariance, power))
+    doubts = np.sqrt(amplitude_variances(records, solved, covariance, power))
     # of the median: a record that ends early may hold no amplitude at all
     total = np.median(amplitudes, axis=0)
     spread = np.median(amplitudes * doubts, axis=0) * math.sqrt(
@@ -174,39 +174,39 @@ def _summary(records: Records, found: Solved, free: npt.NDArray[np.bool_]) -> Da
         for k in order
     ]  # fmt: skip
     size, samples = records.size, records.samples
-    mean_power = max(size**2 * found.power / samples, 1e-300)
+    mean_power = max(size**2 * solved.power / samples, 1e-300)
     bic = samples * math.log(mean_power) + needed * math.log(samples)
     return DampedFit(tuple(made), size * amplitudes[:, order], size * math.sqrt(power), samples, bic)
 
 
-def between_records(found: Solved, free: npt.NDArray[np.bool_]) -> FloatArray | None:
+def between_records(solved: Solved, free: npt.NDArray[np.bool_]) -> FloatArray | None:
     """Return the standard deviations between records of f and d, (p,), 0 where fixed; None for one record.
 
     From one step of the search without each record (a jackknife), times the root of their number.
     """
-    records = len(found.weights)
+    records = len(solved.weights)
     if records < 2:
         return None
-    each = found.curvatures[:, free][:, :, free]
+    each = solved.curvatures[:, free][:, :, free]
     # small against any curvature, so that a step along what only one record determines stays finite
     least = 1e-9 * np.trace(each.sum(axis=0)) / max(free.sum(), 1) * np.eye(int(free.sum()))
-    steps = -np.linalg.solve(each.sum(axis=0) - each + least, found.slopes[:, free, None])[:, :, 0]
+    steps = -np.linalg.solve(each.sum(axis=0) - each + least, solved.slopes[:, free, None])[:, :, 0]
     spreads = np.zeros(free.size)
     spreads[free] = math.sqrt(records - 1) * np.sqrt(np.sum((steps - steps.mean(axis=0)) ** 2, axis=0))
     return spreads
 
 
-def amplitude_variances(records: Records, found: Solved, covariance: FloatArray, power: float) -> FloatArray:
+def amplitude_variances(records: Records, solved: Solved, covariance: FloatArray, power: float) -> FloatArray:
     """Return variances of the logarithms of amplitudes, (records, modes): their own, and those of f and d."""
-    modes = found.theta.size // 2
-    variances = np.zeros((len(found.weights), modes))
+    modes = solved.theta.size // 2
+    variances = np.zeros((len(solved.weights), modes))
     for k in range(modes):
         pair = slice(2 * k, 2 * k + 2)
-        size = np.maximum(np.hypot(*found.weights[:, pair].T), 1e-300)
-        way = found.weights[:, pair] / size[:, None]
-        by_theta = np.einsum("ri,rip->rp", way, found.weights_by_theta[:, pair]) / size[:, None]
+        size = np.maximum(np.hypot(*solved.weights[:, pair].T), 1e-300)
+        way = solved.weights[:, pair] / size[:, None]
+        by_theta = np.einsum("ri,rip->rp", way, solved.weights_by_theta[:, pair]) / size[:, None]
         by_theta[:, modes + k] += records.starts_s
-        own = power * np.einsum("ri,rij,rj->r", way, found.weight_doubt[:, pair, pair], way) / size**2
+        own = power * np.einsum("ri,rij,rj->r", way, solved.weight_doubt[:, pair, pair], way) / size**2
         variances[:, k] = own + np.einsum("rp,pq,rq->r", by_theta, covariance, by_theta)
     return np.maximum(variances, 0.0)
 

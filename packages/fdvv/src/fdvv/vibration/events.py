@@ -78,21 +78,21 @@ def key_events(sound: npt.ArrayLike, rate_Hz: float, release_alone: bool = False
         raise ModelError(f"a recording needs 64 or more finite samples of one channel, got {signal.shape}")
     if not rate_Hz >= 8000:
         raise ModelError(f"bursts need a rate of at least 8000 Hz, got {rate_Hz}")
-    found = bursts(signal, rate_Hz)
-    if not found:
+    rises = bursts(signal, rate_Hz)
+    if not rises:
         nothing = NotFound("no burst rises 9 dB above what is before it")
         return KeyEvents(nothing, nothing, nothing, ())
-    loudest = max(burst.peak_power for burst in found)
+    loudest = max(burst.peak_power for burst in rises)
     if release_alone:
         nothing = NotFound("the recording holds a release alone")
-        return KeyEvents(nothing, nothing, _release(found), tuple(found))
-    strong = [burst for burst in found if burst.peak_power >= BESIDE_ratio * loudest]
+        return KeyEvents(nothing, nothing, _release(rises), tuple(rises))
+    strong = [burst for burst in rises if burst.peak_power >= BESIDE_ratio * loudest]
     group = [b for b in strong if b.onset_s - strong[0].onset_s <= GROUP_s]
     bottom = group[-1]
     earliest, latest = bottom.onset_s - CLICK_LEAD_s[1], bottom.onset_s - CLICK_LEAD_s[0]
-    before = [b for b in found if earliest <= b.onset_s <= latest]
-    after = [b for b in found if b.onset_s - bottom.onset_s > GROUP_s]
-    return KeyEvents(_click(before, bottom), bottom.onset_s, _release(after), tuple(found))
+    before = [b for b in rises if earliest <= b.onset_s <= latest]
+    after = [b for b in rises if b.onset_s - bottom.onset_s > GROUP_s]
+    return KeyEvents(_click(before, bottom), bottom.onset_s, _release(after), tuple(rises))
 
 
 def _click(before: list[Burst], bottom: Burst) -> float | NotFound:
@@ -130,19 +130,19 @@ def bursts(signal: FloatArray, rate_Hz: float) -> list[Burst]:
     # a file that begins inside a sound has nothing before it
     rising[:short] = False
     edges = np.flatnonzero(np.diff(np.append(False, rising).astype(int)) == 1).tolist()
-    found: list[Burst] = []
+    rises: list[Burst] = []
     for edge, after in pairwise([*edges, power.size]):
         peak = float(ahead[edge : min(edge + long, after)].max())
         onset = _first_loud(power, edge, min(edge + 2 * short, power.size), peak) / rate_Hz
-        since = onset - found[-1].onset_s if found else np.inf
-        if since <= LONG_s and peak > RISE_ratio * found[-1].peak_power:
+        since = onset - rises[-1].onset_s if rises else np.inf
+        if since <= LONG_s and peak > RISE_ratio * rises[-1].peak_power:
             # what just leads up to a louder burst is part of it, or a lossy codec's echo ahead of it
-            found[-1] = Burst(onset, peak)
+            rises[-1] = Burst(onset, peak)
         elif since <= 2 * SHORT_s:
-            found[-1] = Burst(found[-1].onset_s, max(peak, found[-1].peak_power))
+            rises[-1] = Burst(rises[-1].onset_s, max(peak, rises[-1].peak_power))
         else:
-            found.append(Burst(onset, peak))
-    return found
+            rises.append(Burst(onset, peak))
+    return rises
 
 
 def _first_loud(power: FloatArray, start: int, end: int, peak: float) -> int:

@@ -197,24 +197,24 @@ def fit_exciter(
     error_m = np.hypot([t.error for t in tones], MODEL_ratio * moved_m)
 
     def rest(logs: FloatArray) -> FloatArray:
-        off = (_moved_m(np.exp(logs), frequency_Hz, bench) - moved_m) / error_m
+        off = (_tone_amplitude_m(np.exp(logs), frequency_Hz, bench) - moved_m) / error_m
         return np.concatenate([off, (logs - before) / spread])
 
     # a grip near the lowest tone would make it a pole
     most = np.log([1e4, 2000.0, 50.0, 0.02, 0.8 * frequency_Hz.min()])
     least = np.log([1e-2, 100.0, 0.3, 1e-6, 1.0])
-    found = least_squares(rest, np.minimum(before, most - 0.1), bounds=(least, most))
-    slope = np.asarray(found.jac, dtype=np.float64)
+    fit = least_squares(rest, np.minimum(before, most - 0.1), bounds=(least, most))
+    slope = np.asarray(fit.jac, dtype=np.float64)
     errors = np.sqrt(np.diag(np.linalg.inv(slope.T @ slope)))
-    numbers = np.exp(found.x)
-    ratio = moved_m / _moved_m(numbers, frequency_Hz, bench) - 1
+    numbers = np.exp(fit.x)
+    ratio = moved_m / _tone_amplitude_m(numbers, frequency_Hz, bench) - 1
     named = {name: float(e) for name, e in zip(FITTED[:3], errors, strict=False)}
     residual_ratio = float(np.sqrt(np.mean(ratio**2)))
     gain, resonance, quality = numbers[:3].tolist()
     return KnownExciter(gain, resonance, quality, latency_s, named, residual_ratio, len(tones), simulated)
 
 
-def _moved_m(numbers: FloatArray, frequency_Hz: FloatArray, bench: ToneBench) -> FloatArray:
+def _tone_amplitude_m(numbers: FloatArray, frequency_Hz: FloatArray, bench: ToneBench) -> FloatArray:
     gain, resonance, quality, lag_s, grip_Hz = numbers
     response = np.abs(KnownExciter(gain, resonance, quality).response(frequency_Hz))
     gripped = response / (1 - (grip_Hz / frequency_Hz) ** 2)

@@ -41,14 +41,14 @@ def correlation(rendered: FloatArray, target: FloatArray) -> float:
     one of them is silent.
     """
     scale = float(np.linalg.norm(rendered) * np.linalg.norm(target))
-    return float(np.abs(_correlated(rendered, target)).max()) / scale if scale else 0.0
+    return float(np.abs(_cross_correlate(rendered, target)).max()) / scale if scale else 0.0
 
 
 def delay_samples(rendered: FloatArray, target: FloatArray) -> int:
     """Return the delay of rendered at which it is most like target, in samples; negative if it is early."""
-    found = _correlated(rendered, target)
-    at = int(np.argmax(np.abs(found)))
-    return at if at < rendered.size else at - found.size
+    correlation = _cross_correlate(rendered, target)
+    at = int(np.argmax(np.abs(correlation)))
+    return at if at < rendered.size else at - correlation.size
 
 
 def spectral_similarity(rendered: FloatArray, target: FloatArray, rate_Hz: float) -> float:
@@ -97,7 +97,7 @@ def spqi(
     return float(np.mean((1 - np.tanh(slope * error_dB - offset)) / 2))
 
 
-def _correlated(rendered: FloatArray, target: FloatArray) -> FloatArray:
+def _cross_correlate(rendered: FloatArray, target: FloatArray) -> FloatArray:
     """Return the correlation at every delay of rendered, circular over a length that keeps them apart."""
     size = rendered.size + target.size
     return np.asarray(np.fft.irfft(np.fft.rfft(rendered, size) * np.conj(np.fft.rfft(target, size)), size))
@@ -131,10 +131,10 @@ def threshold_dB() -> FloatArray:
     """Return VibroMAF's threshold at the metrics' frequencies, dB of full scale: lowest, -77, at 250 Hz."""
     frequency_Hz = np.linspace(0, METRIC_Hz, 2 * BLOCK)[:BLOCK]
     bend = 1 - 250 / 550
-    found = 62 / np.log10(bend) ** 2 * np.log10(frequency_Hz / 550 + bend) ** 2 - 77
-    beyond = int(np.argmax(found > 0))
-    found[beyond:] = found[beyond]
-    return np.asarray(found, dtype=np.float64)
+    threshold = 62 / np.log10(bend) ** 2 * np.log10(frequency_Hz / 550 + bend) ** 2 - 77
+    beyond = int(np.argmax(threshold > 0))
+    threshold[beyond:] = threshold[beyond]
+    return np.asarray(threshold, dtype=np.float64)
 
 
 def _standard(blocks: FloatArray) -> FloatArray:
@@ -232,8 +232,8 @@ def acceleration_m_s2(exciter: KnownExciter, volts: FloatArray) -> FloatArray:
     size = 1 << int(np.ceil(np.log2(2 * count + RING_s * RATE_Hz)))
     response = exciter.response(np.fft.rfftfreq(size, 1 / RATE_Hz))
     # rows are faster to transform than columns
-    found: FloatArray = np.fft.irfft(np.fft.rfft(np.ascontiguousarray(volts.T), size) * response, size)
-    return found[..., :count].T
+    acceleration: FloatArray = np.fft.irfft(np.fft.rfft(np.ascontiguousarray(volts.T), size) * response, size)
+    return acceleration[..., :count].T
 
 
 def _hats(count: int, rate_Hz: float, rows: int) -> FloatArray:

@@ -128,14 +128,14 @@ def most_likely(
     to each other than records of that length can resolve (1/T). Raises FitError if the records are too
     short for the known mode.
     """
-    records = Records(times_s, signals, BACKGROUND_DEGREE, one_phase=False)
+    records = Records(times_s, signals, BACKGROUND_DEGREE, same_phase=False)
     longest_s = max(float(t[-1] - t[0]) for t in times_s)
     theta = np.asarray(known if known else (), dtype=np.float64)
     best = fit_records(records, theta, np.full(2, True)) if known else _background(times_s, signals)
     dense = 1 / period_s >= FEWEST_PER_PERIOD * 250.0
     for _ in range((MOST_TERMS if dense else 1) - theta.size // 2 if records.even is not None else 0):
         try:
-            start = _one_more(records, theta, period_s, longest_s, most_drives > 0)
+            start = _add_term(records, theta, period_s, longest_s, most_drives > 0)
             held = np.tile(start[: start.size // 2] == (known[0] if known else 0.0), 2)
             fit = fit_records(records, start, held)
         except FitError:
@@ -152,7 +152,7 @@ def drives(mode: DampedMode) -> bool:
     return mode.decay_1_s > FREE_ratio * 2 * math.pi * mode.frequency_Hz
 
 
-def overlapped(mode: DampedMode, modes: Sequence[DampedMode]) -> bool:
+def overlaps(mode: DampedMode, modes: Sequence[DampedMode]) -> bool:
     """Return whether another mode lies nearer than both are wide (decay / pi): two halves of what is one."""
     return any(
         abs(other.frequency_Hz - mode.frequency_Hz) < (other.decay_1_s + mode.decay_1_s) / math.tau
@@ -173,7 +173,7 @@ def sound(fit: DampedFit, longest_s: float, period_s: float, most_drives: int) -
     return apart and heard and len(fit.modes) - len(modes) <= most_drives
 
 
-def _one_more(
+def _add_term(
     records: Records, theta: FloatArray, period_s: float, longest_s: float, drive: bool
 ) -> FloatArray:
     """Start one more term where it takes most off the residual. Raises FitError where there is no room."""
@@ -198,9 +198,9 @@ def _one_more(
 def _candidates(period_s: float, samples: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     highest = HIGHEST_ratio / period_s
     steps = np.arange(1 + int(math.log(highest / LOWEST_Hz) / math.log(NEXT_ratio)))
-    one: FloatArray = np.asarray(LOWEST_Hz * NEXT_ratio**steps, dtype=np.float64)
-    f = np.tile(one, len(NEXT_DAMPING))
-    d: FloatArray = np.asarray(math.tau * f * np.repeat(NEXT_DAMPING, one.size), dtype=np.float64)
+    grid_Hz: FloatArray = np.asarray(LOWEST_Hz * NEXT_ratio**steps, dtype=np.float64)
+    f = np.tile(grid_Hz, len(NEXT_DAMPING))
+    d: FloatArray = np.asarray(math.tau * f * np.repeat(NEXT_DAMPING, grid_Hz.size), dtype=np.float64)
     return f, d, shapes(np.asarray(period_s * np.arange(samples)), f, d)
 
 

@@ -126,7 +126,7 @@ class MeasuredVibration:
     @property
     def rings(self) -> tuple[tuple[float, float], ...]:
         """Return frequency and decay of the modes that measure_vibration() of other presses can build on."""
-        return known_rings(self.ring)
+        return reliable_rings(self.ring)
 
     def rings_in(self, frequency_Hz: float) -> bool:
         return any(abs(f / frequency_Hz - 1) <= SAME_ratio for f, _ in self.rings)
@@ -183,7 +183,7 @@ def _beside(
     return tuple([*own, *more][:2])
 
 
-def known_rings(ring: Ring | NotFound) -> tuple[tuple[float, float], ...]:
+def reliable_rings(ring: Ring | NotFound) -> tuple[tuple[float, float], ...]:
     """Return frequency and decay of the principal mode and of the surest other, if known well enough."""
     if isinstance(ring, NotFound):
         return ()
@@ -223,18 +223,18 @@ def measure_vibration(
     if energy is None:
         return NotFound("force does not fall between contact and bottom-out: there is no snap to look for")
     looked = [find_snap(press, energy.window_mm, rings) for press in presses]
-    heard, snaps = _shown(presses, looked)
+    heard, snaps = _pairs_with_snap(presses, looked)
     ring = fit_ring(heard, snaps, acceleration) if snaps else NotFound("no press shows a snap")
     for _ in range(0 if len(rings) > 1 else ROUNDS):
-        known = _beside(known_rings(ring), rings)
+        known = _beside(reliable_rings(ring), rings)
         # known modes part beginning from going on only where a sample is short beside their periods
         if not known or 8 * presses[0].period_s * max(f for f, _ in known) > 1:
             break
         again = [find_snap(press, energy.window_mm, known) for press in presses]
-        if len(_shown(presses, again)[0]) < len(heard):
+        if len(_pairs_with_snap(presses, again)[0]) < len(heard):
             break
         before, looked = [snap.onset_s for snap in snaps], again
-        heard, snaps = _shown(presses, looked)
+        heard, snaps = _pairs_with_snap(presses, looked)
         if before == [snap.onset_s for snap in snaps]:
             break
         ring = fit_ring(heard, snaps, acceleration)
@@ -248,7 +248,7 @@ def measure_vibration(
     return MeasuredVibration(*what, tuple(heard), tuple(snaps), ring, acceleration)
 
 
-def _shown(
+def _pairs_with_snap(
     presses: Sequence[HeardPress], looked: Sequence[Snap | NotFound]
 ) -> tuple[list[HeardPress], list[Snap]]:
     pairs = [(press, snap) for press, snap in zip(presses, looked, strict=True) if isinstance(snap, Snap)]

@@ -67,7 +67,7 @@ class Records:
     """
 
     def __init__(
-        self, times_s: Sequence[FloatArray], signals: Sequence[FloatArray], degree: int, one_phase: bool
+        self, times_s: Sequence[FloatArray], signals: Sequence[FloatArray], degree: int, same_phase: bool
     ) -> None:
         self.samples = sum(t.size for t in times_s)
         # the search stops at an absolute slope, so that it needs signals of a size of its own
@@ -75,11 +75,11 @@ class Records:
         self.starts_s = np.array([t[0] for t in times_s])
         own = [t - t[0] for t in times_s]
         signals = [y / self.size for y in signals]
-        self.even = grid = None if one_phase else _grid(own)
+        self.even = grid = None if same_phase else _grid(own)
         if grid is not None:
             self.times_s, backgrounds = [grid], [polynomial(grid, degree)]
             self.signals = signals
-        elif one_phase:
+        elif same_phase:
             # one record with all samples, in which each press keeps a background of its own
             self.starts_s = np.zeros(1)
             self.times_s, self.signals = [np.concatenate(times_s)], [np.concatenate(signals)]
@@ -109,7 +109,7 @@ class Records:
         inside, cross, late = gram[:, :m, :m], gram[:, :m, m:], gram[:, m:, m:]
         inverse: FloatArray = np.asarray(np.linalg.inv(inside), dtype=np.float64)
         weights = inverse @ along[:, :m, None]
-        turned = _turned(weights[:, :p, 0])
+        turned = _slope_weights(weights[:, :p, 0])
         pushed = cross @ turned
         followed, doubt = inverse @ pushed, inverse[:, :p, :p]
         curvatures = turned.transpose(0, 2, 1) @ late @ turned - pushed.transpose(0, 2, 1) @ followed
@@ -169,15 +169,15 @@ def _up_to(x: FloatArray, ends: FloatArray) -> Iterator[tuple[FloatArray, FloatA
         yield ends == end, total
 
 
-def _turned(weights: FloatArray) -> FloatArray:
+def _slope_weights(weights: FloatArray) -> FloatArray:
     """Return how t sin and t cos add up to the slopes by f and by d, (records, 2 modes, 2 modes)."""
     records, p = weights.shape
     k = np.arange(p // 2)
-    found = np.zeros((records, p, p))
+    slopes = np.zeros((records, p, p))
     sines, cosines = weights[:, 0::2], weights[:, 1::2]
-    found[:, 2 * k, k], found[:, 2 * k + 1, k] = -2 * np.pi * cosines, 2 * np.pi * sines
-    found[:, 2 * k, p // 2 + k], found[:, 2 * k + 1, p // 2 + k] = -sines, -cosines
-    return found
+    slopes[:, 2 * k, k], slopes[:, 2 * k + 1, k] = -2 * np.pi * cosines, 2 * np.pi * sines
+    slopes[:, 2 * k, p // 2 + k], slopes[:, 2 * k + 1, p // 2 + k] = -sines, -cosines
+    return slopes
 
 
 def _block_diagonal(blocks: list[FloatArray]) -> FloatArray:

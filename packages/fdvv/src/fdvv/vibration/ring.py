@@ -10,7 +10,7 @@ import numpy as np
 from fdvv.errors import FitError
 from fdvv.units import FloatArray
 from fdvv.vibration.damped import DampedFit, DampedMode, duration_s
-from fdvv.vibration.modes import BACKGROUND_DEGREE, MOST_DRIVES, drives, most_likely, overlapped
+from fdvv.vibration.modes import BACKGROUND_DEGREE, MOST_DRIVES, drives, most_likely, overlaps
 from fdvv.vibration.snap import HeardPress, NotFound, Snap
 
 LONGEST_s = 0.025
@@ -70,10 +70,10 @@ def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration:
     The number of modes has the smallest BIC, down to none. Principal is the mode with the most kinetic energy
     once the ring is free, the integral of its squared velocity.
     """
-    found = _best(presses, snaps)
-    if found is None:
+    best = _best(presses, snaps)
+    if best is None:
         return NotFound("the stop follows too soon: the snap leaves too few samples to fit")
-    delay_s, fit, ratio = found
+    delay_s, fit, ratio = best
     if not fit.modes and ratio <= FITS_ratio:
         return NotFound(f"nothing rings above a noise of {fit.noise:.2g} per sample in {len(snaps)} presses")
     if ratio > FITS_ratio:
@@ -84,7 +84,7 @@ def fit_ring(presses: Sequence[HeardPress], snaps: Sequence[Snap], acceleration:
     order = [int(k) for k in np.argsort(energies) if not drives(fit.modes[k])]
     if not order:
         return NotFound(f"nothing rings freely, only a drive fades in {len(snaps)} presses")
-    reason = _unknown(fit.modes[order[0]], delay_s)
+    reason = _explain_doubt(fit.modes[order[0]], delay_s)
     return NotFound(f"{reason} in {len(snaps)} presses") if reason else _ring(fit, order, delay_s, ratio)
 
 
@@ -113,14 +113,14 @@ def refit_ring(
 def _ring(fit: DampedFit, order: list[int], delay_s: float, ratio: float) -> Ring:
     """Return the ring of a fit, the principal mode first; drives and halves of pairs are none of it."""
     first, *side = order
-    certain = [k for k in side if not drives(fit.modes[k]) and _unknown(fit.modes[k], 0.0) is None]
-    single = [k for k in certain if not overlapped(fit.modes[k], fit.modes)]
-    kept = [first, *(k for k in single if _unknown(fit.modes[k], delay_s) is None)]
+    certain = [k for k in side if not drives(fit.modes[k]) and _explain_doubt(fit.modes[k], 0.0) is None]
+    single = [k for k in certain if not overlaps(fit.modes[k], fit.modes)]
+    kept = [first, *(k for k in single if _explain_doubt(fit.modes[k], delay_s) is None)]
     modes, heard = (tuple(fit.modes[k] for k in which) for which in (kept, [first, *certain]))
     return Ring(modes[0], modes, heard, fit.amplitudes[:, kept], delay_s, ratio)
 
 
-def _unknown(mode: DampedMode, delay_s: float) -> str | None:
+def _explain_doubt(mode: DampedMode, delay_s: float) -> str | None:
     """Return why a mode is too uncertain to report; None if it is not."""
     if mode.frequency_sd_Hz > SURE_ratio * mode.frequency_Hz:
         return (

@@ -11,7 +11,7 @@ import numpy as np
 from fdvv.errors import FitError
 from fdvv.model.curve import Stroke
 from fdvv.units import FloatArray
-from fdvv.vibration.pool import MeasuredVibration, SAME_ratio, SnapEnergy, known_rings, measure_vibration
+from fdvv.vibration.pool import MeasuredVibration, SAME_ratio, SnapEnergy, measure_vibration, reliable_rings
 from fdvv.vibration.ring import Ring, refit_ring
 from fdvv.vibration.snap import HeardPress, NotFound
 
@@ -34,7 +34,7 @@ class SharedMode:
     paces: int
 
 
-def shared_mode(rings: Sequence[Ring]) -> SharedMode | None:
+def common_mode(rings: Sequence[Ring]) -> SharedMode | None:
     """Return the principal mode that rings of one housing share; None if fewer than two agree.
 
     What frequency and decay a plate rings at does not depend on how fast a finger presses; what a drive that
@@ -52,12 +52,12 @@ def shared_mode(rings: Sequence[Ring]) -> SharedMode | None:
     return SharedMode(f, d, f_sd, d_sd, len(modes))
 
 
-def shared_rings(rings: Sequence[Ring]) -> tuple[tuple[float, float], ...]:
+def common_rings(rings: Sequence[Ring]) -> tuple[tuple[float, float], ...]:
     """Return frequency and decay of two modes at most that searches of all paces can build on.
 
     The principal one that is known best, and the one of the others that most rings have.
     """
-    known = [(ring.mode.frequency_sd_Hz / ring.mode.frequency_Hz, known_rings(ring)) for ring in rings]
+    known = [(ring.mode.frequency_sd_Hz / ring.mode.frequency_Hz, reliable_rings(ring)) for ring in rings]
     first = [(doubt, modes[0]) for doubt, modes in known if modes]
     if not first:
         return ()
@@ -67,17 +67,17 @@ def shared_rings(rings: Sequence[Ring]) -> tuple[tuple[float, float], ...]:
     return (min(first)[1], *second)
 
 
-def with_shared(found: MeasuredVibration, mode: SharedMode) -> MeasuredVibration:
+def refit_shared(result: MeasuredVibration, mode: SharedMode) -> MeasuredVibration:
     """Fit a ring again with the principal mode that the paces share: its amplitudes, and the other modes.
 
     As it was where its own is another mode, or where what the shared one leaves is no longer noise.
     """
-    ring = found.ring
+    ring = result.ring
     if isinstance(ring, NotFound) or abs(ring.mode.frequency_Hz / mode.frequency_Hz - 1) > SAME_ratio:
-        return found
-    again = refit_ring(found.heard, found.snaps, (mode.frequency_Hz, mode.decay_1_s))
+        return result
+    again = refit_ring(result.heard, result.snaps, (mode.frequency_Hz, mode.decay_1_s))
     if again is None:
-        return found
+        return result
     first = replace(
         again.mode,
         frequency_sd_Hz=mode.frequency_sd_Hz,
@@ -85,7 +85,7 @@ def with_shared(found: MeasuredVibration, mode: SharedMode) -> MeasuredVibration
         frequency_spread_Hz=ring.mode.frequency_spread_Hz,
         decay_spread_1_s=ring.mode.decay_spread_1_s,
     )
-    return replace(found, ring=replace(again, mode=first, modes=(first, *again.modes[1:])))
+    return replace(result, ring=replace(again, mode=first, modes=(first, *again.modes[1:])))
 
 
 def _middle(values: Sequence[tuple[float, float]], floor_ratio: float) -> tuple[float, float]:
@@ -119,21 +119,21 @@ def measure_paces(
     Presses are measured by themselves first, then again where others of them have modes that they lack;
     releases with the modes of the presses. Rings are fitted again with the principal mode that they share.
     """
-    first = [_measured(pace, acceleration, ()) for pace in paces if pace.stroke is Stroke.PRESS]
-    known, results = shared_rings(_rings(first)), iter(first)
+    first = [_measure(pace, acceleration, ()) for pace in paces if pace.stroke is Stroke.PRESS]
+    known, results = common_rings(_rings(first)), iter(first)
     again = [
         _sharper(next(results), pace, acceleration, known)
         if pace.stroke is Stroke.PRESS
-        else _measured(pace, acceleration, known)
+        else _measure(pace, acceleration, known)
         for pace in paces
     ]
-    mode = shared_mode(_rings(again))
+    mode = common_mode(_rings(again))
     if mode is not None:
-        again = [one if isinstance(one, NotFound) else with_shared(one, mode) for one in again]
+        again = [result if isinstance(result, NotFound) else refit_shared(result, mode) for result in again]
     return again, mode
 
 
-def _measured(pace: PacePresses, acceleration: bool, known: Known) -> MeasuredVibration | NotFound:
+def _measure(pace: PacePresses, acceleration: bool, known: Known) -> MeasuredVibration | NotFound:
     if not pace.presses:
         return NotFound("no press of it was heard")
     return measure_vibration(pace.presses, pace.velocity_mm_s, pace.energy, acceleration, known)
@@ -145,14 +145,14 @@ def _sharper(
     """Measure again where a known mode is missing; kept if as many presses show it."""
     if not known or (isinstance(was, MeasuredVibration) and all(was.rings_in(f) for f, _ in known)):
         return was
-    again = _measured(pace, acceleration, known)
+    again = _measure(pace, acceleration, known)
     if isinstance(was, MeasuredVibration) and (isinstance(again, NotFound) or again.shown < was.shown):
         return was
     return again
 
 
-def _rings(found: Sequence[MeasuredVibration | NotFound]) -> list[Ring]:
-    return [one.ring for one in found if isinstance(one, MeasuredVibration) and isinstance(one.ring, Ring)]
+def _rings(results: Sequence[MeasuredVibration | NotFound]) -> list[Ring]:
+    return [r.ring for r in results if isinstance(r, MeasuredVibration) and isinstance(r.ring, Ring)]
 
 
 @dataclass(frozen=True)

@@ -86,14 +86,14 @@ def find_turn(
     if rings:
         return _search(t_s, signal, (start_s, end_s), noise, max(RING_REACH_s, shortest), rings)
     reaches = [shortest, *(reach for reach in longer if reach <= LONGEST_REACH_s)]
-    found = []
+    turns = []
     for reach in reaches:
         turn = _search(t_s, signal, (start_s, end_s), noise, reach, ())
         if turn is not None:
-            found.append(replace(turn, chance=min(1.0, turn.chance * len(reaches))))
-            if found[-1].chance <= FALSE_ALARM:
-                return found[-1]
-    return min(found, key=lambda turn: turn.chance, default=None)
+            turns.append(replace(turn, chance=min(1.0, turn.chance * len(reaches))))
+            if turns[-1].chance <= FALSE_ALARM:
+                return turns[-1]
+    return min(turns, key=lambda turn: turn.chance, default=None)
 
 
 def _search(
@@ -146,10 +146,10 @@ def _gains(
     cuts = np.stack([2 * low - halves, high - low], axis=1)
     gains = np.zeros(halves.size)
     for cut in np.unique(cuts, axis=0):
-        found = _basis(int(cut[0]), int(cut[1]), reach, rings)
-        if found is None:
+        basis = _basis(int(cut[0]), int(cut[1]), reach, rings)
+        if basis is None:
             continue
-        smooth, q = found
+        smooth, q = basis
         which = np.all(cuts == cut, axis=1)
         windows = np.lib.stride_tricks.sliding_window_view(y, int(cut[1]))[low[which]]
         parts = (windows @ q) ** 2

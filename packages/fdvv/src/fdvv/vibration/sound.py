@@ -60,19 +60,18 @@ def sound_ring(sound: npt.ArrayLike, rate_Hz: float) -> SoundRing:
     signal = signal - np.mean(signal) if signal.size else signal
     if signal.size < 64 or not np.any(signal):
         raise FitError("it is silent, or shorter than 64 samples")
-    found = bursts(signal, rate_Hz)
-    loudest = max(found, key=lambda burst: burst.peak_power, default=None)
+    rises = bursts(signal, rate_Hz)
+    loudest = max(rises, key=lambda burst: burst.peak_power, default=None)
     onset_s = _onset_s(signal, rate_Hz, loudest.onset_s) if loudest else 0.0
     early = float(np.argmax(np.abs(signal))) / rate_Hz <= BEGINS_s
     if loudest is None and not early:
         raise FitError("no sudden sound in it: nothing rises 9 dB above what is before it")
-    later = [b.onset_s for b in found if loudest and b.onset_s > max(onset_s, loudest.onset_s)]
+    later = [b.onset_s for b in rises if loudest and b.onset_s > max(onset_s, loudest.onset_s)]
     end_s = min([*later, onset_s + LONGEST_s, signal.size / rate_Hz])
     ring = signal[round(onset_s * rate_Hz) : round(end_s * rate_Hz)]
     modes = tuple(m for m in fit_modes(ring, rate_Hz).modes if _rings(m, ring.size / rate_Hz))
-    return SoundRing(
-        onset_s, end_s, loudest is None, modes, carried(ring, rate_Hz, modes), _below(ring, rate_Hz, FELT_Hz)
-    )
+    ratios = energy_ratio(ring, rate_Hz, modes), _below(ring, rate_Hz, FELT_Hz)
+    return SoundRing(onset_s, end_s, loudest is None, modes, *ratios)
 
 
 def _rings(mode: DampedMode, longest_s: float) -> bool:
@@ -98,7 +97,7 @@ def _onset_s(signal: FloatArray, rate_Hz: float, near_s: float) -> float:
     return float(start + k[int(np.argmin(criterion))]) / rate_Hz
 
 
-def carried(ring: FloatArray, rate_Hz: float, modes: Sequence[DampedMode]) -> float:
+def energy_ratio(ring: FloatArray, rate_Hz: float, modes: Sequence[DampedMode]) -> float:
     """Return which part of a ring's energy its modes explain: 1 less the part that is left without them."""
     t = np.arange(ring.size) / rate_Hz
     made = np.zeros(ring.size)

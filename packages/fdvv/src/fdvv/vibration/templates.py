@@ -96,7 +96,7 @@ def templates_around(
     """
     spread = grid or TemplateGrid()
     strongest = max(vibration.modes, key=lambda mode: abs(mode.amplitude_m_s2))
-    found: list[Template] = []
+    templates: list[Template] = []
     for frequency in spread.frequency_ratios:
         for gain in spread.gain_ratios:
             start_V = min(gain * abs(strongest.amplitude_m_s2) / m_s2_V, spread.limit_V)
@@ -104,6 +104,6 @@ def templates_around(
                 made = Template(
                     frequency * strongest.frequency_Hz, vibration.duration_s, start_V, end * start_V
                 )
-                if made not in found:
-                    found.append(made)
-    return tuple(found)
+                if made not in templates:
+                    templates.append(made)
+    return tuple(templates)

@@ -95,7 +95,7 @@ class TuningState:
     plan: tuple[tuple[int, int], ...] = ()
     answers: tuple[Answered, ...] = ()
 
-    def answered(self, place: int) -> list[Answered]:
+    def answers_at(self, place: int) -> list[Answered]:
         return [a for a in self.answers if a.place == place]
 
 
@@ -122,7 +122,7 @@ class Method(ABC):
     def _check(self, answer: int | Preferred) -> None:
         """Raise ModelError if it is no answer."""
 
-    def done(self, state: TuningState) -> bool:
+    def is_done(self, state: TuningState) -> bool:
         return self.ask(state) is None
 
     def best(self, state: TuningState) -> tuple[Ranking, ...]:
@@ -183,7 +183,7 @@ class Rating(Method):
 
     def ranking(self, state: TuningState, place: int) -> Ranking:
         """Compare means; alike is what Student's t at 95 %, shared among comparisons, cannot separate."""
-        mine, every = state.answered(place), range(state.job.templates[place])
+        mine, every = state.answers_at(place), range(state.job.templates[place])
         rated = [np.array([float(a.answer) for a in mine if a.templates[0] == i]) for i in every]
         scores = np.array([r.mean() if r.size else np.nan for r in rated])
         errors = _errors(rated)

@@ -48,14 +48,14 @@ class Comparing(Method):
     def ask(self, state: TuningState) -> Question | None:
         """Choose the pair of the first velocity that is not done; the same answers ask the same."""
         places = range(len(state.job.templates))
-        place = next((place for place in places if not self._done(state, place)), None)
+        place = next((place for place in places if not self._is_settled(state, place)), None)
         if place is None:
             return None
         total = sum(self._most(state.job, each) for each in places)
         return Question(place, self._pair(state, place), len(state.answers) + 1, total)
 
-    def done(self, state: TuningState) -> bool:
-        return all(self._done(state, place) for place in range(len(state.job.templates)))
+    def is_done(self, state: TuningState) -> bool:
+        return all(self._is_settled(state, place) for place in range(len(state.job.templates)))
 
     def _check(self, answer: int | Preferred) -> None:
         if not isinstance(answer, Preferred):
@@ -64,8 +64,8 @@ class Comparing(Method):
     def _most(self, job: Job, place: int) -> int:
         return self.comparisons or 3 * job.templates[place]
 
-    def _done(self, state: TuningState, place: int) -> bool:
-        made = len(state.answered(place))
+    def _is_settled(self, state: TuningState, place: int) -> bool:
+        made = len(state.answers_at(place))
         if made >= self._most(state.job, place):
             return True
         if made < (self.fewest or state.job.templates[place]):
@@ -77,17 +77,17 @@ class Comparing(Method):
         mean, spread = posterior(wins(state, place))
         chances = self._chances(state, place)
         alike = np.flatnonzero(chances >= 0.05 * chances.max()).tolist()
-        return standing(mean, np.sqrt(np.diag(spread)), alike, len(state.answered(place)))
+        return standing(mean, np.sqrt(np.diag(spread)), alike, len(state.answers_at(place)))
 
     def _random(self, state: TuningState, place: int) -> np.random.Generator:
         """Return a generator seeded by the answers, so that a resumed session asks the same."""
-        return np.random.default_rng([self.seed, place, len(state.answered(place))])
+        return np.random.default_rng([self.seed, place, len(state.answers_at(place))])
 
     def _chances(self, state: TuningState, place: int) -> FloatArray:
         mean, spread = posterior(wins(state, place))
         drawn = self._random(state, place).multivariate_normal(mean, spread, DRAWS, method="cholesky")
-        found: FloatArray = np.bincount(np.argmax(drawn, axis=1), minlength=mean.size) / DRAWS
-        return found
+        chances: FloatArray = np.bincount(np.argmax(drawn, axis=1), minlength=mean.size) / DRAWS
+        return chances
 
     def _pair(self, state: TuningState, place: int) -> tuple[int, int]:
         """Choose the most informative pair by the spreads of difference and answer, near the best."""
@@ -99,12 +99,12 @@ class Comparing(Method):
         random = self._random(state, place)
         worth = worth * (1 + 1e-6 * random.random(worth.shape))
         first, second = np.unravel_index(int(np.argmax(np.triu(worth, 1))), worth.shape)
-        return self._ordered(state, place, int(first), int(second), bool(random.integers(2)))
+        return self._order(state, place, int(first), int(second), bool(random.integers(2)))
 
     @staticmethod
-    def _ordered(state: TuningState, place: int, a: int, b: int, swap: bool) -> tuple[int, int]:
+    def _order(state: TuningState, place: int, a: int, b: int, swap: bool) -> tuple[int, int]:
         """Put first what was second more often, so that order favours nobody; chance decides a draw."""
-        mine = [x.templates for x in state.answered(place)]
+        mine = [x.templates for x in state.answers_at(place)]
         lead = {i: sum(t[0] == i for t in mine) - sum(t[1] == i for t in mine) for i in (a, b)}
         if lead[a] != lead[b]:
             return (a, b) if lead[a] < lead[b] else (b, a)
@@ -115,7 +115,7 @@ def wins(state: TuningState, place: int) -> FloatArray:
     """Count how often each template (row) was preferred to each other; neither is half for both."""
     size = state.job.templates[place]
     count = np.zeros((size, size))
-    for answered in state.answered(place):
+    for answered in state.answers_at(place):
         first, second = answered.templates
         share = SHARE[Preferred(str(answered.answer))]
         count[first, second] += share

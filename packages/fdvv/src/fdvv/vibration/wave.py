@@ -71,16 +71,16 @@ def to_wav(samples: FloatArray, rate_Hz: int = LISTEN_Hz, full_scale: float | No
         raise ModelError(
             f"full_scale must be positive and at least the largest sample, {peak:g}, got {scale:g}"
         )
-    return Wav(_packed(np.rint(samples / scale * FULL).astype("<i2"), rate_Hz), scale)
+    return Wav(_pack(np.rint(samples / scale * FULL).astype("<i2"), rate_Hz), scale)
 
 
 def board_wav(counts: npt.NDArray[np.uint16], rate_Hz: int) -> Wav:
     """Make a WAV file of the board's samples (n,) of 12 bits, bit for bit: 16 (count - 2048)."""
     centred = COUNT_STEP * (counts.astype(np.int64) - SILENCE_counts)
-    return Wav(_packed(centred.astype("<i2"), rate_Hz), FULL / COUNT_STEP)
+    return Wav(_pack(centred.astype("<i2"), rate_Hz), FULL / COUNT_STEP)
 
 
-def _packed(samples: npt.NDArray[np.int16], rate_Hz: int) -> bytes:
+def _pack(samples: npt.NDArray[np.int16], rate_Hz: int) -> bytes:
     held = io.BytesIO()
     with wave.open(held, "wb") as sound:
         sound.setnchannels(1)

@@ -89,6 +89,6 @@ def test_what_the_cap_itself_needs_grows_with_the_square_of_speed_and_less_with_
     assert np.abs(fast).mean() == pytest.approx(4.0 * np.abs(slow).mean(), rel=0.3)
     open_loop = replace(design_controller(PLANT), proportional=0.0, derivative_s=0.0, integral_1_s=0.0)
     bare = replace(stroke(bump(), 200.0), response=LoopResponse(PLANT, replace(open_loop, damping_N_s_m=0.0)))
-    acceleration = bare.response.left_N(np.full(300, 10.0), TICK_s)[200]
+    acceleration = bare.response.residual_N(np.full(300, 10.0), TICK_s)[200]
     assert acceleration == pytest.approx(10.0 * (PLANT.mass_kg + PLANT.plate_kg), rel=0.05)
     assert np.abs(fast).max() < 0.5 * np.abs(1e2 * acceleration)

@@ -58,7 +58,7 @@ def test_the_loop_is_that_of_springs_and_masses_in_series() -> None:
 
 def test_without_a_controller_all_of_the_cap_s_dynamics_are_felt_and_no_finger_rings() -> None:
     bank = FingerBank(RECOMMENDED)
-    assert bank.left(OPEN) == pytest.approx(1.0, abs=1e-6)
+    assert bank.residual_ratio(OPEN) == pytest.approx(1.0, abs=1e-6)
     assert np.isfinite(bank.peaks(OPEN)).all()
 
 
@@ -73,7 +73,7 @@ def test_the_design_keeps_its_margins_over_the_bank(designed: LoopController) ->
 
 
 def test_the_design_leaves_a_third_of_the_cap_s_dynamics(designed: LoopController) -> None:
-    assert FingerBank(RECOMMENDED).left(designed).max() < 1 / 3
+    assert FingerBank(RECOMMENDED).residual_ratio(designed).max() < 1 / 3
 
 
 def drawn_finger(random: np.random.Generator, fresh: bool) -> HeldFinger:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from fdvv.compensation.parts.guard import Found, PartGuard, PressBalance, weak_coil
+from fdvv.compensation.parts.guard import Diagnosis, PartGuard, PressBalance, weak_coil
 from tests.compensation.parts.scripted_press import Scripted, TRAVEL_mm, WEIGHT_cN
 
 
@@ -15,7 +15,7 @@ def taught(presses: int = 4) -> PartGuard:
     return guard
 
 
-def looked(guard: PartGuard, *presses: Scripted) -> list[Found | None]:
+def looked(guard: PartGuard, *presses: Scripted) -> list[Diagnosis | None]:
     return [guard.look(one.press(), used=True) for one in presses]
 
 

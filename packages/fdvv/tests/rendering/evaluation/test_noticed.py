@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from fdvv.model.file import load_builtin
 from fdvv.model.noticeable import LITERATURE
 from fdvv.model.surface import ForceSurface
-from fdvv.rendering.evaluation.noticed import Noticed, noticed, overall
+from fdvv.rendering.evaluation.noticed import Noticed, overall, summarize
 from fdvv.rendering.evaluation.probe_curve import ProbeCurve
 from fdvv.rendering.evaluation.vibration_presses import NONE_ASKED, RenderedVibration
 from fdvv.rendering.probe import probe
@@ -85,11 +85,11 @@ def test_the_speed_achieved_is_a_second_target(curve: ProbeCurve) -> None:
 
 @given(st.lists(st.floats(0.0, 50.0), min_size=1, max_size=40))
 def test_the_share_and_the_excess_agree_with_counting(steps: list[float]) -> None:
-    found = noticed(np.array([steps]))
+    found = summarize(np.array([steps]))
     assert found.above_ratio == pytest.approx(sum(s > 1 for s in steps) / len(steps))
     assert found.excess_JND == pytest.approx(sum(max(0.0, s - 1) for s in steps) / len(steps))
 
 
 def test_a_rendering_is_the_mean_of_its_curves_and_nothing_has_nothing() -> None:
     assert overall([Noticed(0.2, 1.0, 2.0, 4.0), NOTHING]) == Noticed(0.1, 0.5, 1.0, 2.0)
-    assert noticed(np.empty((3, 0))) == NOTHING
+    assert summarize(np.empty((3, 0))) == NOTHING

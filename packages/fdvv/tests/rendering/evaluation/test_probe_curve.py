@@ -7,7 +7,7 @@ import pytest
 
 from fdvv.model.file import load_builtin
 from fdvv.model.press import Press
-from fdvv.rendering.evaluation.probe_curve import ProbeCurve, judged_curves
+from fdvv.rendering.evaluation.probe_curve import ProbeCurve, judge_curves
 
 MODEL = load_builtin("mx-red")
 SPEED_mm_s, REST_mm = 50.0, 0.6
@@ -24,7 +24,7 @@ def judged(rests_cN: float) -> list[ProbeCurve]:
         pressing, MODEL.force_cN(x_mm, SPEED_mm_s, "press"), MODEL.force_cN(x_mm, SPEED_mm_s, "release")
     )
     force_cN[x_mm <= REST_mm] = rests_cN
-    return judged_curves(MODEL, SPEED_mm_s, [Press(t_s, x_mm, force_cN, SPEED_mm_s)])
+    return judge_curves(MODEL, SPEED_mm_s, [Press(t_s, x_mm, force_cN, SPEED_mm_s)])
 
 
 def test_a_cap_that_a_heavy_finger_has_sunk_renders_what_the_button_would_give_way_to() -> None:

@@ -11,7 +11,7 @@ from fdvv.errors import ModelError
 from fdvv.model.file import load_builtin
 from fdvv.model.noticeable import LITERATURE
 from fdvv.model.surface import ForceSurface
-from fdvv.rendering.evaluation.probe_figures import plot_vibrations, rendered_curves, shown_vibrations
+from fdvv.rendering.evaluation.probe_figures import method_curves, plot_vibrations, worst_vibrations
 from fdvv.rendering.evaluation.probe_report import probe_report
 from fdvv.rendering.evaluation.vibration_presses import NONE_ASKED, Playback
 from fdvv.rendering.figures import plot_rendering
@@ -35,7 +35,7 @@ def test_the_band_around_the_target_is_one_jnd_and_bars_are_where_most_presses_a
     result: ProbeResult,
 ) -> None:
     curve = result.curves[0]
-    ax = plot_rendering(rendered_curves({"rendered": result.curves}, simulated=True))[0, 0]
+    ax = plot_rendering(method_curves({"rendered": result.curves}, simulated=True))[0, 0]
     edges = ax.collections[0].get_paths()[0].vertices[:, 1]
     jnd = LITERATURE.force_cN(curve.target_cN)
     assert edges.max() == pytest.approx((curve.target_cN + jnd).max())
@@ -46,8 +46,8 @@ def test_the_band_around_the_target_is_one_jnd_and_bars_are_where_most_presses_a
 
 def test_vibration_is_drawn_as_it_was_asked_for_and_as_it_came(result: ProbeResult) -> None:
     axes = plot_vibrations(result.curves, simulated=True)
-    assert axes.shape == (len(shown_vibrations(result.curves)), 2)
-    shown = shown_vibrations(result.curves)[0].vibration.shown
+    assert axes.shape == (len(worst_vibrations(result.curves)), 2)
+    shown = worst_vibrations(result.curves)[0].vibration.shown
     assert shown is not None
     drawn = [line.get_ydata() for line in axes[0, 0].get_lines()]
     for got, wanted in zip(drawn, (shown.without_m_s2, shown.with_m_s2, shown.asked_m_s2), strict=True):

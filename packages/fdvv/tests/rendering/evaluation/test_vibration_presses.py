@@ -20,7 +20,7 @@ from fdvv.protocol.messages import head_of
 from fdvv.rendering.evaluation.vibration_presses import (
     Playback,
     RenderedVibration,
-    rendered_vibration,
+    judge_vibration,
     vibrating_image,
 )
 from fdvv.rendering.probe import ProbeResult, probe
@@ -61,7 +61,7 @@ def made(vibration: Vibration | None, seed: int, gain: float = 1.0, late_s: floa
 def compared(gain: float = 1.0, late_s: float = 0.0) -> RenderedVibration:
     silent = [made(None, seed) for seed in range(5)]
     played = [made(SNAP, seed, gain, late_s) for seed in range(5)]
-    return rendered_vibration(MODEL, Stroke.PRESS, 100.0, silent, played)
+    return judge_vibration(MODEL, Stroke.PRESS, 100.0, silent, played)
 
 
 @settings(max_examples=12, deadline=None)
@@ -86,14 +86,14 @@ def test_a_record_of_the_rigs_own_sensor_or_a_coarse_one_measures_no_vibration()
     sensed = replace(press, sensed_mm=press.displacement_mm)
     coarse = Press(press.t_s[::20], press.displacement_mm[::20], press.force_cN[::20], 100.0)
     for record in (sensed, coarse):
-        found = rendered_vibration(MODEL, Stroke.PRESS, 100.0, [record], [])
+        found = judge_vibration(MODEL, Stroke.PRESS, 100.0, [record], [])
         assert "does not hold the cap's acceleration" in found.to_dict()["outcome"]
         assert found.error is None
 
 
 def test_a_stroke_that_ends_too_soon_after_the_onset_is_not_measured() -> None:
     late = replace(SNAP, onset_mm=3.7)
-    found = rendered_vibration(replace(MODEL, vibrations=(late,)), Stroke.PRESS, 100.0, [made(None, 1)], [])
+    found = judge_vibration(replace(MODEL, vibrations=(late,)), Stroke.PRESS, 100.0, [made(None, 1)], [])
     assert "ends within one period" in found.reason
 
 

@@ -15,7 +15,7 @@ from fdvv.report.report import Section, Table, render_html, write_report
 from fdvv.report.svg import figure_svg
 from fdvv_people.optimize.experiment.experiment import ExperimentResult, ExperimentVerdict
 from fdvv_people.optimize.experiment.setup import LEVELS, RANDOM, ExperimentSetup
-from fdvv_people.optimize.experiment.winner import RenderedWinner, rendered_curves
+from fdvv_people.optimize.experiment.winner import RenderedWinner, method_curves
 from fdvv_people.optimize.paper_space import paper_model
 from fdvv_people.optimize.run.report import DesignPanel, control_points, plot_designs
 from fdvv_people.report.prose import (
@@ -199,7 +199,7 @@ def _designs(result: ExperimentResult) -> Section:
 
 
 def _winner(rendered: RenderedWinner) -> Section:
-    figure = plot_rendering(rendered_curves(rendered))
+    figure = plot_rendering(method_curves(rendered))
     svg = figure_svg(figure, "The design, fresh presses of it, and the model captured of it")
     return Section("The winner on the device", _winner_paragraphs(rendered), (svg,))
 

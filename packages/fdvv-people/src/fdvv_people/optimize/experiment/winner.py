@@ -166,7 +166,7 @@ def render_winner(winner: Winner, learn_on: Device, measure_on: Device) -> Rende
     return RenderedWinner(winner, probed, captured, _difference_cN(captured.model, model))
 
 
-def rendered_curves(rendered: RenderedWinner) -> list[RenderedCurve]:
+def method_curves(rendered: RenderedWinner) -> list[RenderedCurve]:
     """Return the design, fresh presses (median and quartiles) and the captured model, for a figure."""
     model, curves = rendered.captured.model, []
     for one in rendered.probed.curves:

@@ -202,7 +202,7 @@ class PressSimulator:
         while done < count and not (parts[-1].displacement_mm.max() >= travel_mm and parts[-1].key[-1]):
             parts.append(rig.advance(min(self.ticks_in(PIECE_s), count - done)))
             done += parts[-1].t_s.size
-        return InteractiveTicks.joined(parts)
+        return InteractiveTicks.concatenate(parts)
 
     def _settle(self, image: bytes, settings: Settings) -> InteractiveRig:
         rig = InteractiveRig(image, self.rig, self.finger, settings, seed=None)

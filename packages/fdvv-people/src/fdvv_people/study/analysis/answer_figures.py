@@ -76,7 +76,7 @@ def plot_rating_bars(
         if button in marks:
             at = (float(place), high + 0.5 * step)
             ax.annotate(marks[button], at, ha="center", va="bottom", fontsize=9)
-    ax.set_xticks(places, [style.wrapped(style.name_text(name), 14) for name in buttons])
+    ax.set_xticks(places, [style.wrap(style.name_text(name), 14) for name in buttons])
     ax.grid(axis="x", visible=False)
     ax.set_ylabel(rating)
     style.set_titles(ax, f"mean {style.name_text(rating)}", False)

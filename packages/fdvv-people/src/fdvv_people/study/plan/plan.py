@@ -34,7 +34,7 @@ class Stimulus(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     actuation : file beside the study that a rig was compensated with; "": the twin renders the model ideally,
         a device its own forces uncompensated.
     force_ratio, snap_ratio, vibration_ratio : by which all forces, the fall of force of the snap and all
-        vibrations are multiplied (fdvv.model.grown); staircases and thresholds set them.
+        vibrations are multiplied (fdvv.model.magnify); staircases and thresholds set them.
     """
 
     name: Name

@@ -10,7 +10,7 @@ from fdvv.compensation.presses import FROM_mm, STOP_GUARD_mm, mean_speed_mm_s, s
 from fdvv.model.model import FDVVModel
 from fdvv.model.press import Press
 from fdvv.protocol.tables import Fault
-from fdvv.rendering.press_check import intended_press, rendered_press
+from fdvv.rendering.press_check import bin_press, target_press
 from fdvv.units import FloatArray
 from fdvv_people.study.plan.trial import Rendered
 from fdvv_studio.live.press import DEEP_mm, TOP_mm
@@ -131,7 +131,7 @@ def judged(model: FDVVModel, rows: FloatArray) -> tuple[float | None, float | No
     """
     t_s, x_mm, force_cN = rows
     press = Press(t_s, x_mm, force_cN, 0.0)
-    rendered = rendered_press(press, model.travel_mm)
+    rendered = bin_press(press, model.travel_mm)
     down, up = (mean_speed_mm_s(t_s, x_mm, span) for span in split_strokes(x_mm, model.travel_mm))
     at_mm = rendered.displacement_mm
     counts = (at_mm >= FROM_mm) & (at_mm <= model.travel_mm - STOP_GUARD_mm)
@@ -140,8 +140,8 @@ def judged(model: FDVVModel, rows: FloatArray) -> tuple[float | None, float | No
     speed_mm_s = round(down, 3)
     if np.isfinite(rendered.press_cN[counts]).mean() < REACHED_ratio:
         return None, speed_mm_s
-    off = [rendered.press_cN - intended_press(model, down).press_cN]
+    off = [rendered.press_cN - target_press(model, down).press_cN]
     if math.isfinite(up):
-        off.append(rendered.release_cN - intended_press(model, up).release_cN)
+        off.append(rendered.release_cN - target_press(model, up).release_cN)
     error_cN = float(np.sqrt(np.nanmean(np.stack([one[counts] for one in off]) ** 2)))
     return round(error_cN, 4), speed_mm_s

@@ -15,7 +15,7 @@ import numpy as np
 
 from fdvv.errors import DeviceError, InputError, ModelError
 from fdvv.model.file import builtin_names, load_builtin, load_model
-from fdvv.model.grown import grown
+from fdvv.model.magnify import magnify
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.actuation_file import load_actuation
@@ -27,7 +27,7 @@ from fdvv_people.study.plan.plan import Stimulus
 from fdvv_people.study.plan.trial import Rendered
 from fdvv_people.study.stimulus.evidence import RenderingEvidence, fault_name
 from fdvv_studio.live.press import LiveEvent, LiveEventKind, LivePress, PACE_mm_s
-from fdvv_studio.live.press_subject import IDEAL_RIG, TABLES_RIG, PressSubject, learned_subject, model_subject
+from fdvv_studio.live.press_subject import IDEAL_RIG, TABLES_RIG, PressSubject, model_subject, rig_subject
 
 WORK_s = 0.05
 """Before the end of a switch, when its second half begins, which takes some milliseconds."""
@@ -110,13 +110,13 @@ def stimulus_model(stimulus: Stimulus, folder: Path) -> FDVVModel:
         model = load_model(study_file(folder, stimulus.button))
     model = fd_only(model) if stimulus.rendered == "FD" else model
     try:
-        return _grown(model, stimulus.force_ratio, stimulus.snap_ratio, stimulus.vibration_ratio)
+        return _magnify(model, stimulus.force_ratio, stimulus.snap_ratio, stimulus.vibration_ratio)
     except ModelError as error:
         remedy = "choose another button, or leave this dimension out"
         raise InputError(stimulus.name, stimulus.button, str(error), remedy) from error
 
 
-_grown = lru_cache(maxsize=256)(grown)
+_magnify = lru_cache(maxsize=256)(magnify)
 
 
 def check_label(label: str, labels: Mapping[str, object]) -> None:
@@ -154,7 +154,7 @@ def prepare_stimulus(
         subject = _ideal(model)
     else:
         learned = stimulus_actuation(stimulus, folder, model)
-        subject = learned_subject(model, learned, rig_name)
+        subject = rig_subject(model, learned, rig_name)
     return PreparedStimulus(stimulus.name, model, subject, _audible(subject))
 
 

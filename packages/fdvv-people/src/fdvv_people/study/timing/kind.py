@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from fdvv.device.open import pressed_by_person
+from fdvv.device.open import is_manual
 from fdvv_people.study.kind import Account, Refusal, StudyKind
 from fdvv_people.study.plan.sitting import SittingState
 from fdvv_people.study.timing.buttons import button_problems
@@ -63,7 +63,7 @@ class TimingStudies(StudyKind[TimingPlan]):
 
     def device_problems(self, plan: TimingPlan, folder: Path, device: str) -> Iterable[str]:
         del plan, folder
-        return () if pressed_by_person(device) else ("is pressed by no person",)
+        return () if is_manual(device) else ("is pressed by no person",)
 
     def draw(self, study: Study, place: int, simulated: bool) -> tuple[StudyTrial, ...]:
         what = f"orders of conditions, {study.fingerprint}"

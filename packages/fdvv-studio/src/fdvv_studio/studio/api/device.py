@@ -16,7 +16,7 @@ from fdvv_studio.studio.device_findings import CellCheck, PressSeen
 from fdvv_studio.studio.device_session import DeviceConnect, DeviceSession, DeviceStatus, DeviceUpload
 from fdvv_studio.studio.devices import device_names
 from fdvv_studio.studio.jobs.file import result_file
-from fdvv_studio.studio.rounding import finite_row, rounded
+from fdvv_studio.studio.rounding import finite_row, round_row
 from fdvv_studio.studio.studio import Studio
 
 
@@ -107,25 +107,25 @@ class ScopeChannel:
 
     def _ticks(self, piece: TickPiece) -> None:
         binner = self._binner
-        found = binner.add(piece)
-        if found.number.size:
-            self._tell(scope_frame(found, binner.bin_s))
+        bins = binner.add(piece)
+        if bins.number.size:
+            self._tell(scope_frame(bins, binner.bin_s))
 
 
-def scope_frame(found: TickBins, bin_s: float) -> ScopeFrame:
-    low, high = found.low, found.high
+def scope_frame(bins: TickBins, bin_s: float) -> ScopeFrame:
+    low, high = bins.low, bins.high
     return ScopeFrame(
         bin_s,
-        tuple(found.number.tolist()),
-        rounded(low[0]),
-        rounded(high[0]),
+        tuple(bins.number.tolist()),
+        round_row(low[0]),
+        round_row(high[0]),
         finite_row(low[1]),
         finite_row(high[1]),
-        rounded(low[2]),
-        rounded(high[2]),
-        tuple(found.state.tolist()),
-        tuple(found.cut.tolist()),
-        tuple(found.ticks.tolist()),
+        round_row(low[2]),
+        round_row(high[2]),
+        tuple(bins.state.tolist()),
+        tuple(bins.cut.tolist()),
+        tuple(bins.ticks.tolist()),
     )
 
 
@@ -178,15 +178,15 @@ def status(session: DeviceSession, _ask: Empty) -> DeviceStatus:
 
 @call("device.facts")
 def facts(session: DeviceSession, _ask: Empty) -> DeviceFacts:
-    held = session.held()
-    found = {name: _shown(value) for name, value in dataclasses.asdict(held.device.info()).items()}
+    held = session.thread()
+    texts = {name: _text_of(value) for name, value in dataclasses.asdict(held.device.info()).items()}
     if held.remote:
         remote = held.remote
-        found |= held.do(lambda: _firmware(remote))
-    return DeviceFacts(tuple(DeviceFact(name.replace("_", " "), value) for name, value in found.items()))
+        texts |= held.do(lambda: _firmware(remote))
+    return DeviceFacts(tuple(DeviceFact(name.replace("_", " "), value) for name, value in texts.items()))
 
 
-def _shown(value: object) -> str:
+def _text_of(value: object) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
@@ -200,7 +200,7 @@ def _firmware(remote: Remote) -> dict[str, str]:
 
 @call("device.selftest")
 def selftest(session: DeviceSession, _ask: Empty) -> SelfTest:
-    held = session.held()
+    held = session.thread()
     if not held.remote:
         return SelfTest((), "there is no firmware in this device, so there is nothing to test")
     reply = held.do(held.remote.client.selftest)

@@ -146,11 +146,11 @@ def open_document(studio: Studio, ask: DocumentAsk) -> Document:
 
 @call("document.change")
 def change_document(documents: Documents, ask: DocumentChange) -> DocumentAnswer:
-    found = documents.store.change(_own_name(ask.button), ask.revision, ask.change)
-    if isinstance(found, ChangeSaved):
-        documents.watchers.tell(DocumentChanged(ask.button, found.revision))
-        return DocumentAnswer(found.revision, None)
-    return DocumentAnswer(found.head.revision, _document(found.head))
+    outcome = documents.store.change(_own_name(ask.button), ask.revision, ask.change)
+    if isinstance(outcome, ChangeSaved):
+        documents.watchers.tell(DocumentChanged(ask.button, outcome.revision))
+        return DocumentAnswer(outcome.revision, None)
+    return DocumentAnswer(outcome.head.revision, _document(outcome.head))
 
 
 @call("document.copy")

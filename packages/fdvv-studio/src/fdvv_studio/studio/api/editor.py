@@ -10,11 +10,11 @@ from msgspec import Meta
 
 from fdvv.model.file import model_from_json, model_to_json
 from fdvv.rendering.feasibility import CurveFeasibility
-from fdvv.rendering.rig_catalog import LimitedRange, RigEntry, limited_ranges
+from fdvv.rendering.rig_catalog import LimitedRange, RigEntry, ranges_at_limit
 from fdvv.rendering.rig_catalog import achievable as make_achievable
-from fdvv_studio.project.measured_bands import MeasuredButton, measured_button
+from fdvv_studio.project.measured_bands import MeasuredButton, load_measured_button
 from fdvv_studio.studio.contract import Empty, Message, call
-from fdvv_studio.studio.rounding import rounded
+from fdvv_studio.studio.rounding import round_row
 from fdvv_studio.studio.studio import Studio
 
 Velocity = Annotated[float, Meta(ge=0.01, le=5000)]
@@ -106,22 +106,22 @@ def button(studio: Studio, ask: ButtonAsk) -> ButtonModel:
 
 
 @call("editor.measured")
-def measured(studio: Studio, ask: MeasuredAsk) -> Measured:
-    return Measured(measured_button(studio.project, ask.name))
+def read_measured(studio: Studio, ask: MeasuredAsk) -> Measured:
+    return Measured(load_measured_button(studio.project, ask.name))
 
 
 def _curve(curve: CurveFeasibility) -> AchievableForce:
     reached, x = curve.reached, curve.reached.displacement_mm
     places = np.linspace(x[0], x[-1], min(POINTS, x.size))
     forces = (np.interp(places, x, column) for column in (reached.intended_cN, reached.achievable_cN))
-    x_mm, intended_cN, achievable_cN = (rounded(column, DECIMALS) for column in (places, *forces))
+    x_mm, intended_cN, achievable_cN = (round_row(column, DECIMALS) for column in (places, *forces))
     return AchievableForce(
         cast(StrokeName, str(curve.stroke)),
         curve.velocity_mm_s,
         x_mm,
         intended_cN,
         achievable_cN,
-        tuple(limited_ranges(reached)),
+        tuple(ranges_at_limit(reached)),
         str(curve.verdict.following),
         curve.verdict.reasons,
         curve.expected.mean_cN,

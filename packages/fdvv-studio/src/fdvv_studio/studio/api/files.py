@@ -16,11 +16,11 @@ from fdvv.button.import_file import ImportSettings, import_file
 from fdvv.button.plausible import OPTION
 from fdvv.errors import FdvvError, InputError
 from fdvv.model.curve import MeasuredCurve
-from fdvv_studio.library.opened import OpenedFile, fitted_file, one_of_each_pair, open_file
+from fdvv_studio.library.opened import OpenedFile, open_file, open_fitted, skip_paired_releases
 from fdvv_studio.project.patch import record_of
 from fdvv_studio.studio.api.documents import Documents
 from fdvv_studio.studio.api.library import Number
-from fdvv_studio.studio.api.library_buttons import LibraryStroke, sampled_strokes
+from fdvv_studio.studio.api.library_buttons import LibraryStroke, sample_strokes
 from fdvv_studio.studio.contract import Message, call, error_line
 from fdvv_studio.studio.studio import Studio
 
@@ -106,11 +106,11 @@ class FileButtons(Message):
 def read_files(studio: Studio, ask: FilesAsk) -> FileButtons:
     """Read files as ``fdvv fit``, ``process`` or ``import`` would, and keep nothing of them."""
     with TemporaryDirectory(prefix="fdvv-") as folder:
-        paths = list(_written(Path(folder), ask.files))
-        return FileButtons([_button(studio, ask, path) for path in one_of_each_pair(paths)])
+        paths = list(_write_files(Path(folder), ask.files))
+        return FileButtons([_button(studio, ask, path) for path in skip_paired_releases(paths)])
 
 
-def _written(folder: Path, files: Sequence[DroppedFile]) -> Iterator[Path]:
+def _write_files(folder: Path, files: Sequence[DroppedFile]) -> Iterator[Path]:
     """Write files below a folder under safe names; those of one folder stay together, as pairs must."""
     folders: dict[PurePosixPath, Path] = {}
     for file in files:
@@ -135,7 +135,7 @@ def _safe_name(name: str) -> str:
 def _button(studio: Studio, ask: FilesAsk, path: Path) -> FileButton:
     store = studio.part(Documents).store
     try:
-        found = _opened(studio, ask, path)
+        opened = _open_dropped(studio, ask, path)
     except InputError as error:
         # the page has a switch where the command line has an option
         remedy, doubted, _ = error.remedy.partition(f"; fdvv fit {OPTION}")
@@ -145,13 +145,13 @@ def _button(studio: Studio, ask: FilesAsk, path: Path) -> FileButton:
         return FileButton(path.name, "", error_line(error))
     return FileButton(
         file=path.name,
-        name=store.free_name(found.model.name),
+        name=store.free_name(opened.model.name),
         reason="",
-        sentence=found.sentence,
-        notes=found.notes,
-        model=record_of(found.model),
-        strokes=tuple(sampled_strokes(found.model)),
-        samples=tuple(_samples(stroke) for stroke in found.measured),
+        sentence=opened.sentence,
+        notes=opened.notes,
+        model=record_of(opened.model),
+        strokes=tuple(sample_strokes(opened.model)),
+        samples=tuple(_samples(stroke) for stroke in opened.measured),
         fits=tuple(
             FileFit(
                 stroke=str(fit.curve.stroke),
@@ -160,16 +160,16 @@ def _button(studio: Studio, ask: FilesAsk, path: Path) -> FileButton:
                 control_points=fit.curve.control_points_cN.size,
                 bump_kept_ratio=fit.bump_kept_ratio,
             )
-            for fit in found.fits
+            for fit in opened.fits
         ),
     )
 
 
-def _opened(studio: Studio, ask: FilesAsk, path: Path) -> OpenedFile:
+def _open_dropped(studio: Studio, ask: FilesAsk, path: Path) -> OpenedFile:
     with path.open("rb") as stream:
         head = stream.read(12)
     if path.name.endswith(".recording.jsonl"):
-        return fitted_file(process_recording(path))
+        return open_fitted(process_recording(path))
     if head.startswith(b"RIFF") or path.suffix.lower() in (".ahap", ".haptic", ".hjif"):
         return _with_vibration(studio, ask, path)
     return open_file(path, FitSettings(accept_implausible=ask.accept_implausible))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from fdvv.device.open import pressed_by_person
+from fdvv.device.open import is_manual
 from fdvv.errors import FdvvError
 from fdvv.model.file import builtin_names
 from fdvv.twin.capture.participant import PARTICIPANTS
@@ -136,7 +136,7 @@ def choices(studio: Studio, _ask: Empty) -> WorkChoices:
 
 
 def _device(locks: DeviceLocks, name: str, about: str) -> DeviceChoice:
-    person = pressed_by_person(name)
+    person = is_manual(name)
     used_by = locks.holder(name) or locks.holder(BENCH + name)
     return DeviceChoice(name, about, not person, rig=True, bench=person or name == "twin", used_by=used_by)
 
@@ -145,15 +145,15 @@ def _buttons(studio: Studio) -> list[ButtonChoice]:
     """List the person's own buttons, then the built-in ones; a file that cannot be read is passed over."""
     ids = [f"own:{name}" for name in result_names(studio.project, "button")]
     ids += [f"builtin:{name}" for name in builtin_names()]
-    found = []
+    choices = []
     for button in ids:
         try:
             model = studio.catalog.model(button)
         except FdvvError:
             continue
         vibrates = any(v.stroke == "press" for v in model.vibrations)
-        found.append(ButtonChoice(button, button.partition(":")[2], vibrates))
-    return found
+        choices.append(ButtonChoice(button, button.partition(":")[2], vibrates))
+    return choices
 
 
 AT_ONCE = 50
@@ -170,22 +170,22 @@ class JobsChannel:
     def receive(self, ask: WatchJobs | WatchJob) -> None:
         """Begin to follow all jobs, or the events of one. InputError."""
         if isinstance(ask, WatchJobs):
-            self._jobs.watchers.watch(self._changed)
+            self._jobs.watchers.watch(self._tell_changed)
             self._tell(JobList(self._jobs.rows()))
             return
         self._end_of_events()
 
-        def heard(number: int, events: Sequence[JobEvent]) -> None:
+        def forward(number: int, events: Sequence[JobEvent]) -> None:
             for first in range(0, len(events), AT_ONCE):
                 self._tell(JobEvents(ask.job, number + first, tuple(events[first : first + AT_ONCE])))
 
-        self._end_of_events = self._jobs.job(ask.job).listen(ask.from_event, heard)
+        self._end_of_events = self._jobs.job(ask.job).listen(ask.from_event, forward)
 
     def close(self) -> None:
-        self._jobs.watchers.forget(self._changed)
+        self._jobs.watchers.forget(self._tell_changed)
         self._end_of_events()
 
-    def _changed(self, row: JobRow) -> None:
+    def _tell_changed(self, row: JobRow) -> None:
         self._tell(JobChanged(row))
 
 

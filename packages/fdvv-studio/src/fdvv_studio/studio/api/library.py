@@ -145,27 +145,27 @@ def index_columns(status: LibraryStatus, first: int, rows: Sequence[ButtonRow]) 
     """Return rows as columns; first : position of the first of them."""
     columns = {column: [getattr(row, name) for row in rows] for column, name in COLUMNS.items()}
     numbers = {name: [getattr(row, name) for row in rows] for name in NUMBERS}
-    return LibraryIndex(standing=status, first=first, numbers=numbers, sketches=_packed(rows), **columns)
+    return LibraryIndex(standing=status, first=first, numbers=numbers, sketches=_pack(rows), **columns)
 
 
-def _packed(rows: Sequence[ButtonRow]) -> str:
+def _pack(rows: Sequence[ButtonRow]) -> str:
     none = (NO_STROKE,) * 64
     sketches = [(row.sketch.press_dcN or none) + (row.sketch.release_dcN or none) for row in rows]
     return base64.b64encode(np.array(sketches, dtype="<i2").tobytes()).decode()
 
 
-def search_message(found: SearchResult, epoch: int, jnds: str) -> LibraryFound:
+def search_message(result: SearchResult, epoch: int, jnds: str) -> LibraryFound:
     """Return a search result; epoch : of the rows that its positions count. jnds : whose JNDs, in words."""
     return message_of(
         LibraryFound,
-        found,
+        result,
         epoch=epoch,
-        positions=found.positions.tolist(),
-        distances_jnd=np.round(found.distances, 3).tolist(),
+        positions=result.positions.tolist(),
+        distances_jnd=np.round(result.distances, 3).tolist(),
         jnds=jnds,
         histograms={
             name: LibraryHistogram(h.lowest, h.highest, h.counts.tolist())
-            for name, h in found.histograms.items()
+            for name, h in result.histograms.items()
         },
     )
 
@@ -232,12 +232,12 @@ def find(library: Library, ask: LibraryFind) -> LibraryFound:
     """Search; positions are of library.index."""
     ranges = {name: (r.low, r.high) for name, r in ask.ranges.items()}
     jnds = library.jnds if ask.like else LITERATURE
-    found, _, indexed = library.find(SearchQuery(**{**structs.asdict(ask), "ranges": ranges, "jnds": jnds}))
-    return search_message(found, indexed.epoch, jnds.origin)
+    result, _, indexed = library.find(SearchQuery(**{**structs.asdict(ask), "ranges": ranges, "jnds": jnds}))
+    return search_message(result, indexed.epoch, jnds.origin)
 
 
 @call("library.refused")
-def refused(library: Library, _ask: Empty) -> LibraryRefused:
+def list_refused(library: Library, _ask: Empty) -> LibraryRefused:
     return LibraryRefused(list(library.index.status.refused))
 
 

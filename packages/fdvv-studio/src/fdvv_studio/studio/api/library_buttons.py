@@ -135,7 +135,7 @@ class LibraryCurves(Message):
     missing: list[LibraryMissing]
 
 
-def sampled_strokes(model: FDVVModel) -> list[LibraryStroke]:
+def sample_strokes(model: FDVVModel) -> list[LibraryStroke]:
     """Sample every curve of a model about every 10 um from its start to its end, in reading order."""
     strokes = []
     for curve in model.curves:
@@ -172,20 +172,20 @@ def page(studio: Studio, ask: LibraryPageAsk) -> LibraryPage:
 @call("library.search")
 def search(library: Library, ask: LibraryQuery) -> LibraryRows:
     query = SearchQuery(text=ask.text, kinds=ask.kinds, origins=ask.origins)
-    found, rows, indexed = library.find(query)
-    best = [message_of(LibraryRow, rows[at]) for at in found.positions[: ask.limit]]
-    return LibraryRows(best, len(found.positions), indexed.ended)
+    result, rows, indexed = library.find(query)
+    best = [message_of(LibraryRow, rows[at]) for at in result.positions[: ask.limit]]
+    return LibraryRows(best, len(result.positions), indexed.ended)
 
 
 @call("library.like")
 def like(library: Library, ask: LibraryLikeAsk) -> LibraryAlikes:
     jnds = library.jnds
-    found, rows, _ = library.find(SearchQuery(like=ask.id, jnds=jnds))
+    result, rows, _ = library.find(SearchQuery(like=ask.id, jnds=jnds))
     alike = [
         LibraryAlike(
             message_of(LibraryRow, rows[at]), round(float(distance), 3), *np.round(parts, 3).tolist()
         )
-        for at, distance, parts in zip(found.positions, found.distances, found.parts, strict=True)
+        for at, distance, parts in zip(result.positions, result.distances, result.parts, strict=True)
         if np.isfinite(distance)
     ]
     return LibraryAlikes(alike[: ask.limit], jnds.origin)
@@ -209,4 +209,4 @@ def button_of(studio: Studio, library: Library, button_id: str) -> LibraryButton
     model = studio.catalog.curves(button_id)
     row = library.row(button_id) or row_of_model(model, button_id, Origin(button_id.partition(":")[0]))
     numbers = {name: getattr(row, name) for name in NUMBERS}
-    return message_of(LibraryButton, row, numbers=numbers, strokes=sampled_strokes(model))
+    return message_of(LibraryButton, row, numbers=numbers, strokes=sample_strokes(model))

@@ -19,24 +19,24 @@ from fdvv_studio.live.press_subject import (
     PressMode,
     PressSubject,
     button_choices,
-    drawn_trace,
     model_subject,
     program_choices,
     program_subject,
+    trace_by_name,
 )
-from fdvv_studio.live.press_trace import PressTrace, drawn_traces, read_press_trace
+from fdvv_studio.live.press_trace import PressTrace, read_press_trace, synthetic_traces
 from fdvv_studio.live.run import LiveFrame, LiveRun
 from fdvv_studio.studio.api.press_frames import (
     DIGITS,
     PressFrame,
     PressMeant,
     PressReady,
-    meant_force,
     press_frame,
     press_ready,
+    target_force,
 )
 from fdvv_studio.studio.contract import ChannelKind, Empty, Here, Message, Over, Tell, call
-from fdvv_studio.studio.rounding import rounded
+from fdvv_studio.studio.rounding import round_row
 from fdvv_studio.studio.studio import Studio
 
 Count = Annotated[int, Meta(ge=0, le=2**53)]
@@ -189,7 +189,7 @@ PICTURE_POINTS = 60  # or up to twice as many: the page draws them 84 pixels wid
 
 def _trace_item(trace: PressTrace) -> TraceItem:
     every = max(1, trace.t_s.size // PICTURE_POINTS)
-    t_s, displacement_mm = (rounded(c[::every], DIGITS) for c in (trace.t_s, trace.displacement_mm))
+    t_s, displacement_mm = (round_row(c[::every], DIGITS) for c in (trace.t_s, trace.displacement_mm))
     return TraceItem(trace.name, trace.origin, t_s, displacement_mm, trace.duration_s)
 
 
@@ -198,7 +198,7 @@ def list_choices(studio: Studio, _ask: Empty) -> PressList:
     return PressList(
         list(button_choices(studio.catalog)),
         list(program_choices(studio.programs)),
-        [_trace_item(trace) for trace in drawn_traces()],
+        [_trace_item(trace) for trace in synthetic_traces()],
         list(PRESS_RIGS),
     )
 
@@ -206,14 +206,14 @@ def list_choices(studio: Studio, _ask: Empty) -> PressList:
 @call("press.forces")
 def list_forces(studio: Studio, ask: PressForcesAsk) -> PressForces:
     subject = subject_of(studio, PressStart(ask.button, ask.program, ask.model, ask.code))
-    return PressForces([meant_force(subject, speed) for speed in FORCE_SPEEDS_mm_s])
+    return PressForces([target_force(subject, speed) for speed in FORCE_SPEEDS_mm_s])
 
 
 @call("press.trace")
 def read_trace(_studio: Studio, ask: TraceReadAsk) -> TraceRead:
-    found = read_press_trace(ask.text.encode(), ask.name)
+    trace = read_press_trace(ask.text.encode(), ask.name)
     return TraceRead(
-        found.name, found.origin, tuple(found.t_s.tolist()), tuple(found.displacement_mm.tolist())
+        trace.name, trace.origin, tuple(trace.t_s.tolist()), tuple(trace.displacement_mm.tolist())
     )
 
 
@@ -271,7 +271,7 @@ class PressChannel:
         self._tell(press_frame(seen, press.replaying))
         for event in seen.events:
             if event.kind is LiveEventKind.PRESSED:
-                self._tell(meant_force(press.subject, round(event.velocity_mm_s, 1)))
+                self._tell(target_force(press.subject, round(event.velocity_mm_s, 1)))
 
 
 def _lead(run: LiveRun, ask: Message) -> None:
@@ -286,7 +286,7 @@ def _lead(run: LiveRun, ask: Message) -> None:
         case PressLift():
             run.ask(LivePress.lift, ask.sequence)
         case PressReplay():
-            trace = _given_trace(ask)
+            trace = _trace_of(ask)
             run.ask(lambda press: press.replay(trace))
         case PressHostEvent():
             run.ask(lambda press: press.event(ask.number))
@@ -300,9 +300,9 @@ def _lead(run: LiveRun, ask: Message) -> None:
             run.pause()
 
 
-def _given_trace(ask: PressReplay) -> PressTrace:
+def _trace_of(ask: PressReplay) -> PressTrace:
     if ask.t_s is None or ask.displacement_mm is None:
-        return drawn_trace(ask.name)
+        return trace_by_name(ask.name)
     try:
         return PressTrace(ask.name, "", np.array(ask.t_s), np.array(ask.displacement_mm))
     except ModelError as error:

@@ -13,7 +13,7 @@ from fdvv_studio.live.press import LiveEvent
 from fdvv_studio.live.press_subject import PressMark, PressMode, PressSubject
 from fdvv_studio.live.run import LiveFrame
 from fdvv_studio.studio.contract import Message, message_of
-from fdvv_studio.studio.rounding import rounded
+from fdvv_studio.studio.rounding import round_row
 
 
 class ShakeSignal(Message):
@@ -87,17 +87,17 @@ def press_ready(subject: PressSubject) -> PressReady:
         rig=subject.rig_name,
         places=subject.marks,
         signals=[message_of(ShakeSignal, signal) for signal in subject.signals],
-        meant=meant_force(subject, 0.0),
+        meant=target_force(subject, 0.0),
     )
 
 
-def meant_force(subject: PressSubject, velocity_mm_s: float) -> PressMeant:
-    press, release = subject.meant_cN(velocity_mm_s)
+def target_force(subject: PressSubject, velocity_mm_s: float) -> PressMeant:
+    press, release = subject.target_cN(velocity_mm_s)
     return PressMeant(
         velocity_mm_s,
-        rounded(subject.displacement_mm, DIGITS),
-        rounded(press, FORCE_DIGITS),
-        rounded(release, FORCE_DIGITS),
+        round_row(subject.displacement_mm, DIGITS),
+        round_row(press, FORCE_DIGITS),
+        round_row(release, FORCE_DIGITS),
     )
 
 
@@ -105,10 +105,10 @@ def press_frame(seen: LiveFrame, replaying: bool) -> PressFrame:
     c = seen.columns
     rows = _rows(c.t_s)
     return PressFrame(
-        t_s=rounded(c.t_s[rows], DIGITS),
-        displacement_mm=rounded(c.displacement_mm[rows], DIGITS),
-        force_cN=rounded(c.force_cN[rows], FORCE_DIGITS),
-        finger_mm=rounded(c.finger_mm[rows], DIGITS),
+        t_s=round_row(c.t_s[rows], DIGITS),
+        displacement_mm=round_row(c.displacement_mm[rows], DIGITS),
+        force_cN=round_row(c.force_cN[rows], FORCE_DIGITS),
+        finger_mm=round_row(c.finger_mm[rows], DIGITS),
         velocity_mm_s=_last(c.velocity_mm_s),
         commanded_cN=_last(c.commanded_cN),
         state=int(_last(c.state)),

@@ -12,7 +12,7 @@ from fdvv.program.file import program_to_json
 from fdvv.program.library import Recipe, make, programs
 from fdvv.program.surface import of_model
 from fdvv_studio.live.press_subject import button_choices
-from fdvv_studio.project.program_check import ProgramCheckResult, checked_program
+from fdvv_studio.project.program_check import ProgramCheckResult, check_program_text
 from fdvv_studio.project.programs import KeptProgram, ProgramEntry, read_program
 from fdvv_studio.studio.contract import Empty, Message, call, message_of
 from fdvv_studio.studio.studio import Studio
@@ -180,7 +180,7 @@ def restore_program(studio: Studio, ask: ThrownProgram) -> KeptProgram:
 @call("program.check")
 def check_program(_studio: Studio, ask: ProgramSource) -> ProgramCheckResult:
     """Check a text as far as it goes; what is wrong with it is the answer, not an error."""
-    return checked_program(ask.text)
+    return check_program_text(ask.text)
 
 
 @call("program.recipe")

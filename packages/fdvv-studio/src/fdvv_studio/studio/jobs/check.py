@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from fdvv.device.open import pressed_by_person
+from fdvv.device.open import is_manual
 from fdvv.errors import InputError, SettingError
 from fdvv.rendering.rig_catalog import SHIPPED_RIGS
 from fdvv.twin.capture.participant import PARTICIPANTS
@@ -34,7 +34,7 @@ def check_order(order: Order) -> None:
 
 def simulates(order: Order) -> bool:
     """Return whether the device of an order is simulated."""
-    return order.device == "twin" if isinstance(order, CaptureOrder) else not pressed_by_person(order.device)
+    return order.device == "twin" if isinstance(order, CaptureOrder) else not is_manual(order.device)
 
 
 def lock_name(order: Order) -> str:
@@ -68,7 +68,7 @@ def _check_capture(order: CaptureOrder) -> None:
     if simulates(order):
         require_listed("switch", order.switch, button_names(), "choose one of the list")
         require_listed("participant", order.participant, PARTICIPANTS)
-    elif not pressed_by_person(order.device):
+    elif not is_manual(order.device):
         reason = f"{order.device} is no capture bench"
         raise InputError("device", "device", reason, "use the simulated bench, or one on a serial port")
 
@@ -79,7 +79,7 @@ def _check_rig_order(order: RigOrder) -> None:
     require_listed("rig", str(current_rig_name(order.rig)), RIGS)
     if isinstance(order, CompensateOrder):
         _check_known(order)
-    if isinstance(order, TuneOrder) and order.observer != "person" and pressed_by_person(order.device):
+    if isinstance(order, TuneOrder) and order.observer != "person" and is_manual(order.device):
         reason = "a person presses this device, and a simulated observer would answer for them"
         raise InputError("observer", "observer", reason, "answer yourself")
 

@@ -16,7 +16,7 @@ from typing import Any, Literal
 
 import msgspec
 
-from fdvv.device.open import pressed_by_person
+from fdvv.device.open import is_manual
 from fdvv.errors import InputError
 from fdvv.eventlog import Journal, JournalKind, read_records
 from fdvv.io.documents import Kind, pretty, read_document
@@ -250,8 +250,8 @@ RESULT_FOLDERS = {
 
 def result_names(project: Path, kind: str) -> tuple[str, ...]:
     place = RESULT_FOLDERS[kind]
-    found = (project / place.folder).glob(f"*{place.suffix}")
-    return tuple(sorted(path.name.removesuffix(place.suffix) for path in found if path.name[0] != "."))
+    paths = (project / place.folder).glob(f"*{place.suffix}")
+    return tuple(sorted(path.name.removesuffix(place.suffix) for path in paths if path.name[0] != "."))
 
 
 def result_file(project: Path, kind: str, name: str) -> Path:
@@ -279,7 +279,7 @@ def rig_name(order: Order) -> str:
     """Name the rig that an order works on, as what it has taught is kept."""
     if isinstance(order, CaptureOrder):
         return order.device
-    simulated = isinstance(order, CompensateOrder) and not pressed_by_person(order.device)
+    simulated = isinstance(order, CompensateOrder) and not is_manual(order.device)
     where = order.device.rpartition("/")[2] if "/" in order.device else order.device.replace(":", "-")
     return f"{where}-{current_rig_name(order.rig)}" if simulated else where
 

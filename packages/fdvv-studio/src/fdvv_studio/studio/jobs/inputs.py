@@ -41,10 +41,10 @@ def inputs_of(order: Order, catalog: Catalog, project: Path, devices: Sequence[s
         reason = f"{model.name} has no vibration of the press to tune"
         raise InputError("button", "button", reason, "give it one in the editor first")
     title = f"{kind_of(order).capitalize()} {model.name} on {order.device}"
-    return Inputs(title, _shared_files(order, model, project))
+    return Inputs(title, _input_files(order, model, project))
 
 
-def _shared_files(order: RigOrder, model: FDVVModel, project: Path) -> dict[str, str | bytes]:
+def _input_files(order: RigOrder, model: FDVVModel, project: Path) -> dict[str, str | bytes]:
     """Copy the button, the simulated rig, what was learned before, and what people notice."""
     names = JobFolder(Path())
     files: dict[str, str | bytes] = {

@@ -32,7 +32,7 @@ from fdvv_studio.studio.jobs.inputs import Inputs, inputs_of
 from fdvv_studio.studio.jobs.orders import Order, kind_of
 from fdvv_studio.studio.jobs.process import CONNECT, JobStart
 from fdvv_studio.studio.jobs.progress import JobProgress
-from fdvv_studio.studio.jobs.time_left import left_s
+from fdvv_studio.studio.jobs.time_left import remaining_s
 from fdvv_studio.studio.studio import Studio
 
 Heard = Callable[[int, Sequence[JobEvent]], None]
@@ -86,17 +86,17 @@ class LiveJob:
                 resumable=record.state in ("cancelled", "failed") and self.refusal is None,
                 button=getattr(record.order, "button", ""),
                 stage=progress.stage,
-                left_s=self._left_s(),
+                left_s=self._remaining_s(),
             )
 
-    def _left_s(self) -> float | None:
+    def _remaining_s(self) -> float | None:
         if self.record.state not in UNFINISHED:
             return None
         progress, elapsed_s = self.progress, time.monotonic() - self._began_s
         # events of the disk may count anything
         done = max(0, min(progress.done, progress.total))
         ratio = done / progress.total if progress.total else 0.0
-        return round(left_s(self.record.order, progress.stage, ratio, elapsed_s), 1)
+        return round(remaining_s(self.record.order, progress.stage, ratio, elapsed_s), 1)
 
     def refuse(self, error: InputError) -> None:
         """Show why a job can never run; on the disk it stays as it is."""
@@ -111,7 +111,7 @@ class LiveJob:
             self._journal = self.folder.open_journal()
             self._events = self.folder.events()
 
-    def heard(self, event: JobEvent) -> None:
+    def add_event(self, event: JobEvent) -> None:
         """Keep an event and send it to all listeners."""
         with self.lock:
             if self._journal:
@@ -193,8 +193,8 @@ class Jobs:
         require_own_folders(self._studio.project)
         with self._lock:
             name = f"{max((int(path.name) for path in _folders(self._folder)), default=0) + 1:04d}"
-            with self._locks.acquired(lock_name(order), f"job {int(name)}, {inputs.title}"):
-                job = self._jobs[name] = self._made(name, order, inputs)
+            with self._locks.hold(lock_name(order), f"job {int(name)}, {inputs.title}"):
+                job = self._jobs[name] = self._create(name, order, inputs)
         self._run(job)
         return job.row
 
@@ -246,7 +246,7 @@ class Jobs:
         for start in starts:
             start.wait()
 
-    def _made(self, name: str, order: Order, inputs: Inputs) -> LiveJob:
+    def _create(self, name: str, order: Order, inputs: Inputs) -> LiveJob:
         folder = JobFolder(self._folder / name)
         folder.path.mkdir(parents=True)
         for file, content in inputs.files.items():
@@ -266,7 +266,7 @@ class Jobs:
                 job.start = JobStart(
                     job.folder.path,
                     run,
-                    lambda event: self._heard(job, event),
+                    lambda event: self._add_event(job, event),
                     lambda end: self._over(job, device, end),
                 )
         except BaseException:
@@ -274,8 +274,8 @@ class Jobs:
             raise
         self.watchers.tell(job.row)
 
-    def _heard(self, job: LiveJob, event: JobEvent) -> None:
-        job.heard(event)
+    def _add_event(self, job: LiveJob, event: JobEvent) -> None:
+        job.add_event(event)
         self.watchers.tell(job.row)
 
     def _over(self, job: LiveJob, device: str, end: JobEnded) -> None:
@@ -287,7 +287,7 @@ class Jobs:
             except (OSError, FdvvError) as error:
                 line = f"what was made could not be kept in the project: {error_line(error)}"
                 end = JobEnded("failed", line)
-        job.heard(end)
+        job.add_event(end)
         with job.lock:
             job.start = None
             job.settle(state=end.state, line=end.line, ended=utc_now(), results=results)

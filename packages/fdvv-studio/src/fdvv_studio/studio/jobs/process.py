@@ -86,7 +86,7 @@ def work_on(work: Work) -> None:
     resolve_name(WORK[type(order)])(work, order)
 
 
-def ended(work: Work) -> JobEnded:
+def run_work(work: Work) -> JobEnded:
     """Do the work; tell how it ended."""
     try:
         work_on(work)
@@ -113,7 +113,7 @@ def main() -> None:
 
         answers = Answers(os.fdopen(os.dup(0), "rb", buffering=0))
         work = Work(JobFolder(Path(sys.argv[1])), int(sys.argv[2]), tell, answers.wait)
-        last = ended(work)
+        last = run_work(work)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         tell(last)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fdvv.device.open import pressed_by_person
+from fdvv.device.open import is_manual
 from fdvv_studio.studio.jobs.orders import CaptureOrder, CompensateOrder, Order, ProbeOrder, TuneOrder
 
 START_s, DESIGN_s = 1.5, 3.0
@@ -26,9 +26,9 @@ class Part:
     time_s: float
 
 
-def expected(order: Order) -> tuple[Part, ...]:
+def parts_of(order: Order) -> tuple[Part, ...]:
     """Return the parts of a job in their order, and how long each may take."""
-    press_s = PERSON_s if pressed_by_person(order.device) else STEP_s.get(order.device.partition(":")[0], 1.0)
+    press_s = PERSON_s if is_manual(order.device) else STEP_s.get(order.device.partition(":")[0], 1.0)
     match order:
         case CompensateOrder(settings=settings):
             speeds = len(settings.velocities_mm_s)
@@ -46,7 +46,7 @@ def expected(order: Order) -> tuple[Part, ...]:
             before = (Part("baseline", judged_s),) if order.actuation else ()
             return *before, Part("probe", START_s + judged_s)
         case CaptureOrder(settings=settings):
-            take_s = PERSON_s if order.watch or pressed_by_person(order.device) else STEP_s["twin"]
+            take_s = PERSON_s if order.watch or is_manual(order.device) else STEP_s["twin"]
             takes = 1 + settings.probe + settings.presses * len(settings.paces_mm_s)
             return Part("capture", START_s + takes * take_s), Part("process", DESIGN_s)
         case TuneOrder(settings=settings):
@@ -58,13 +58,13 @@ def expected(order: Order) -> tuple[Part, ...]:
             return (Part("tune", START_s + asked_s),)
 
 
-def left_s(order: Order, stage: str, done_ratio: float, elapsed_s: float) -> float:
+def remaining_s(order: Order, stage: str, done_ratio: float, elapsed_s: float) -> float:
     """Return how long a job still takes.
 
     stage : that it is in; empty before the first. done_ratio : part of it that is done.
     elapsed_s : of this start.
     """
-    parts = expected(order)
+    parts = parts_of(order)
     at = next((i for i, part in enumerate(parts) if part.stage == stage), 0)
     spent_s = sum(part.time_s for part in parts[:at]) + done_ratio * parts[at].time_s
     slow_ratio = (elapsed_s + TRUST_s) / (spent_s + TRUST_s)

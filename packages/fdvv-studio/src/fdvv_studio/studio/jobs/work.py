@@ -14,23 +14,23 @@ from fdvv.compensation.method import CurveOutcome
 from fdvv.compensation.presses import AcceptanceLimits
 from fdvv.device.bench import BenchInfo
 from fdvv.device.contract import Device, DeviceInfo
-from fdvv.device.open import pressed_by_person
+from fdvv.device.open import is_manual
 from fdvv.model.jnd_file import project_jnds
 from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import Jnds
 from fdvv.rendering.actuation_file import load_actuation
 from fdvv.rendering.compensate import CompensationResult
-from fdvv.rendering.evaluation.noticed import noticed
+from fdvv.rendering.evaluation.noticed import summarize
 from fdvv.rendering.evaluation.probe_curve import ProbeCurve
 from fdvv.rendering.evaluation.verdict import short_outcome
-from fdvv.rendering.press_check import intended_press, noticeable_cN, rendered_press
+from fdvv.rendering.press_check import bin_press, noticeable_cN, target_press
 from fdvv.rendering.session import Session
 from fdvv.rendering.session_run import Guide, PressDone
 from fdvv_studio.studio.contract import message_of
 from fdvv_studio.studio.jobs import events
 from fdvv_studio.studio.jobs.file import JobFolder
 from fdvv_studio.studio.jobs.orders import CompensateOrder, ProbeOrder, TuneOrder
-from fdvv_studio.studio.rounding import DIGITS, finite_or_none, finite_row, rounded
+from fdvv_studio.studio.rounding import DIGITS, finite_or_none, finite_row, round_row
 
 PressStage = Literal["compensate", "baseline", "probe"]
 
@@ -53,7 +53,7 @@ class Work:
 
     def guide(self, device: str) -> Guide:
         """Return the guide of a session; only a person is asked for every press."""
-        if not pressed_by_person(device):
+        if not is_manual(device):
             return Guide(notice=self.notice)
         return Guide(lambda ask: self.tell(message_of(events.PressAsked, ask)), self.notice)
 
@@ -62,11 +62,11 @@ class Work:
         """What people notice, as the project had it when the work was ordered."""
         return project_jnds(self.folder.path)
 
-    def intended(self, model: FDVVModel, velocities_mm_s: tuple[float, ...]) -> None:
+    def tell_target(self, model: FDVVModel, velocities_mm_s: tuple[float, ...]) -> None:
         jnds = self.jnds
         for velocity in sorted(velocities_mm_s):
-            wanted = intended_press(model, velocity)
-            x_mm, down_cN, up_cN = map(rounded, (wanted.displacement_mm, wanted.press_cN, wanted.release_cN))
+            press = target_press(model, velocity)
+            x_mm, down_cN, up_cN = map(round_row, (press.displacement_mm, press.press_cN, press.release_cN))
             self.tell(
                 events.CurveIntended(
                     velocity,
@@ -74,16 +74,16 @@ class Work:
                     down_cN,
                     up_cN,
                     *noticeable_cN(model, velocity, jnds),
-                    press_jnd_cN=rounded(jnds.force_cN(wanted.press_cN)),
-                    release_jnd_cN=rounded(jnds.force_cN(wanted.release_cN)),
+                    press_jnd_cN=round_row(jnds.force_cN(press.press_cN)),
+                    release_jnd_cN=round_row(jnds.force_cN(press.release_cN)),
                     jnds=jnds.origin,
                 )
             )
 
-    def pressed(self, travel_mm: float, stage: PressStage) -> Callable[[PressDone], None]:
+    def reporter(self, travel_mm: float, stage: PressStage) -> Callable[[PressDone], None]:
         return lambda done: self.tell(press_event(done, travel_mm, stage))
 
-    def learned(self) -> CompensationResult | None:
+    def load_learned(self) -> CompensationResult | None:
         """Return the learned table that is worked on; None: the model's own force."""
         return load_actuation(self.folder.actuation) if self.folder.actuation.exists() else None
 
@@ -109,7 +109,7 @@ class Work:
 
 def press_event(done: PressDone, travel_mm: float, stage: PressStage) -> events.PressEvent:
     standing = next((s for s in done.progress() if s.velocity_mm_s == done.velocity_mm_s), None)
-    rendered = rendered_press(done.press, travel_mm) if done.press else None
+    rendered = bin_press(done.press, travel_mm) if done.press else None
     return events.PressEvent(
         stage,
         done.velocity_mm_s,
@@ -129,22 +129,22 @@ def press_event(done: PressDone, travel_mm: float, stage: PressStage) -> events.
 
 def curve_noticed(curve: ProbeCurve, before: ProbeCurve | None) -> events.CurveNoticed:
     """Return what a finger could notice of a judged curve; before : the same without compensation."""
-    found = events.CurveNoticed(
+    event = events.CurveNoticed(
         "press" if str(curve.stroke) == "press" else "release",
         curve.velocity_mm_s,
-        rounded(curve.displacement_mm),
-        rounded((curve.total_JND > 1).mean(axis=0)),
-        round(noticed(curve.force_JND).above_ratio, DIGITS),
+        round_row(curve.displacement_mm),
+        round_row((curve.total_JND > 1).mean(axis=0)),
+        round(summarize(curve.force_JND).above_ratio, DIGITS),
         round(curve.total.above_ratio, DIGITS),
         short_outcome(curve.vibration),
         mean_cN=finite_or_none(curve.outcome.mean_error_cN),
         max_cN=finite_or_none(curve.outcome.max_error_cN),
     )
     if before is None:
-        return found
+        return event
     return msgspec.structs.replace(
-        found,
-        before_ratio=round(noticed(before.force_JND).above_ratio, DIGITS),
+        event,
+        before_ratio=round(summarize(before.force_JND).above_ratio, DIGITS),
         before_mean_cN=finite_or_none(before.outcome.mean_error_cN),
         before_max_cN=finite_or_none(before.outcome.max_error_cN),
     )

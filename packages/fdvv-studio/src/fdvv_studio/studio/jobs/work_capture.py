@@ -39,17 +39,17 @@ def capture(work: Work, order: CaptureOrder) -> None:
 
 def _process(work: Work, order: CaptureOrder) -> None:
     work.tell(events.StageEvent("process", "making a model of the recording"))
-    found = process_recording(work.folder.recording)
-    model = replace(found.model, name=order.name)
+    recorded = process_recording(work.folder.recording)
+    model = replace(recorded.model, name=order.name)
     save_model(model, work.folder.result("button"))
-    used = sum(not judged.reason for judged in found.processed.judged)
+    used = sum(not judged.reason for judged in recorded.processed.judged)
     sentence = (
-        f"a model of {len(model.curves)} curves and {_counted(len(model.vibrations), 'vibration')}, "
+        f"a model of {len(model.curves)} curves and {_count(len(model.vibrations), 'vibration')}, "
         f"travel {model.travel_mm:.2f} mm, from {used} presses"
     )
-    presses, simulated = len(found.processed.judged), model.provenance.simulated
+    presses, simulated = len(recorded.processed.judged), model.provenance.simulated
     counts = presses, presses - used
-    work.tell(events.JobOutcome("capture", sentence, *counts, simulated, warnings=found.warnings))
+    work.tell(events.JobOutcome("capture", sentence, *counts, simulated, warnings=recorded.warnings))
 
 
 def _cue(work: Work, paced: bool) -> Callable[[TakeRequest], Callable[[float], None]]:
@@ -100,5 +100,5 @@ def _pace(progress: VelocityProgress) -> events.PaceProgress:
     return message_of(events.PaceProgress, progress, achieved_mm_s=speeds)
 
 
-def _counted(count: int, what: str) -> str:
+def _count(count: int, what: str) -> str:
     return f"{count} {what}{'' if count == 1 else 's'}"

@@ -17,7 +17,7 @@ from fdvv.model.file import load_model
 from fdvv.model.model import FDVVModel
 from fdvv.model.surface import ForceSurface
 from fdvv.rendering.actuation_file import save_actuation
-from fdvv.rendering.compensate import CompensationResult, compensate, uncompensated
+from fdvv.rendering.compensate import CompensationResult, compensate, start_surface
 from fdvv.rendering.evaluation.probe_curve import ProbeCurve
 from fdvv.rendering.evaluation.verdict import headline
 from fdvv.rendering.evaluation.vibration_presses import Playback
@@ -37,7 +37,7 @@ def learn(work: Work, order: CompensateOrder) -> None:
     before = _baseline(work, order, model, seed + PROBE_SEED, presses)
     with work.session(order, work.folder.session, seed) as (device, session):
         work.tell(StageEvent("compensate", "learning what makes the rig feel like the button"))
-        report_press, guide = work.pressed(model.travel_mm, "compensate"), work.guide(order.device)
+        report_press, guide = work.reporter(model.travel_mm, "compensate"), work.guide(order.device)
         law, speeds = _law(work, order), order.settings.velocities_mm_s
         result = compensate(device, model, speeds, law, report_press, session, guide)
     _keep(work, result)
@@ -47,12 +47,12 @@ def learn(work: Work, order: CompensateOrder) -> None:
 
 def judge(work: Work, order: ProbeOrder) -> None:
     """Judge a learned table, or the model's own force, on fresh presses."""
-    model, learned, settings = load_model(work.folder.button), work.learned(), order.settings
+    model, learned, settings = load_model(work.folder.button), work.load_learned(), order.settings
     before = _baseline(work, order, model, settings.seed, settings.presses) if learned else ()
     with work.session(order, work.folder.probe, settings.seed) as (device, session):
         if not learned:
             _begin(work, device, model, order)
-        table = _table(learned) if learned else _uncompensated(device, model, order)
+        table = _table(learned) if learned else _start_table(device, model, order)
         _probe(work, order, (device, session), model, table, settings.presses, before)
 
 
@@ -69,8 +69,8 @@ def _table(learned: CompensationResult) -> _Table:
     return _Table(learned.surface, learned.method, learned.outcome.tuning, learned.known_rig)
 
 
-def _uncompensated(device: Device, model: FDVVModel, order: CompensateOrder | ProbeOrder) -> _Table:
-    return _Table(uncompensated(device, model, order.settings.velocities_mm_s), "not compensated", Tuning())
+def _start_table(device: Device, model: FDVVModel, order: CompensateOrder | ProbeOrder) -> _Table:
+    return _Table(start_surface(device, model, order.settings.velocities_mm_s), "not compensated", Tuning())
 
 
 def _baseline(
@@ -80,8 +80,9 @@ def _baseline(
     with work.session(order, work.folder.baseline, seed) as (device, session):
         _begin(work, device, model, order)
         work.tell(StageEvent("baseline", "pressing without compensation, to compare"))
-        surface, method, tuning, _ = _uncompensated(device, model, order)
-        about = (work.pressed(model.travel_mm, "baseline"), method, session, work.guide(order.device), tuning)
+        surface, method, tuning, _ = _start_table(device, model, order)
+        guide = work.guide(order.device)
+        about = (work.reporter(model.travel_mm, "baseline"), method, session, guide, tuning)
         speeds, jnds = order.settings.velocities_mm_s, work.jnds
         return probe(device, model, surface, speeds, presses, *about, jnds=jnds).curves
 
@@ -98,7 +99,7 @@ def _probe(
     device, session = pressed
     surface, method, tuning, known = table
     work.tell(StageEvent("probe", "judging on fresh presses, in true displacement"))
-    report_press, guide = work.pressed(model.travel_mm, "probe"), work.guide(order.device)
+    report_press, guide = work.reporter(model.travel_mm, "probe"), work.guide(order.device)
     speeds = order.settings.velocities_mm_s
     about = (method, session, guide, tuning, Playback(presses), known)
     result = probe(device, model, surface, speeds, presses, report_press, *about, jnds=work.jnds)
@@ -106,13 +107,13 @@ def _probe(
     write_atomic(work.folder.result("measured"), json.dumps(report, allow_nan=False) + "\n")
     curves = tuple(curve_progress(curve.outcome) for curve in result.curves)
     counts = result.presses, len(result.skipped)
-    found = result.to_dict()
-    outcome = JobOutcome("probe", found["verdict"].removesuffix("."), *counts, result.simulated, curves)
+    record = result.to_dict()
+    outcome = JobOutcome("probe", record["verdict"].removesuffix("."), *counts, result.simulated, curves)
     bare = {(curve.stroke, curve.velocity_mm_s): curve for curve in before}
     marks = tuple(curve_noticed(c, bare.get((c.stroke, c.velocity_mm_s))) for c in result.curves)
     judged = "simulated presses" if result.simulated else "held-out presses"
     line = headline(result.curves, before, judged if before else f"{judged}, uncompensated")
-    work.tell(replace(outcome, next_step=found["next_step"], headline=line, noticed=marks))
+    work.tell(replace(outcome, next_step=record["next_step"], headline=line, noticed=marks))
 
 
 def _keep(work: Work, result: CompensationResult) -> None:
@@ -131,4 +132,4 @@ def _law(work: Work, order: CompensateOrder) -> PaperLaw | Method[Any]:
 
 def _begin(work: Work, device: Device, model: FDVVModel, order: CompensateOrder | ProbeOrder) -> None:
     work.begin(device.info())
-    work.intended(model, order.settings.velocities_mm_s)
+    work.tell_target(model, order.settings.velocities_mm_s)

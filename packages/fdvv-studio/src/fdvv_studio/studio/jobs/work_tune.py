@@ -15,7 +15,7 @@ from fdvv.vibration.wave import vibration_samples
 from fdvv_studio.studio.jobs import events
 from fdvv_studio.studio.jobs.orders import TuneOrder
 from fdvv_studio.studio.jobs.work import Work
-from fdvv_studio.studio.rounding import DIGITS, finite_or_none, rounded
+from fdvv_studio.studio.rounding import DIGITS, finite_or_none, round_row
 
 WAVE_Hz, QUIET_s = 8000, 0.005
 """Of what is played on the page; the strongest modes of switches lie below 3 kHz."""
@@ -23,7 +23,7 @@ WAVE_Hz, QUIET_s = 8000, 0.005
 
 def tune(work: Work, order: TuneOrder) -> None:
     """Press and ask until nothing is left to ask, and keep the best in a model."""
-    model, learned = load_model(work.folder.button), work.learned()
+    model, learned = load_model(work.folder.button), work.load_learned()
     surface, tuning = (learned.surface, learned.outcome.tuning) if learned else (None, UNTUNED)
     settings, speeds = order.settings, order.settings.velocities_mm_s
     candidates = candidates_for(model, sorted(speeds), settings.grid())
@@ -39,7 +39,7 @@ def tune(work: Work, order: TuneOrder) -> None:
             TuneSetup(surface, None, settings.grid(), order.observer, tuning),
             session,
             work.guide(order.device),
-            lambda progress: work.tell(_answered(progress)),
+            lambda progress: work.tell(_answer_event(progress)),
         )
     save_model(replace(result.model, name=order.name), work.folder.result("button"))
     rankings = tuple(_ranking(tuned) for tuned in result.tuned)
@@ -52,10 +52,10 @@ def _answerer(work: Work, order: TuneOrder, candidates: tuple[Candidates, ...]) 
         return simulated_observer(candidates, order.settings.seed).answer
 
     def answer(question: Question) -> int | Preferred | None:
-        found = candidates[question.place]
-        waves = tuple(_wave(found.vibrations[template]) for template in question.templates)
-        about = question.number, question.total, found.velocity_mm_s
-        work.tell(events.QuestionAsked(*about, waves, _wave(found.vibrations[0])))
+        candidate = candidates[question.place]
+        waves = tuple(_wave(candidate.vibrations[template]) for template in question.templates)
+        about = question.number, question.total, candidate.velocity_mm_s
+        work.tell(events.QuestionAsked(*about, waves, _wave(candidate.vibrations[0])))
         said = work.ask(question.number)
         return None if said == "again" else int(said) if said.isdigit() else Preferred(said)
 
@@ -63,10 +63,10 @@ def _answerer(work: Work, order: TuneOrder, candidates: tuple[Candidates, ...]) 
 
 
 def _wave(vibration: Vibration) -> events.PlayedWave:
-    return events.PlayedWave(WAVE_Hz, rounded(vibration_samples(vibration, WAVE_Hz, QUIET_s)))
+    return events.PlayedWave(WAVE_Hz, round_row(vibration_samples(vibration, WAVE_Hz, QUIET_s)))
 
 
-def _answered(progress: AnswerEvent) -> events.QuestionAnswered:
+def _answer_event(progress: AnswerEvent) -> events.QuestionAnswered:
     given = progress.given
     rankings = tuple(_ranking(tuned) for tuned in progress.tuned if tuned.standing.answers)
     return events.QuestionAnswered(

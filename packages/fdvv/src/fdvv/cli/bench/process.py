@@ -112,7 +112,7 @@ def process(
     """
     from fdvv.bench.html import capture_html
     from fdvv.bench.model import capture_report, process_recording
-    from fdvv.bench.vibration import recorded_vibrations
+    from fdvv.bench.vibration import find_vibrations
     from fdvv.model.file import MODEL_SUFFIX, save_model
     from fdvv.preprocess.process import Settings
     from fdvv.report.report import write_report
@@ -122,7 +122,7 @@ def process(
     found = process_recording(
         recording,
         Settings(cap_g=cap_mass_g, paces_mm_s=paces_mm_s or ()),
-        find_vibrations=functools.partial(recorded_vibrations, extrapolate=extrapolate),
+        find_vibrations=functools.partial(find_vibrations, extrapolate=extrapolate),
     )
     if output:
         save_model(found.model, output)

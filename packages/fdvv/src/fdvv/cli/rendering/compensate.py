@@ -129,7 +129,7 @@ def probe(
     from fdvv.compensation.identification.prior_file import check_range
     from fdvv.compensation.method import Tuning
     from fdvv.rendering.actuation_file import load_actuation
-    from fdvv.rendering.compensate import fit_cell, uncompensated
+    from fdvv.rendering.compensate import fit_cell, start_surface
     from fdvv.rendering.evaluation.verdict import headline
     from fdvv.rendering.evaluation.vibration_presses import Playback
     from fdvv.rendering.probe import probe as judge
@@ -147,7 +147,7 @@ def probe(
     session = pressing.session(settings, beside(actuation, button, "probe-session"))
     with pressing.guided(session, as_json) as (found, view, guide):
         fit_cell(found, sheet.cell if sheet else None)
-        surface = learned.surface if learned else uncompensated(found, model, speeds)
+        surface = learned.surface if learned else start_surface(found, model, speeds)
         tuning = learned.outcome.tuning if learned else Tuning()
         about = (method, session, guide, tuning, playback if playback.presses else None)
         known = learned.known_rig if learned else None
@@ -175,10 +175,10 @@ def _receipt(result: Any) -> dict[str, Any]:
 
 def _draw(result: ProbeResult, figure: Path | None, report: Path | None) -> None:
     if figure:
-        from fdvv.rendering.evaluation.probe_figures import rendered_curves
+        from fdvv.rendering.evaluation.probe_figures import method_curves
         from fdvv.rendering.figures import plot_rendering
 
-        curves = rendered_curves({"rendered": result.curves}, result.simulated)
+        curves = method_curves({"rendered": result.curves}, result.simulated)
         ui.save_figure(plot_rendering(curves, title=result.model_name)[0, 0].figure, figure)
     if report:
         from fdvv.rendering.evaluation.probe_report import probe_report

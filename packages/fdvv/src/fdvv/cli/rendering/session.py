@@ -133,9 +133,9 @@ RECOMMENDED_ON = ("twin", "host")
 
 def recommended_for(device: str) -> Path | None:
     """Return the rig to simulate where none is named; None for a device that has its own."""
-    from fdvv.twin.files import FIRST_RIG, shipped_rigs
+    from fdvv.twin.files import FIRST_RIG, rig_files
 
-    return shipped_rigs()[FIRST_RIG] if device in RECOMMENDED_ON else None
+    return rig_files()[FIRST_RIG] if device in RECOMMENDED_ON else None
 
 
 @dataclass(frozen=True)
@@ -165,10 +165,10 @@ class Pressing:
     def session(self, settings: PressSettings, default: Path) -> Session:
         """Choose where presses are kept; default is the folder for a person's. InputError if it cannot be."""
         from fdvv.compensation.presses import AcceptanceLimits
-        from fdvv.device.open import pressed_by_person
+        from fdvv.device.open import is_manual
         from fdvv.rendering.session import Session
 
-        folder = self.folder or (default if pressed_by_person(self.device) else None)
+        folder = self.folder or (default if is_manual(self.device) else None)
         if folder:
             ui.check_folder(folder)
         limits = AcceptanceLimits(pace_ratio=settings.pace_ratio)
@@ -177,12 +177,12 @@ class Pressing:
     @contextmanager
     def guided(self, session: Session, as_json: bool) -> Iterator[tuple[Device, LineView | TableView, Guide]]:
         """Open the device, show the session, and let the device go at the end, whatever happens."""
-        from fdvv.device.open import pressed_by_person
+        from fdvv.device.open import is_manual
         from fdvv.rendering.session_run import Guide
 
         with (
             closing(session.open_device(self.device)) as found,
-            session_view(pressed_by_person(self.device), as_json, self.verbose) as view,
+            session_view(is_manual(self.device), as_json, self.verbose) as view,
         ):
             yield found, view, Guide(view.ask, view.notice)
 

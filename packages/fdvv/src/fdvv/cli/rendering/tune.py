@@ -153,12 +153,12 @@ def tune(
 
 
 def _check_observer(device: str, simulated: bool) -> None:
-    from fdvv.device.open import pressed_by_person
+    from fdvv.device.open import is_manual
 
-    if simulated and pressed_by_person(device):
+    if simulated and is_manual(device):
         reason = "a person presses it, and nobody's answers would be kept"
         raise InputError("--simulated-observer", device, reason, "leave the option out")
-    if not simulated and not pressed_by_person(device):
+    if not simulated and not is_manual(device):
         reason = "nobody can feel a simulated device"
         raise InputError("--device", device, reason, "use serial:PORT, or add --simulated-observer")
 

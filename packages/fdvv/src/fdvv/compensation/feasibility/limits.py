@@ -60,7 +60,7 @@ class RigLimits:
         """Return the limits that firmware settings imply, at the nominal supply.
 
         The firmware turns a force into duty without regard to speed, so both limits bound the command; what
-        the coil's braking takes or adds at speed is part of the rig's own force (``needed_cN``).
+        the coil's braking takes or adds at speed is part of the rig's own force (``inverse_dynamics_cN``).
         """
         full_cN = full_duty_cN(settings)
         duty_cN = full_cN * settings.duty_limit_q15 / 32768
@@ -170,18 +170,18 @@ class AchievableStroke:
     kept_ratio: float | None
 
     @property
-    def missed_cN(self) -> float:
-        """Mean of |intended - achievable| over the judged rows."""
-        return float(np.abs(self.intended_cN - self.achievable_cN)[self.judged].mean())
+    def shortfall_cN(self) -> float:
+        """Mean of |intended - achievable| over the inner rows."""
+        return float(np.abs(self.intended_cN - self.achievable_cN)[self.inner_rows].mean())
 
     @property
-    def judged(self) -> BoolArray:
+    def inner_rows(self) -> BoolArray:
         """Rows, (n,), that a probe judges: after contact, before the impact at the stop."""
         x = self.displacement_mm
         return np.asarray((x >= min(FROM_mm, 0.3 * x[-1])) & (x <= x[-1] - min(STOP_GUARD_mm, 0.1 * x[-1])))
 
 
-def opposed_cN(rig: RigModel, motion: Motion, load_cN: FloatArray | float = 0.0) -> FloatArray:
+def opposing_force_cN(rig: RigModel, motion: Motion, load_cN: FloatArray | float = 0.0) -> FloatArray:
     """Return the rig's own force along a motion, (n,): drag v + friction direction + own(x) + mass a.
 
     Friction keeps the stroke's sign where the cap rests at the ends, about to move. load_cN : the finger's
@@ -192,7 +192,7 @@ def opposed_cN(rig: RigModel, motion: Motion, load_cN: FloatArray | float = 0.0)
     return np.asarray(own_cN + rub * (motion.direction - np.sign(v)))
 
 
-def needed_cN(rig: RigModel, motion: Motion, intended_cN: FloatArray) -> FloatArray:
+def inverse_dynamics_cN(rig: RigModel, motion: Motion, intended_cN: FloatArray) -> FloatArray:
     """Return the command that a force needs, all (n,).
 
     (intended - drag v - friction direction - own(x) - mass a) / gain: RigModel's equation at a steady force.
@@ -201,7 +201,7 @@ def needed_cN(rig: RigModel, motion: Motion, intended_cN: FloatArray) -> FloatAr
     gain = rig.gain_at(motion.displacement_mm)
     if gain.min() < LEAST_GAIN:
         raise ModelError(f"the rig's gain falls to {gain.min():.2g} within this travel; identify it again")
-    return np.asarray((intended_cN - opposed_cN(rig, motion, intended_cN)) / gain)
+    return np.asarray((intended_cN - opposing_force_cN(rig, motion, intended_cN)) / gain)
 
 
 def slew(command_cN: FloatArray, most_cN: float) -> FloatArray:
@@ -223,7 +223,7 @@ def zero_order_hold(signal: FloatArray, step_s: float, tick_s: float) -> FloatAr
     return np.asarray(np.convolve(padded, np.full(count, 1.0 / count), mode="valid"))
 
 
-def smeared(signal: FloatArray, lag_s: float, step_s: float, tick_s: float) -> FloatArray:
+def hold_and_lag(signal: FloatArray, lag_s: float, step_s: float, tick_s: float) -> FloatArray:
     """Apply a zero-order hold and a first-order lag to a signal, (n,), and advance it by both mean delays.
 
     What remains is the smearing that a known delay cannot compensate.
@@ -237,16 +237,16 @@ def smeared(signal: FloatArray, lag_s: float, step_s: float, tick_s: float) -> F
     return np.asarray(np.interp(rows, np.arange(lagged.size), lagged))
 
 
-def rendered_cN(rig: RigModel, motion: Motion, command_cN: FloatArray, tick_s: float) -> FloatArray:
+def finger_force_cN(rig: RigModel, motion: Motion, command_cN: FloatArray, tick_s: float) -> FloatArray:
     """Return the force on the finger, (n,), of a command that leads by the chain's delay.
 
     gain command + the rig's own force, held for a tick and passed through the coil's first-order lag. A table
     is a function of displacement, so learning leads a known delay, and the rig's own force changes slowly.
     The finger cannot pull: the force is at least zero. Source: RigModel.
     """
-    rendered = rig.gain_at(motion.displacement_mm) * command_cN + opposed_cN(rig, motion)
+    rendered = rig.gain_at(motion.displacement_mm) * command_cN + opposing_force_cN(rig, motion)
     rendered = rendered / (1.0 - rig.side_ratio * motion.direction)
-    lagged = smeared(rendered, rig.electric_lag_s, motion.step_s, tick_s)
+    lagged = hold_and_lag(rendered, rig.electric_lag_s, motion.step_s, tick_s)
     return np.asarray(np.maximum(0.0, lagged), dtype=np.float64)
 
 
@@ -259,11 +259,11 @@ def achievable_stroke(
     and lag. Raises ModelError if the rig has no gain.
     """
     along = np.interp(motion.displacement_mm, displacement_mm, intended_cN)
-    needed = needed_cN(rig, motion, along)
+    needed = inverse_dynamics_cN(rig, motion, along)
     most = limits.force_limit_cN
     limited = np.clip(needed, -most, most)
     slewed = slew(limited, limits.slew_cN_tick * motion.step_s / limits.tick_s)
-    rendered = rendered_cN(rig, motion, slewed, limits.tick_s)
+    rendered = finger_force_cN(rig, motion, slewed, limits.tick_s)
     cut, late_by = (
         motion.at_places((np.abs(lost) > NOTICED_cN).astype(np.float64), displacement_mm) > 0.5
         for lost in (needed - limited, limited - slewed)

@@ -131,12 +131,12 @@ class SampledLoop:
         push[COIL] = 1 / self.lag_s
         whole = int(self.compute_s / self.tick_s + 1e-9)
         old_s = max(0.0, self.compute_s - whole * self.tick_s)
-        first, older = _held(self.rates, push, old_s)
-        second, newer = _held(self.rates, push, self.tick_s - old_s)
+        first, older = _discretize(self.rates, push, old_s)
+        second, newer = _discretize(self.rates, push, self.tick_s - old_s)
         return second @ first, second @ older, newer, whole
 
 
-def _held(rates: FloatArray, push: FloatArray, span_s: float) -> tuple[FloatArray, FloatArray]:
+def _discretize(rates: FloatArray, push: FloatArray, span_s: float) -> tuple[FloatArray, FloatArray]:
     """Return transition and input matrix over a span with constant force."""
     from scipy.linalg import expm
 

@@ -48,7 +48,7 @@ def rise_K(limits: RigLimits, square_cN2: float) -> float:
     return limits.full_duty_rise_K * min(1.0, square_cN2 / limits.full_duty_cN**2)
 
 
-def held_until_s(limits: RigLimits, end_K: float) -> float | None:
+def derating_onset_s(limits: RigLimits, end_K: float) -> float | None:
     """Return the time from cold until derating begins: -heat ln(1 - start / end); None if it never does."""
     start = limits.derate_start_K
     return -limits.heat_s * math.log(1 - start / end_K) if end_K > start else None
@@ -73,4 +73,4 @@ def thermal_dose(
     often = None if share is None else max(0.0, 60 * share / cycle_s)
     down = rise_K(limits, dwell**2)
     forces = math.sqrt(work / cycle_s), cycle_s, dwell, rest
-    return ThermalDose(*forces, pressed, down, often, held_until_s(limits, down))
+    return ThermalDose(*forces, pressed, down, often, derating_onset_s(limits, down))

@@ -61,22 +61,22 @@ def follow_verdict(
     travel_limit_mm: float | None = None,
 ) -> FollowVerdict:
     """Combine achievable force, stability, heating and travel into the verdict on one curve."""
-    found = [*_force(reached, limits), *_bump(reached), *_stability(stable), *_warmth(dose)]
+    reasons = [*_force(reached, limits), *_bump(reached), *_stability(stable), *_warmth(dose)]
     travel_mm = float(reached.displacement_mm[-1])
     if travel_limit_mm is not None and travel_mm > travel_limit_mm:
         text = f"its travel is {travel_mm:g} mm, the stop allows {travel_limit_mm:g}: shorten the button"
-        found.append(InfeasibilityReason(True, text))
-    if not found and reached.missed_cN > MISSED_cN:
-        text = f"holding and lag smear {force_text(reached.missed_cN, '.1f')} of it on average"
-        found.append(InfeasibilityReason(False, f"{text}: press slower, or use a faster loop"))
-    found.sort(key=lambda reason: not reason.cannot)
-    worst = Following.FOLLOWS if not found else Following.CANNOT if found[0].cannot else Following.PARTLY
-    return FollowVerdict(worst, tuple(reason.reason for reason in found))
+        reasons.append(InfeasibilityReason(True, text))
+    if not reasons and reached.shortfall_cN > MISSED_cN:
+        text = f"holding and lag smear {force_text(reached.shortfall_cN, '.1f')} of it on average"
+        reasons.append(InfeasibilityReason(False, f"{text}: press slower, or use a faster loop"))
+    reasons.sort(key=lambda reason: not reason.cannot)
+    worst = Following.FOLLOWS if not reasons else Following.CANNOT if reasons[0].cannot else Following.PARTLY
+    return FollowVerdict(worst, tuple(reason.reason for reason in reasons))
 
 
 def _force(reached: AchievableStroke, limits: RigLimits) -> Iterator[InfeasibilityReason]:
     x, lost = reached.displacement_mm, np.abs(reached.intended_cN - reached.achievable_cN)
-    grave = reached.missed_cN > MISSED_RATIO * float(np.abs(reached.intended_cN).mean())
+    grave = reached.shortfall_cN > MISSED_RATIO * float(np.abs(reached.intended_cN).mean())
     if reached.saturated.any():
         rows = np.flatnonzero(reached.saturated)
         at = int(rows[np.argmax(np.abs(reached.command_cN[rows]))])
@@ -196,7 +196,7 @@ def acceleration_spread_m_s2(velocity_mm_s: float) -> float:
     return spread * max(1.0, velocity_mm_s / fastest)
 
 
-def expected_error(
+def estimate_error(
     rig: RigModel, reached: AchievableStroke, motion: Motion, velocity_mm_s: float
 ) -> ExpectedError:
     """Estimate the mean error of a curve after learning.
@@ -212,6 +212,6 @@ def expected_error(
     pace = MEAN_OF_RMS * PACE_RATIO * float(np.abs(by_place).mean())
     model = MEAN_OF_RMS * rig.residual_cN
     chance = float(np.sqrt(inertia**2 + pace**2 + model**2))
-    missed, play = reached.missed_cN, 0.5 * rig.play_cN
+    missed, play = reached.shortfall_cN, 0.5 * rig.play_cN
     calibration = CALIBRATION_RATIO * float(np.abs(reached.intended_cN).mean())
     return ExpectedError(missed, inertia, pace, model, missed + chance, play, calibration)

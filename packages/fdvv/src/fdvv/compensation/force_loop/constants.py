@@ -14,10 +14,10 @@ FRICTION_m = 1e-4
 
 def of_earlier_version(record: dict[str, Any]) -> dict[str, Any]:
     """Return gains as a file holds them; earlier files know a weight, and a speed at which friction turns."""
-    found = dict(record)
-    if "weight_N" in found:
-        found |= {"own_N": [-found.pop("weight_N")] * OWN_VALUES, "own_per_m": 1.0}
-    if "friction_m_s" in found:
-        del found["friction_m_s"]
-        found["friction_m"] = FRICTION_m
-    return found
+    gains = dict(record)
+    if "weight_N" in gains:
+        gains |= {"own_N": [-gains.pop("weight_N")] * OWN_VALUES, "own_per_m": 1.0}
+    if "friction_m_s" in gains:
+        del gains["friction_m_s"]
+        gains["friction_m"] = FRICTION_m
+    return gains

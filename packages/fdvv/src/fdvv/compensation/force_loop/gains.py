@@ -26,7 +26,7 @@ from fdvv.protocol.tables import CellSpec, ForceLoopGains
 from fdvv.units import FloatArray, N_from_cN, m_from_mm
 
 LEAST_kg = 2e-3  # assumed: a third of the 6 g in light.toml; above 0, as left() divides by it
-LEAST_s = 1e-5  # half the least of the prior (RANGES: 2e-5); above 0, as scaled_start divides by the age
+LEAST_s = 1e-5  # half the least of the prior (RANGES: 2e-5); above 0, as the initial gains divide by it
 CONTACT_s = 1e-3  # assumed: ten ticks of 10 kHz, so that noise of the cell does not switch the correction
 LEAK_1_s = 2.0  # half a second, the pole of LoopController.on_force; assumed
 
@@ -151,7 +151,7 @@ ROUNDS = 40  # 0.85^40 leaves 0.15 % of the gains: no stable gain then
 CALLS = 160  # assumed; a design of six gains then takes 2 to 6 s (docs: force-loop.md)
 
 
-def scaled_start(plant: LoopPlant) -> LoopController:
+def initial_controller(plant: LoopPlant) -> LoopController:
     """Return gains for a plant of this mass and age: 20 g and 0.17 ms bear 7.9, 2.8 ms, 3.7 kHz."""
     mass, age = (plant.mass_kg + FINGER_kg) / 0.028, plant.age_s / 1.7e-4
     return LoopController(7.9 * mass / age, 2.8e-3 * mass, 3700.0 / age, 0.4, 16.0 * mass / age, 200.0 / age)
@@ -166,7 +166,7 @@ def design_controller(plant: LoopPlant) -> LoopController:
     """
     from scipy.optimize import minimize
 
-    bank, start = FingerBank(plant), np.log(astuple(scaled_start(plant)))
+    bank, start = FingerBank(plant), np.log(astuple(initial_controller(plant)))
 
     def controller_of(logs: FloatArray) -> LoopController:
         return LoopController(*np.exp(np.clip(logs, start - FARTHEST, start + FARTHEST_UP)).tolist())
@@ -174,13 +174,13 @@ def design_controller(plant: LoopPlant) -> LoopController:
     def cost(logs: FloatArray) -> float:
         controller = controller_of(logs)
         excess = _excess(bank, controller)
-        left = float(np.sqrt(np.mean(bank.left(controller) ** 2)))
+        left = float(np.sqrt(np.mean(bank.residual_ratio(controller) ** 2)))
         return left + (0.5 + 2 * excess if excess > 0 else 0.0)
 
-    found = minimize(
+    result = minimize(
         cost, start, method="Nelder-Mead", options={"maxfev": CALLS, "initial_simplex": _simplex(start)}
     )
-    return _within_margins(bank, controller_of(found.x))
+    return _within_margins(bank, controller_of(result.x))
 
 
 def _simplex(start: FloatArray) -> FloatArray:

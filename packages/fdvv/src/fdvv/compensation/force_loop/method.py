@@ -116,7 +116,7 @@ class ForceLoop:
         state = LoopState(job, (zero, zero), ((),) * size)
         if self.learned_rig is None:
             return state
-        return self._closed(state, self.learned_rig.rig)
+        return self._close_loop(state, self.learned_rig.rig)
 
     def trial(self, state: LoopState) -> Trial | None:
         """Return the next press: first identification, then the speed with the fewest; None when finished."""
@@ -157,10 +157,10 @@ class ForceLoop:
             return self._by_tables.count(state.tables)
         made = len(state.identification)
         needed = 0 if self.learned_rig else max(self.identification_presses, made + (state.gains is None))
-        found = press_count(state.pressed, self.rounds, made, needed)
+        count = press_count(state.pressed, self.rounds, made, needed)
         spared = [max(0, self.rounds - len(pairs)) * _is_settled(pairs) for pairs in state.pressed]
-        wanted = tuple(w - s for w, s in zip(found.wanted, spared, strict=True))
-        return replace(found, total=found.total - sum(spared), wanted=wanted)
+        wanted = tuple(w - s for w, s in zip(count.wanted, spared, strict=True))
+        return replace(count, total=count.total - sum(spared), wanted=wanted)
 
     def done(self, state: LoopState) -> Outcome:
         """Return the tables, each as it was pressed: no table is kept that no press has judged."""
@@ -168,7 +168,7 @@ class ForceLoop:
             outcome = self._by_tables.done(state.tables)
             return replace(outcome, sentence=f"rendered by tables, not by the loop: {outcome.sentence}")
         made = self.count(state).made
-        surface = _surface(state.job, _kept(state))
+        surface = _surface(state.job, _best_corrections(state))
         if state.rig is None:
             return Outcome(surface, (), made, False, f"{made} presses, the rig is not identified yet")
         complete = self.trial(state) is None
@@ -186,7 +186,7 @@ class ForceLoop:
         alone = [[pairs[0][j].mean_cN if pairs else np.nan for pairs in state.pressed] for j in (0, 1)]
         residual = ForceSurface(target.displacement_mm, target.velocity_mm_s, zero, zero)
         known = self.learned_rig
-        errors = np.array(alone) if known is None else known.expected_cN(target.velocity_mm_s)
+        errors = np.array(alone) if known is None else known.error_at_cN(target.velocity_mm_s)
         return LearnedRig(
             state.rig, residual, state.job.travel_mm, np.nan_to_num(errors, nan=state.rig.residual_cN)
         )
@@ -215,16 +215,16 @@ class ForceLoop:
         presses = (*state.identification, press)
         limits = self.identification_presses, self.max_identification_presses
         prior = prior_of(self.prior, state.job, self._sensor)
-        found = try_identification(presses, state.job.travel_mm, limits, prior)
+        answer = try_identification(presses, state.job.travel_mm, limits, prior)
         after = replace(state, identification=presses)
-        return replace(after, message=found) if isinstance(found, str) else self._closed(after, found)
+        return replace(after, message=answer) if isinstance(answer, str) else self._close_loop(after, answer)
 
-    def _closed(self, state: LoopState, rig: RigModel) -> LoopState:
+    def _close_loop(self, state: LoopState, rig: RigModel) -> LoopState:
         plant = plant_of_rig(rig, self.cell)
         try:
             response = LoopResponse(plant, design_controller(plant))
         except ModelError as error:
-            return self._opened(state, rig, str(error))
+            return self._fall_back(state, rig, str(error))
         gains = force_loop_gains(rig, self.cell, self.tick_s, response.controller)
         return replace(
             state,
@@ -235,12 +235,12 @@ class ForceLoop:
             message=explain_rig(rig, 0.5 * state.job.travel_mm),
         )
 
-    def _opened(self, state: LoopState, rig: RigModel, why: str) -> LoopState:
+    def _fall_back(self, state: LoopState, rig: RigModel, why: str) -> LoopState:
         """Return a state that goes on by tables on the rig of these presses."""
         law = self._by_tables
         tables = law.init(state.job)
         if self.learned_rig is None:
-            tables = law.identified(tables, rig, state.identification)
+            tables = law.adopt_rig(tables, rig, state.identification)
         return replace(state, rig=rig, tables=tables, message=why)
 
     def _tuning(self, state: LoopState) -> Tuning:
@@ -255,15 +255,13 @@ def _surface(job: CompensationJob, corrections: Rows) -> ForceSurface:
     target, limit = job.target, job.force_limit_cN
     x = target.displacement_mm
     rows = [
-        np.clip(lifted_target_cN(x, force, job.at_most_cN(LIFT_cN)) + correction, -limit, limit)
+        np.clip(lift_target_cN(x, force, job.at_most_cN(LIFT_cN)) + correction, -limit, limit)
         for force, correction in zip((target.press_cN, target.release_cN), corrections, strict=True)
     ]
     return ForceSurface(x, target.velocity_mm_s, *rows)
 
 
-def lifted_target_cN(
-    displacement_mm: FloatArray, force_cN: FloatArray, lift_cN: float = LIFT_cN
-) -> FloatArray:
+def lift_target_cN(displacement_mm: FloatArray, force_cN: FloatArray, lift_cN: float = LIFT_cN) -> FloatArray:
     """Return a target, (..., n), that rises to lift_cN just under the top stop."""
     near = np.clip((LIFT_mm - displacement_mm) / (LIFT_mm - LIFTED_mm), 0.0, 1.0)
     return np.asarray(force_cN + np.maximum(lift_cN - force_cN, 0.0) * near)
@@ -314,7 +312,7 @@ def _is_settled(pairs: Sequence[tuple[PressError, PressError]]) -> bool:
     return bool(pairs) and all(e.mean_cN <= SETTLED_cN and e.max_cN <= SETTLED_MAX_cN for e in pairs[-1])
 
 
-def _kept(state: LoopState) -> Rows:
+def _best_corrections(state: LoopState) -> Rows:
     """Return the corrections of the last press at each speed, or of the best where the last was far worse."""
     press, release = (rows.copy() for rows in state.corrections)
     for at, pairs in enumerate(state.pressed):

@@ -37,7 +37,7 @@ DOUBT, DOUBT_Hz = 0.3, 600.0
 """The inverse is not trusted where fingers differ, and less with the square of frequency."""
 LONGEST_s = 0.025
 """Of the inverse's answer to an impulse, to both sides."""
-LOWEST_Hz = 0.5  # in place of 0, by which left_N divides; below the transform's steps for strokes under 0.9 s
+LOWEST_Hz = 0.5  # in place of 0, a divisor; below the transform's steps for strokes under 0.9 s
 
 
 def pressing_fingers() -> tuple[HeldFinger, ...]:
@@ -56,20 +56,20 @@ class LoopResponse:
     def follows(self, frequency_Hz: FloatArray) -> ComplexArray:
         """Return R of every finger, (fingers, frequencies)."""
         s, plant = (2j * np.pi * frequency_Hz).astype(np.complex128), self.plant
-        delayed = plant.delayed(s)
-        cap = plant.mass_kg * s**2 + delayed * self.controller.on_motion(s)
-        felt = cap / (1 + delayed * self.controller.on_force(s))
+        actuator = plant.actuator_response(s)
+        cap = plant.mass_kg * s**2 + actuator * self.controller.on_motion(s)
+        felt = cap / (1 + actuator * self.controller.on_force(s))
         cell = plant.cell_N_m + plant.cell_N_s_m * s
         tops = [plant.plate_kg * s**2 + finger.dynamic_stiffness_N_m(s) for finger in self.fingers]
         return np.stack([1 / (1 + felt / (in_series(cell, top) + SLOPE_N_m)) for top in tops])
 
-    def left_N(self, acceleration_m_s2: FloatArray, tick_s: float) -> FloatArray:
+    def residual_N(self, acceleration_m_s2: FloatArray, tick_s: float) -> FloatArray:
         """Return what the loop leaves of the force of the cap's own dynamics, (n,): Z x / (1 + D C)."""
         size = 2 * acceleration_m_s2.size + round(2 * LONGEST_s / tick_s)
         s = 2j * np.pi * np.maximum(np.fft.rfftfreq(size, tick_s), LOWEST_Hz)
-        delayed, plant = self.plant.delayed(s), self.plant
-        own_kg = plant.mass_kg + plant.plate_kg + delayed * self.controller.on_motion(s) / s**2
-        left = own_kg / (1 + delayed * self.controller.on_force(s))
+        actuator, plant = self.plant.actuator_response(s), self.plant
+        own_kg = plant.mass_kg + plant.plate_kg + actuator * self.controller.on_motion(s) / s**2
+        left = own_kg / (1 + actuator * self.controller.on_force(s))
         return np.fft.irfft(left * np.fft.rfft(acceleration_m_s2, size), size)[: acceleration_m_s2.size]
 
     def correction(self, error: FloatArray, tick_s: float) -> FloatArray:
@@ -118,7 +118,7 @@ class StrokeCorrection:
     tick_s: float
 
     @cached_property
-    def held_mm(self) -> tuple[float, float]:
+    def holding_range_mm(self) -> tuple[float, float]:
         """Between which displacements the loop holds the force at this speed."""
         return ENTRY_mm + ENTRY_s * self.speed_mm_s, self.travel_mm - STOP_mm
 
@@ -129,7 +129,7 @@ class StrokeCorrection:
         x_mm = x_mm if self.downward else x_mm[::-1]
         target = np.interp(x_mm, self.grid_mm, self.target_cN) - self.target_cN[0]
         late = self.response.correction(target, self.tick_s) - target
-        return FORESEEN_ratio * self._in_bins(x_mm, self._faded(x_mm) * late)
+        return FORESEEN_ratio * self._in_bins(x_mm, self._fade(x_mm) * late)
 
     def hand_cN(self) -> FloatArray:
         """Return the correction for the cap's own dynamics under a hand of minimum jerk, (n,).
@@ -137,9 +137,9 @@ class StrokeCorrection:
         The hand turns BEYOND_mm deeper than the stop, and its finger gives way by GIVES_mm.
         """
         x_mm, a_m_s2 = self._hand()
-        left_cN = cN_from_N(self.response.left_N(a_m_s2, self.tick_s))
+        left_cN = cN_from_N(self.response.residual_N(a_m_s2, self.tick_s))
         needed = self.response.correction(left_cN, self.tick_s)
-        return -self._in_bins(x_mm, self._faded(x_mm) * needed)
+        return -self._in_bins(x_mm, self._fade(x_mm) * needed)
 
     def _hand(self) -> tuple[FloatArray, FloatArray]:
         """Return places and accelerations of the cap, downward, each tick from one stop to the other."""
@@ -166,12 +166,12 @@ class StrokeCorrection:
 
     def step_cN(self, x_mm: FloatArray, force_cN: FloatArray) -> FloatArray:
         """Return the change of the target, (n,), that takes the error of a stroke, (m,) ticks, away."""
-        error = self._faded(x_mm) * (np.interp(x_mm, self.grid_mm, self.target_cN) - force_cN)
+        error = self._fade(x_mm) * (np.interp(x_mm, self.grid_mm, self.target_cN) - force_cN)
         needed = self._in_bins(x_mm, self.response.correction(error, self.tick_s))
         return np.clip(needed, -LARGEST_STEP_cN, LARGEST_STEP_cN)
 
-    def _faded(self, x_mm: FloatArray) -> FloatArray:
-        low_mm, high_mm = self.held_mm
+    def _fade(self, x_mm: FloatArray) -> FloatArray:
+        low_mm, high_mm = self.holding_range_mm
         into = np.clip((x_mm - low_mm) / FADE_mm + 1.0, 0.0, 1.0)
         return np.asarray(into * np.clip((high_mm - x_mm) / STOP_mm + 1.0, 0.0, 1.0))
 
@@ -182,5 +182,5 @@ class StrokeCorrection:
         return smooth(kept, SMOOTHED_mm, float(self.grid_mm[1] - self.grid_mm[0]))
 
     def _inside(self) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        low_mm, high_mm = self.held_mm
+        low_mm, high_mm = self.holding_range_mm
         return (self.grid_mm >= low_mm) & (self.grid_mm <= high_mm)

@@ -81,10 +81,10 @@ def finger_bank() -> tuple[HeldFinger, ...]:
     from scipy.stats import qmc
 
     drawn = qmc.scale(qmc.Halton(7, seed=1).random(DRAWN), LOW, HIGH)
-    return tuple(finger for row in [*drawn.tolist(), NAIL, HEAVY] for finger in _held(*row))
+    return tuple(finger for row in [*drawn.tolist(), NAIL, HEAVY] for finger in _grips(*row))
 
 
-def _held(mass_kg: float, stiffness_N_m: float, damping_N_s_m: float, *pad: float) -> Iterator[HeldFinger]:
+def _grips(mass_kg: float, stiffness_N_m: float, damping_N_s_m: float, *pad: float) -> Iterator[HeldFinger]:
     pad_1_m, pad_N, relaxed_ratio, fast_ratio = pad
     for held_N in HELD_N:
         for fresh in (False, True):
@@ -130,7 +130,7 @@ class LoopPlant:
         """From a force at the finger to the coil's answer."""
         return self.delay_s + self.coil_s + self.cell_s
 
-    def delayed(self, s: ComplexArray) -> ComplexArray:
+    def actuator_response(self, s: ComplexArray) -> ComplexArray:
         """Return D, from a force at the finger to the coil's answer, the shape of s."""
         return np.exp(-s * self.delay_s) / (1 + s * self.coil_s) / (1 + s * self.cell_s)
 
@@ -170,7 +170,7 @@ class FingerBank:
         return (2j * np.pi * LOOP_Hz).astype(np.complex128)
 
     @cached_property
-    def _held(self) -> ComplexArray:
+    def _dynamic_stiffness_N_m(self) -> ComplexArray:
         """Dynamic stiffness of finger, plate and cell, (members, frequencies)."""
         s, plant = self._s, self.plant
         plate = plant.plate_kg * s**2
@@ -179,18 +179,18 @@ class FingerBank:
         return np.stack([in_series(cell, top) for cell in cells for top in tops])
 
     @cached_property
-    def _delayed(self) -> ComplexArray:
-        return self.plant.delayed(self._s)
+    def _actuator_response(self) -> ComplexArray:
+        return self.plant.actuator_response(self._s)
 
     def loop(self, controller: LoopController) -> ComplexArray:
         """Return the loop's transfer function, (slopes, members, frequencies)."""
-        s, plant, held = self._s, self.plant, self._held
+        s, plant, held = self._s, self.plant, self._dynamic_stiffness_N_m
         on_force, on_motion = controller.on_force(s), controller.on_motion(s)
         cap = plant.mass_kg * s**2 + plant.drag_N_s_m * s
         fed = on_force * (held - plant.plate_kg * s**2) + on_motion
         slopes = np.array(SLOPES_N_m)[:, None, None]
-        found: ComplexArray = self._delayed * (fed + (1 + on_force) * slopes) / (cap + held)
-        return found
+        transfer: ComplexArray = self._actuator_response * (fed + (1 + on_force) * slopes) / (cap + held)
+        return transfer
 
     def peaks(self, controller: LoopController) -> FloatArray:
         """Return the peak of the sensitivity, (slopes, members); infinite where the loop is unstable."""
@@ -199,8 +199,8 @@ class FingerBank:
         encircled = np.abs(turned[..., -1] - turned[..., 0]) > np.pi
         return np.where(encircled, np.inf, 1 / np.abs(around).min(-1))
 
-    def left(self, controller: LoopController) -> FloatArray:
+    def residual_ratio(self, controller: LoopController) -> FloatArray:
         """Return the part of the cap's own dynamics that is felt, at the frequencies FELT_Hz."""
         s, plant = 2j * np.pi * FELT_Hz, self.plant
         motion = np.abs(1 + controller.on_motion(s) / (plant.mass_kg * s**2))
-        return np.asarray(motion / np.abs(1 + controller.on_force(s) * plant.delayed(s)))
+        return np.asarray(motion / np.abs(1 + controller.on_force(s) * plant.actuator_response(s)))

@@ -54,13 +54,13 @@ def windows(tick_s: float) -> tuple[FloatArray, ...]:
     return tuple(np.nan_to_num(shape(at)) / ticks for shape in shapes)
 
 
-def windowed(window: FloatArray, signal: FloatArray) -> FloatArray:
+def convolve(window: FloatArray, signal: FloatArray) -> FloatArray:
     """Convolve a signal with a window, (n,); beyond its ends the signal holds its end values."""
     return np.convolve(np.pad(signal, window.size // 2, mode="edge"), window, mode="valid")
 
 
-def windowed_columns(window: FloatArray, signals: FloatArray) -> FloatArray:
-    """Convolve every column of (n, k) signals with a window; see windowed()."""
+def convolve_columns(window: FloatArray, signals: FloatArray) -> FloatArray:
+    """Convolve every column of (n, k) signals with a window; see convolve()."""
     from scipy.ndimage import convolve1d
 
     return np.asarray(convolve1d(signals, window, axis=0, mode="nearest"))
@@ -83,7 +83,7 @@ class Ticks:
     @cached_property
     def motion(self) -> tuple[FloatArray, ...]:
         """Sensed displacement and its first three derivatives, windowed; mm, s."""
-        return tuple(windowed(window, self.sensed_mm) for window in windows(self.tick_s))
+        return tuple(convolve(window, self.sensed_mm) for window in windows(self.tick_s))
 
     def ahead_mm(self, lag_s: float) -> FloatArray:
         """Return the true displacement if the sensed one passes a first-order lag of lag_s."""
@@ -172,7 +172,7 @@ def usable_windows(ticks: Ticks, lag_s: float, travel_mm: float) -> BoolArray:
     floor = min(travel_mm, float(np.median(x[x > x.max() - 0.3]))) - MARGIN_mm
     reach = windows(ticks.tick_s)[0].size // 2
     between = (x > MARGIN_mm) & (x < floor) & (ticks.sensed_mm > 0.5 * MARGIN_mm)
-    still = np.abs(windowed(np.full(2 * reach + 1, 1.0 / (2 * reach + 1)), ticks.motion[1])) < STILL_mm_s
+    still = np.abs(convolve(np.full(2 * reach + 1, 1.0 / (2 * reach + 1)), ticks.motion[1])) < STILL_mm_s
     bad = ~between | still | (ticks.force_cN < LEAST_cN) | ticks.cut
     count = np.concatenate([[0], np.cumsum(bad)])
     whole = np.zeros(x.size, np.bool_)
@@ -187,9 +187,9 @@ def true_runs(rows: BoolArray) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in turns.reshape(-1, 2)]
 
 
-def rendered_cN(ticks: Ticks, sensor: Sensor) -> FloatArray:
+def finger_force_cN(ticks: Ticks, sensor: Sensor) -> FloatArray:
     """Return the windowed force on the finger, the sensor's filter inverted, (n,)."""
-    mean, slope = (windowed(w, ticks.force_cN) for w in windows(ticks.tick_s)[:2])
+    mean, slope = (convolve(w, ticks.force_cN) for w in windows(ticks.tick_s)[:2])
     return mean + sensor.filter_s * slope
 
 
@@ -205,10 +205,10 @@ def columns(ticks: Ticks, numbers: FloatArray, stretch: FloatArray) -> FloatArra
     command = np.interp(ticks.t_s - numbers[DELAY], ticks.t_s, ticks.commanded_cN)
     x = ticks.ahead_mm(lag)
     lagged = (first_order_lag(command * x**power, electric, ticks.tick_s) for power in range(3))
-    pushes = [windowed(window, push) for push in lagged]
+    pushes = [convolve(window, push) for push in lagged]
     sliding = np.tanh(v / SLIDING_mm_s)
     rub, stick, side = (
-        windowed(window, sliding * load)
+        convolve(window, sliding * load)
         for load in (np.ones(v.size), np.exp(-np.abs(v) / STRIBECK_mm_s), ticks.force_cN)
     )
     rest = [
@@ -232,8 +232,8 @@ def braking(ticks: Ticks, numbers: FloatArray) -> FloatArray:
     gain = np.polynomial.Polynomial(numbers[GAIN])
     bend = np.asarray((gain * gain).deriv()(ticks.sensed_mm), dtype=np.float64)
     second = 0.5 * bend * (numbers[LAG] * ticks.motion[1]) ** 2
-    slope = DRAG_cN * windowed(windows(ticks.tick_s)[1], second)
-    first = _derived(ticks, _integral(gain * gain, ticks.sensed_mm), numbers)
+    slope = DRAG_cN * convolve(windows(ticks.tick_s)[1], second)
+    first = _rate_after_lag(ticks, _integral(gain * gain, ticks.sensed_mm), numbers)
     return first + first_order_lag(slope, numbers[ELECTRIC], ticks.tick_s)
 
 
@@ -242,7 +242,7 @@ def braking_slopes(ticks: Ticks, numbers: FloatArray) -> FloatArray:
     gain = np.polynomial.Polynomial(numbers[GAIN])
     bases = [np.polynomial.Polynomial.basis(power) for power in range(3)]
     inner = [_integral(2.0 * gain * basis, ticks.sensed_mm) for basis in bases]
-    slopes = np.stack([_derived(ticks, each, numbers) for each in inner], axis=1)
+    slopes = np.stack([_rate_after_lag(ticks, each, numbers) for each in inner], axis=1)
     return np.asarray(numbers[BACK_EMF] * slopes)
 
 
@@ -250,19 +250,19 @@ def _integral(of: np.polynomial.Polynomial, x_mm: FloatArray) -> FloatArray:
     return np.asarray(of.integ()(x_mm), dtype=np.float64)
 
 
-def _derived(ticks: Ticks, signal: FloatArray, numbers: FloatArray) -> FloatArray:
-    first, second = (windowed(w, signal) for w in windows(ticks.tick_s)[1:3])
+def _rate_after_lag(ticks: Ticks, signal: FloatArray, numbers: FloatArray) -> FloatArray:
+    first, second = (convolve(w, signal) for w in windows(ticks.tick_s)[1:3])
     return first_order_lag(DRAG_cN * (first + numbers[LAG] * second), numbers[ELECTRIC], ticks.tick_s)
 
 
-def predicted(
+def predict(
     ticks: Ticks, numbers: FloatArray, stretch: FloatArray, sensor: Sensor, step_mm: float
 ) -> FloatArray:
     """Return the windowed force that these parameters predict, (n,); step_mm: of the own force's values."""
     places = step_mm * np.arange(NODES)
     own = np.interp(ticks.ahead_mm(numbers[LAG]), places, numbers[OWN])
     described = columns(ticks, numbers, stretch) @ with_cone(numbers, sensor)
-    return np.asarray(described + windowed(windows(ticks.tick_s)[0], own))
+    return np.asarray(described + convolve(windows(ticks.tick_s)[0], own))
 
 
 def with_cone(numbers: FloatArray, sensor: Sensor) -> FloatArray:
@@ -276,17 +276,17 @@ def slopes(
     ticks: Ticks, numbers: FloatArray, stretch: FloatArray, sensor: Sensor, step_mm: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return the predicted force, (n,), and its derivative by every parameter, (n, COUNT)."""
-    found = np.empty((ticks.t_s.size, COUNT))
-    found[:, LINEAR] = columns(ticks, numbers, stretch)
+    jacobian = np.empty((ticks.t_s.size, COUNT))
+    jacobian[:, LINEAR] = columns(ticks, numbers, stretch)
     own = hats(ticks.ahead_mm(numbers[LAG]), step_mm)
-    found[:, OWN] = windowed_columns(windows(ticks.tick_s)[0], own)
-    force = found[:, LINEAR] @ with_cone(numbers, sensor) + found[:, OWN] @ numbers[OWN]
-    found[:, GAIN] += braking_slopes(ticks, numbers)
+    jacobian[:, OWN] = convolve_columns(windows(ticks.tick_s)[0], own)
+    force = jacobian[:, LINEAR] @ with_cone(numbers, sensor) + jacobian[:, OWN] @ numbers[OWN]
+    jacobian[:, GAIN] += braking_slopes(ticks, numbers)
     for place in (LAG, DELAY, ELECTRIC):
         nudged = numbers.copy()
         nudged[place] += NUDGE_s
-        found[:, place] = (predicted(ticks, nudged, stretch, sensor, step_mm) - force) / NUDGE_s
-    return force, found
+        jacobian[:, place] = (predict(ticks, nudged, stretch, sensor, step_mm) - force) / NUDGE_s
+    return force, jacobian
 
 
 def play_stretch(ticks: Ticks) -> FloatArray:
@@ -296,8 +296,8 @@ def play_stretch(ticks: Ticks) -> FloatArray:
     mean of a forward and a backward pass is 0 there.
     """
     count = 2 * max(1, round(EVEN_s / ticks.tick_s)) + 1
-    force = windowed(windows(ticks.tick_s)[0], ticks.force_cN)
-    even = windowed(np.full(count, 1.0 / count), force)
+    force = convolve(windows(ticks.tick_s)[0], ticks.force_cN)
+    even = convolve(np.full(count, 1.0 / count), force)
     return 0.5 * (_stretch(even) - _stretch(even[::-1])[::-1])
 
 

@@ -162,10 +162,10 @@ def _largest_changes(
     errors : that count against a change. For an outlier the likeliest change is returned even if it is not
     significant.
     """
-    found: list[tuple[_Change, float]] = []
+    selected: list[tuple[_Change, float]] = []
     gradient, matrix = slopes
     doubt = unroot @ np.diag(errors**2) @ unroot.T
-    while len(found) < MOST_changes:
+    while len(selected) < MOST_changes:
         shrunk = np.linalg.inv(np.eye(gradient.size) + matrix @ doubt)
         slope, curve = shrunk @ gradient, shrunk @ matrix
         sized = [(change, *_size(unroot @ change.along, slope, curve)) for change in changes]
@@ -173,14 +173,14 @@ def _largest_changes(
         if not possible:
             break
         change, size, z = max(possible, key=lambda s: s[2])
-        if z < DRIFT_Z_THRESHOLD and (found or not outlier):
+        if z < DRIFT_Z_THRESHOLD and (selected or not outlier):
             break
         if abs(size) >= change.least:
-            found.append((change, size))
+            selected.append((change, size))
         changes.remove(change)
         reported = unroot @ change.along
         doubt = doubt + UNINFORMATIVE_VARIANCE * np.outer(reported, reported)
-    return found
+    return selected
 
 
 def _size(along: FloatArray, slope: FloatArray, curve: FloatArray) -> tuple[float, float]:
@@ -216,10 +216,10 @@ def _doubt(rig: RigModel) -> FloatArray:
 
     The gain's is that of its first coefficient.
     """
-    found = along(*((place, rig.error.get(name, 0.0)) for place, name in ERRORS.items()))
-    found[PLAY] *= 0.5
-    found[OWN] = rig.error.get("own_cN", 0.0)
-    return SHARED_ratio * found
+    errors = along(*((place, rig.error.get(name, 0.0)) for place, name in ERRORS.items()))
+    errors[PLAY] *= 0.5
+    errors[OWN] = rig.error.get("own_cN", 0.0)
+    return SHARED_ratio * errors
 
 
 def _message(change: _Change, size: float) -> str:

@@ -14,11 +14,11 @@ from fdvv.compensation.identification.balance import (
     MOVING,
     OWN,
     Ticks,
+    finger_force_cN,
     noise,
     noise_windows,
     play_stretch,
-    predicted,
-    rendered_cN,
+    predict,
     slopes,
     true_runs,
     usable_windows,
@@ -80,7 +80,7 @@ class Unknown:
     force_s: float = UNMODELLED_s
 
 
-def whitened_runs(spans: Spans, row: FloatArray) -> list[WindowRun]:
+def whiten_runs(spans: Spans, row: FloatArray) -> list[WindowRun]:
     """Return the runs of windows with their whitening matrices; row: the longest run's autocovariance."""
     from scipy.linalg import cholesky, toeplitz
     from scipy.linalg.lapack import dtrtri
@@ -103,7 +103,7 @@ class RigEstimation:
         spring_cN_mm, self.spring_spread_cN_mm = (0.1 * number for number in prior.spring_N_m)
         self.mean = np.concatenate([mean, spring_cN_mm * self.own_step_mm * np.arange(NODES)])
         self.low, self.high = np.concatenate([low, nodes - np.inf]), np.concatenate([high, nodes + np.inf])
-        self.rendered = [rendered_cN(t, self.sensor) for t in ticks]
+        self.rendered = [finger_force_cN(t, self.sensor) for t in ticks]
         self.stretches = [play_stretch(t) for t in ticks]
         self.position_noise_mm = noise([t.sensed_mm for t in ticks])
         self.force_noise_cN = noise([t.force_cN for t in ticks])
@@ -128,24 +128,24 @@ class RigEstimation:
 
     def spans(self, numbers: FloatArray) -> Spans:
         """Return the rows of each run of windows, with its press."""
-        found = []
+        spans = []
         for i, t in enumerate(self.ticks):
             for a, b in true_runs(usable_windows(t, numbers[LAG], self.travel_mm)):
                 rows = np.arange(a, b, self.stride)
                 if rows.size > 2:
-                    found.append((i, rows))
-        if sum(rows.size for _, rows in found) < FEWEST_windows:
+                    spans.append((i, rows))
+        if sum(rows.size for _, rows in spans) < FEWEST_windows:
             raise FitError(
                 "the presses hold too few rows between the stops to identify a rig; "
                 "press all the way down and back, with the cap held up at rest"
             )
-        return found
+        return spans
 
     def runs(self, numbers: FloatArray) -> list[WindowRun]:
         """Return the runs of windows, each with the whitening matrix for these parameters."""
         spans = self.spans(numbers)
         row = self.autocovariance(numbers, max(rows.size for _, rows in spans), self.unknown)
-        return whitened_runs(spans, row)
+        return whiten_runs(spans, row)
 
     def autocovariance(
         self, numbers: FloatArray, n: int, unknown: Unknown, discount: bool = True
@@ -163,10 +163,10 @@ class RigEstimation:
         row += unknown.force_cN**2 * np.exp(-np.arange(n) * self.stride * self.tick_s / unknown.force_s)
         return row
 
-    def covariance(self, one: FloatArray, other: FloatArray, n: int) -> FloatArray:
+    def covariance(self, first: FloatArray, second: FloatArray, n: int) -> FloatArray:
         """Return the cross-covariance of white noise after two windows, for lags of 0 to n - 1 rows, (n,)."""
-        full = np.correlate(one, other, "full")
-        even = 0.5 * (full + full[::-1])[one.size - 1 :: self.stride]
+        full = np.correlate(first, second, "full")
+        even = 0.5 * (full + full[::-1])[first.size - 1 :: self.stride]
         return np.pad(even, (0, max(0, n - even.size)))[:n]
 
     def noise_bias(self, numbers: FloatArray, runs: list[WindowRun]) -> tuple[FloatArray, FloatArray]:
@@ -195,16 +195,16 @@ class RigEstimation:
 
     def residuals(self, numbers: FloatArray) -> list[FloatArray]:
         each = zip(self.rendered, self.ticks, self.stretches, strict=True)
-        return [rendered - predicted(t, numbers, s, self.sensor, self.own_step_mm) for rendered, t, s in each]
+        return [rendered - predict(t, numbers, s, self.sensor, self.own_step_mm) for rendered, t, s in each]
 
     def slopes(self, numbers: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
         """Return residual, (n,), and slopes of the prediction, (n, COUNT), of every press."""
         each = zip(self.rendered, self.ticks, self.stretches, strict=True)
-        found = []
+        presses = []
         for rendered, t, stretch in each:
             force, slope = slopes(t, numbers, stretch, self.sensor, self.own_step_mm)
-            found.append((rendered - force, slope))
-        return found
+            presses.append((rendered - force, slope))
+        return presses
 
     def normal(self, numbers: FloatArray, runs: list[WindowRun]) -> tuple[FloatArray, FloatArray]:
         """Return the negative gradient, (COUNT,), and normal matrix, in roots of the prior."""

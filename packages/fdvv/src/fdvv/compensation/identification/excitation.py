@@ -56,7 +56,7 @@ def identification_surface(
     press, release = (
         np.stack(
             [
-                _held(x, row + level + ripple_cN * _ripple(x, stroke), limit_cN, hold_cN)
+                _hold_at_rest(x, row + level + ripple_cN * _ripple(x, stroke), limit_cN, hold_cN)
                 for row, level in zip(table, levels, strict=True)
             ]
         )
@@ -75,7 +75,7 @@ def _ripple(x_mm: FloatArray, stroke: int) -> FloatArray:
     return np.asarray(np.clip(depth / FADE_mm, 0.0, 1.0) * waves)
 
 
-def _held(x_mm: FloatArray, command_cN: FloatArray, limit_cN: float, hold_cN: float) -> FloatArray:
+def _hold_at_rest(x_mm: FloatArray, command_cN: FloatArray, limit_cN: float, hold_cN: float) -> FloatArray:
     """Apply the minimum command at rest, faded out without a step, and the limit."""
     least = hold_cN * np.clip(1.0 - (x_mm - HOME_mm) / FADE_mm, 0.0, 1.0)
     step_mm = float(x_mm[1] - x_mm[0])

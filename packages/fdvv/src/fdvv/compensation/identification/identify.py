@@ -33,7 +33,7 @@ from fdvv.compensation.identification.balance import (
     WEIGHT,
     ticks_of,
 )
-from fdvv.compensation.identification.estimation import RigEstimation, Unknown, WindowRun, whitened_runs
+from fdvv.compensation.identification.estimation import RigEstimation, Unknown, WindowRun, whiten_runs
 from fdvv.compensation.identification.own_force import NODES, LONG_cN, SHORT_cN
 from fdvv.compensation.identification.rig_model import Prior, RigModel
 from fdvv.compensation.identification.whiteness import whiteness_of
@@ -150,15 +150,15 @@ def residual_cN(problem: RigEstimation, numbers: FloatArray, runs: list[WindowRu
 
 def parameter_vector(rig: RigModel, own_step_mm: float) -> FloatArray:
     """Return a rig as the vector of parameters, its own force at steps of own_step_mm."""
-    found = np.zeros(COUNT)
-    found[GAIN] = rig.gain
-    found[VISCOUS], found[BACK_EMF] = rig.drag_N_s_m - rig.back_emf_N_s_m, rig.back_emf_N_s_m
-    found[FRICTION], found[WEIGHT], found[MASS] = rig.friction_cN, rig.weight_cN, rig.mass_g
-    found[PLAY], found[LAG] = 0.5 * rig.play_cN, rig.position_lag_s
-    found[STICK], found[SIDE] = rig.stick_cN, rig.side_ratio
-    found[OWN] = rig.own_at(np.arange(NODES, dtype=np.float64) * own_step_mm) + rig.weight_cN
-    found[DELAY], found[ELECTRIC] = rig.delay_s - rig.electric_lag_s, rig.electric_lag_s
-    return found
+    numbers = np.zeros(COUNT)
+    numbers[GAIN] = rig.gain
+    numbers[VISCOUS], numbers[BACK_EMF] = rig.drag_N_s_m - rig.back_emf_N_s_m, rig.back_emf_N_s_m
+    numbers[FRICTION], numbers[WEIGHT], numbers[MASS] = rig.friction_cN, rig.weight_cN, rig.mass_g
+    numbers[PLAY], numbers[LAG] = 0.5 * rig.play_cN, rig.position_lag_s
+    numbers[STICK], numbers[SIDE] = rig.stick_cN, rig.side_ratio
+    numbers[OWN] = rig.own_at(np.arange(NODES, dtype=np.float64) * own_step_mm) + rig.weight_cN
+    numbers[DELAY], numbers[ELECTRIC] = rig.delay_s - rig.electric_lag_s, rig.electric_lag_s
+    return numbers
 
 
 FORCES_cN, FORCES_s = (0.3, 0.6, 1.2, 2.4, 4.8), (0.006, 0.025)
@@ -179,17 +179,17 @@ def likeliest_unknown(problem: RigEstimation, numbers: FloatArray) -> Unknown:
     """Return the spreads with the most evidence, the problem linear around these numbers."""
     spans, presses = problem.spans(numbers), problem.slopes(numbers)
     longest = max(rows.size for _, rows in spans)
-    best, found = -np.inf, problem.unknown
+    best, likeliest = -np.inf, problem.unknown
     for force_cN, force_s in product(FORCES_cN, FORCES_s):
         unknown = Unknown(force_cN=force_cN, force_s=force_s)
-        runs = whitened_runs(spans, problem.autocovariance(numbers, longest, unknown))
+        runs = whiten_runs(spans, problem.autocovariance(numbers, longest, unknown))
         seen = _likelihood(runs, presses)
         for long_cN, short_cN in product(LONG_cN, SHORT_cN):
             tried = replace(unknown, long_cN=long_cN, short_cN=short_cN)
             evidence = _evidence(seen, problem.prior_root(tried), numbers - problem.mean)
             if evidence > best:
-                best, found = evidence, tried
-    return found
+                best, likeliest = evidence, tried
+    return likeliest
 
 
 def _likelihood(runs: list[WindowRun], presses: list[tuple[FloatArray, FloatArray]]) -> _Likelihood:

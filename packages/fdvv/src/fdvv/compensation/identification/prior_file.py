@@ -106,12 +106,12 @@ def load_prior(path: Path | str) -> Prior:
     """Read a prior. Raises InputError with file, key, what is wrong and what to do."""
     path = Path(path)
     data = _read(path)
-    found = {key: _pair(path, key, value, KNOWN) for key, value in data.items()}
-    if not found:
+    pairs = {key: _pair(path, key, value, KNOWN) for key, value in data.items()}
+    if not pairs:
         raise InputError(path, "whole file", "says nothing of the rig", f"write one of {', '.join(KNOWN)}")
-    spring = found.pop("spring_N_m", (0.0, 0.0))
+    spring = pairs.pop("spring_N_m", (0.0, 0.0))
     try:
-        ranges = {KNOWN[key].name: _plausible(KNOWN[key], *pair) for key, pair in found.items()}
+        ranges = {KNOWN[key].name: _plausible(KNOWN[key], *pair) for key, pair in pairs.items()}
         return Prior(ranges=ranges, spring_N_m=spring)
     except ModelError as error:
         raise InputError(path, "whole file", str(error), REMEDY) from error
@@ -125,7 +125,7 @@ def _plausible(known: Known, mean: float, spread: float) -> Plausible:
 
 def _pair(path: Path, key: str, value: Any, known: Mapping[str, Known]) -> tuple[float, float]:
     if key not in known:
-        raise _unknown(path, key, known)
+        raise _key_error(path, key, known)
     if not isinstance(value, dict) or set(value) != {"mean", "spread"}:
         raise InputError(
             path, key, "must hold a mean and a spread", f"write {key} = {{ mean = 1, spread = 0.2 }}"
@@ -147,7 +147,7 @@ def load_sensor(path: Path | str) -> SensorSheet:
     known = {field.name: field for field in sheet_type.fields}
     for key, value in data.items():
         if key not in known:
-            raise _unknown(path, key, known)
+            raise _key_error(path, key, known)
         number, (low, high) = _number(path, key, value), (known[key].type.ge, known[key].type.le)
         if not low <= number <= high:
             raise InputError(path, key, f"is {number:g}, not {low:g} to {high:g}", "check its unit")
@@ -187,7 +187,7 @@ def _number(path: Path, place: str, value: Any) -> float:
     return float(value)
 
 
-def _unknown(path: Path, key: str, known: Mapping[str, Any]) -> InputError:
+def _key_error(path: Path, key: str, known: Mapping[str, Any]) -> InputError:
     near = difflib.get_close_matches(key, list(known), 1, 0.5)
     remedy = f'did you mean "{near[0]}"?' if near else f"known are {', '.join(known)}"
     return InputError(path, key, "is no key of this file", remedy)

@@ -52,7 +52,7 @@ class LearnedRig:
         )
         return press, release
 
-    def expected_cN(self, speeds_mm_s: FloatArray) -> FloatArray:
+    def error_at_cN(self, speeds_mm_s: FloatArray) -> FloatArray:
         """Return the mean error to expect at other speeds, (2, s)."""
         own = self.residual.velocity_mm_s
         return np.stack([np.interp(speeds_mm_s, own, row) for row in self.error_cN])
@@ -127,7 +127,7 @@ def _read(path: Path | str) -> tuple[RigModel, LearnedRig | None]:
     text = read_limited(path, LIMIT_bytes, "pass a *.rig.json file")
     rig, learned = read_document(text, path, RIG, _decode)
     try:
-        return rig, _learned_rig(rig, learned) if learned else None
+        return rig, _build_learned_rig(rig, learned) if learned else None
     except ValueError as error:  # rows of different lengths, or values that no surface has
         raise InputError(path, "$.learned", str(error), _REMEDY) from error
 
@@ -136,7 +136,7 @@ def _decode(data: bytes) -> tuple[RigModel, LearnedRecord | None]:
     return decode(data, RigModel, LAYOUT), msgspec.json.decode(data, type=_Learned).learned
 
 
-def _learned_rig(rig: RigModel, learned: LearnedRecord) -> LearnedRig:
+def _build_learned_rig(rig: RigModel, learned: LearnedRecord) -> LearnedRig:
     grid = learned.displacement_mm, learned.velocity_mm_s
     surface = ForceSurface(*grid, learned.press_cN, learned.release_cN)
     return LearnedRig(rig, surface, learned.travel_mm, np.array(learned.error_cN))

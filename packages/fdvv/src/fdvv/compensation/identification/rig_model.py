@@ -146,7 +146,7 @@ class RigModel:
         coil = self.gain_at(displacement_mm) * pushed + emf * velocity_mm_s
         return first_order_lag(coil, self.electric_lag_s, float(t_s[1] - t_s[0]))
 
-    def rendered_cN(
+    def finger_force_cN(
         self,
         t_s: FloatArray,
         displacement_mm: FloatArray,

@@ -14,10 +14,10 @@ from fdvv.compensation.identification.balance import (
     LAG,
     NUMBER_COUNT,
     SLIDING_mm_s,
-    windowed_columns,
+    convolve_columns,
     windows,
 )
-from fdvv.compensation.identification.estimation import RigEstimation, Unknown, WindowRun, whitened_runs
+from fdvv.compensation.identification.estimation import RigEstimation, Unknown, WindowRun, whiten_runs
 from fdvv.compensation.identification.own_force import hats
 from fdvv.force_text import force_text
 from fdvv.units import FloatArray
@@ -86,7 +86,7 @@ def whiteness_of(problem: RigEstimation, numbers: FloatArray) -> Whiteness:
 
     spans = problem.spans(numbers)
     row = problem.autocovariance(numbers, max(rows.size for _, rows in spans), Unknown(), discount=False)
-    runs, presses = whitened_runs(spans, row), problem.slopes(numbers)
+    runs, presses = whiten_runs(spans, row), problem.slopes(numbers)
     residual = np.concatenate([run.white @ presses[run.press][0][run.rows] for run in runs])
     excess, slow_ratio = _periodogram(residual)
     own, curve, pull = _score(problem, numbers, runs, presses)
@@ -117,7 +117,7 @@ def _score(
     presses: list[tuple[FloatArray, FloatArray]],
 ) -> tuple[int, FloatArray, FloatArray]:
     """Return degrees of freedom, curvature and gradient of forces with direction, the numbers free."""
-    added = [_directed(problem, numbers, i) for i in range(len(problem.ticks))]
+    added = [_direction_columns(problem, numbers, i) for i in range(len(problem.ticks))]
     parts = [
         [run.white @ column[run.rows] for column in (added[run.press], *presses[run.press])] for run in runs
     ]
@@ -131,11 +131,11 @@ def _score(
     return pull.size, curve + 1e-6 * np.trace(curve) * np.eye(pull.size), pull
 
 
-def _directed(problem: RigEstimation, numbers: FloatArray, press: int) -> FloatArray:
+def _direction_columns(problem: RigEstimation, numbers: FloatArray, press: int) -> FloatArray:
     """Return the columns of forces that change sign with the direction, (n, k)."""
     ticks = problem.ticks[press]
     _, velocity, acceleration, _ = ticks.motion
     way = np.tanh((velocity + numbers[LAG] * acceleration) / SLIDING_mm_s)
     x = ticks.ahead_mm(numbers[LAG])
     wide = hats(x, EVERY * problem.own_step_mm)[:, : (problem.nodes - 1) // EVERY + 1]
-    return windowed_columns(windows(ticks.tick_s)[0], wide * way[:, np.newaxis])
+    return convolve_columns(windows(ticks.tick_s)[0], wide * way[:, np.newaxis])

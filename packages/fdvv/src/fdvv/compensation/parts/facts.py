@@ -46,7 +46,7 @@ class PressFacts:
         return cls(tick_s, press.sensed_mm[rows], press.commanded_cN[rows], felt, travel_mm)
 
     @property
-    def moved_mm(self) -> float:
+    def span_mm(self) -> float:
         return float(np.ptp(self.place_mm))
 
     @property

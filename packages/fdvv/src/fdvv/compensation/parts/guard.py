@@ -66,21 +66,21 @@ class PressBalance:
 
     def with_press(self, facts: PressFacts) -> PressBalance:
         """Return the balance with a press more; the same if it shows nothing."""
-        fitted = [self._added(rows) for delay in DELAYS_s if (rows := strokes_of(facts, delay))]
+        fitted = [self._add(rows) for delay in DELAYS_s if (rows := strokes_of(facts, delay))]
         if not fitted:
             return self
-        return min(fitted, key=lambda one: one[0])[1]
+        return min(fitted, key=lambda fit: fit[0])[1]
 
-    def _added(self, rows: Strokes) -> tuple[float, PressBalance]:
+    def _add(self, rows: Strokes) -> tuple[float, PressBalance]:
         """Return what a press leaves, and the balance with it."""
         scale = 1 / (NOISE_cN**2 * _CORRELATED)
         weight = self.weight + scale * rows.columns.T @ rows.columns
         pull = self.pull + scale * rows.columns.T @ rows.force_cN
-        found = PressBalance(weight, pull, self.presses + 1)
-        left = rows.force_cN - rows.columns @ found.numbers
-        return float(np.mean(left**2)), found
+        balance = PressBalance(weight, pull, self.presses + 1)
+        left = rows.force_cN - rows.columns @ balance.numbers
+        return float(np.mean(left**2)), balance
 
-    def missed_cN(self, facts: PressFacts) -> tuple[float, float] | None:
+    def excess_cN(self, facts: PressFacts) -> tuple[float, float] | None:
         """Return the mean force beyond the balance, and the coil's part in that; None if nothing shows."""
         fitted = [
             (float(np.std(left)), float(np.mean(left)), float(np.mean(rows.columns[:, GAIN])))
@@ -136,7 +136,7 @@ WARM_ratio = 0.33
 
 
 @dataclass(frozen=True)
-class Found:
+class Diagnosis:
     """A part at fault, and how many presses have shown it, the last one among them."""
 
     fault: PartFault
@@ -189,7 +189,7 @@ class PartGuard:
     def learn_facts(self, facts: PressFacts) -> None:
         self.balance = self.balance.with_press(facts)
 
-    def look(self, press: Press, used: bool, sure: bool = False) -> Found | None:
+    def look(self, press: Press, used: bool, sure: bool = False) -> Diagnosis | None:
         """Return the part that this press, or the one before and this, show to be at fault.
 
         used : the press is one as it was asked for; only such ones teach what is sound. sure : something is
@@ -200,19 +200,19 @@ class PartGuard:
         if facts is None:
             return None
         if fault := part_at_fault(facts, SURE_RULES if sure else RULES):
-            return Found(fault)
-        if found := self._changed(facts, used, sure):
-            return found
+            return Diagnosis(fault)
+        if diagnosis := self._check_change(facts, used, sure):
+            return diagnosis
         if used and not self._suspects:
             self.learn_facts(facts)
             young = self.balance.presses <= YOUNG_presses
             if young and (weak := weak_coil(self.balance)):
-                return Found(weak, self.balance.presses)
+                return Diagnosis(weak, self.balance.presses)
         return None
 
-    def _changed(self, facts: PressFacts, used: bool, sure: bool) -> Found | None:
+    def _check_change(self, facts: PressFacts, used: bool, sure: bool) -> Diagnosis | None:
         """Hold a press against those before it; keep it apart if it differs, until the next one agrees."""
-        missed = self.balance.missed_cN(facts) if self.balance.presses >= YOUNG_presses else None
+        missed = self.balance.excess_cN(facts) if self.balance.presses >= YOUNG_presses else None
         if missed is None:
             return None
         off_cN, coil_cN = missed
@@ -220,18 +220,18 @@ class PartGuard:
         if abs(ratio) < CHANGED_ratio or abs(off_cN) < CHANGED_cN:
             self._clear()
             return None
-        before = [one for one in self._suspects if one.off_cN * off_cN > 0]
+        before = [suspect for suspect in self._suspects if suspect.off_cN * off_cN > 0]
         self._suspects = [*before, _Suspect(facts, off_cN, used, self._looks)]
         if not before and not sure and ratio > -REVERSED_ratio:
             return None
         fault = _change(facts, off_cN, ratio)
-        return Found(fault, self._looks - self._suspects[0].look + 1) if fault else None
+        return Diagnosis(fault, self._looks - self._suspects[0].look + 1) if fault else None
 
     def _clear(self) -> None:
         """A press fits again: what was kept apart was chance."""
-        for one in self._suspects:
-            if one.used:
-                self.learn_facts(one.facts)
+        for suspect in self._suspects:
+            if suspect.used:
+                self.learn_facts(suspect.facts)
         self._suspects = []
 
 

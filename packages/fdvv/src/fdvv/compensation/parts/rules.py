@@ -57,7 +57,7 @@ def position_reversed(facts: PressFacts) -> PartFault | None:
 
 
 def position_frozen(facts: PressFacts) -> PartFault | None:
-    if facts.moved_mm > EXACT_mm or not _touched(facts):
+    if facts.span_mm > EXACT_mm or not _feels_finger(facts):
         return None
     felt = "" if facts.force_cN is None else f"while the finger pushed {force_text(_peak_cN(facts), '.0f')}"
     return frozen_fault(float(facts.place_mm[0]), felt)
@@ -69,23 +69,23 @@ def frozen_fault(place_mm: float, felt: str) -> PartFault:
 
 
 def mover_stuck(facts: PressFacts) -> PartFault | None:
-    if facts.force_cN is None or facts.moved_mm > STUCK_mm or _lies_on_stop(facts):
+    if facts.force_cN is None or facts.span_mm > STUCK_mm or _lies_on_stop(facts):
         return None
     borne = facts.force_cN - facts.commanded_cN > BORNE_cN
     free = facts.place_mm < facts.travel_mm - LOW_mm
     if np.count_nonzero(borne & free) * facts.tick_s < HELD_s:
         return None
     pushed = force_text(_peak_cN(facts), ".0f")
-    seen = f"the mover gave way by only {facts.moved_mm:.2f} mm while the finger pushed {pushed}"
+    seen = f"the mover gave way by only {facts.span_mm:.2f} mm while the finger pushed {pushed}"
     return PartFault(MOVER, seen, "with the power off move it by hand; free bushing, cables and magnet")
 
 
 def force_dead(facts: PressFacts) -> PartFault | None:
     """The sensor stands still, throughout or from some moment on, while the cap makes a stroke."""
-    if facts.force_cN is None or facts.moved_mm < MOVED_mm:
+    if facts.force_cN is None or facts.span_mm < MOVED_mm:
         return None
     still, alive_cN = _standing(facts), float(np.ptp(facts.force_cN))
-    least_cN = ALIVE_cN if facts.moved_mm > 2 * MOVED_mm else EXACT_cN
+    least_cN = ALIVE_cN if facts.span_mm > 2 * MOVED_mm else EXACT_cN
     if alive_cN > least_cN and still is None:
         return None
     reading = force_text(float(facts.force_cN[still[0]] if still else facts.force_cN.mean()), ".1f")
@@ -165,7 +165,7 @@ def limiter_deep(facts: PressFacts) -> PartFault | None:
 def limiter_short(facts: PressFacts) -> PartFault | None:
     """Something bears the finger's force where the stop should not be yet."""
     deep = facts.deepest_mm
-    if facts.force_cN is None or deep > facts.travel_mm - LOW_mm or facts.moved_mm < 2 * MOVED_mm:
+    if facts.force_cN is None or deep > facts.travel_mm - LOW_mm or facts.span_mm < 2 * MOVED_mm:
         return None
     bottom = facts.place_mm > deep - 0.05
     borne = facts.force_cN[bottom] - facts.commanded_cN[bottom]
@@ -208,12 +208,12 @@ def part_at_fault(facts: PressFacts, rules: tuple[Rule, ...] = RULES) -> PartFau
     rules : PLACE_RULES of a record in which nobody was asked to press, SURE_RULES where something is known to
     be wrong.
     """
-    return next((found for rule in rules if (found := rule(facts))), None)
+    return next((fault for rule in rules if (fault := rule(facts))), None)
 
 
 def was_touched(facts: PressFacts) -> bool:
     """Return whether someone pressed, as far as the record shows."""
-    return facts.moved_mm > MOVED_mm or (facts.force_cN is not None and _touched(facts))
+    return facts.span_mm > MOVED_mm or (facts.force_cN is not None and _feels_finger(facts))
 
 
 def _peak_cN(facts: PressFacts) -> float:
@@ -221,7 +221,7 @@ def _peak_cN(facts: PressFacts) -> float:
     return max(high, -low)
 
 
-def _touched(facts: PressFacts) -> bool:
+def _feels_finger(facts: PressFacts) -> bool:
     """Return whether a finger was felt; without a sensor nothing contradicts it."""
     low, high = facts.still_cN
     return facts.force_cN is None or high - low > TOUCH_cN

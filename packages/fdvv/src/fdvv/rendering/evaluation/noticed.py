@@ -31,7 +31,7 @@ class Noticed:
         return asdict(self)
 
 
-def noticed(steps_JND: FloatArray) -> Noticed:
+def summarize(steps_JND: FloatArray) -> Noticed:
     """Sum up errors, (presses, n); all is 0 where there is no place."""
     if not steps_JND.size:
         return Noticed(0.0, 0.0, 0.0, 0.0)
@@ -43,7 +43,7 @@ def noticed(steps_JND: FloatArray) -> Noticed:
     )
 
 
-def overall(found: Sequence[Noticed]) -> Noticed:
+def overall(curves: Sequence[Noticed]) -> Noticed:
     """Return the mean over curves, each of the same weight."""
-    rows = np.array([list(asdict(one).values()) for one in found])
+    rows = np.array([list(asdict(curve).values()) for curve in curves])
     return Noticed(*(float(value) for value in rows.mean(axis=0)))

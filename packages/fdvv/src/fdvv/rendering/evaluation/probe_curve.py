@@ -16,11 +16,11 @@ from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.model.noticeable import LITERATURE, Jnds
 from fdvv.model.press import Press
-from fdvv.rendering.evaluation.noticed import Noticed, noticed
+from fdvv.rendering.evaluation.noticed import Noticed, summarize
 from fdvv.rendering.evaluation.vibration_presses import (
     NONE_ASKED,
     RenderedVibration,
-    rendered_vibration,
+    judge_vibration,
     shows_vibration,
 )
 from fdvv.units import FloatArray
@@ -87,7 +87,7 @@ class ProbeCurve:
         return np.asarray(np.abs(self.rendered_cN - self.target_cN) / self.jnds.force_cN(self.target_cN))
 
     @cached_property
-    def achieved_JND(self) -> FloatArray:
+    def own_speed_JND(self) -> FloatArray:
         """The same against what the model asks for at the speed that each press had, (presses, n)."""
         error_cN = np.abs(self.rendered_cN - self.at_achieved_cN)
         return np.asarray(error_cN / self.jnds.force_cN(self.at_achieved_cN))
@@ -106,17 +106,17 @@ class ProbeCurve:
 
     @property
     def total(self) -> Noticed:
-        return noticed(self.total_JND)
+        return summarize(self.total_JND)
 
     def noticeable(self) -> dict[str, Any]:
         """Return what a finger could notice of this curve, for a file."""
         entry = self.displacement_mm <= ENTRY_mm + 1e-9
         return {
             "total": self.total.to_dict(),
-            "force": noticed(self.force_JND).to_dict(),
-            "force_at_achieved_speed": noticed(self.achieved_JND).to_dict(),
-            "force_to_entry": noticed(self.force_JND[:, entry]).to_dict(),
-            "force_beyond_entry": noticed(self.force_JND[:, ~entry]).to_dict(),
+            "force": summarize(self.force_JND).to_dict(),
+            "force_at_achieved_speed": summarize(self.own_speed_JND).to_dict(),
+            "force_to_entry": summarize(self.force_JND[:, entry]).to_dict(),
+            "force_beyond_entry": summarize(self.force_JND[:, ~entry]).to_dict(),
             "entry_mm": ENTRY_mm,
             "jnd_cN": self.jnds.force_cN(self.target_cN).tolist(),
             "noticed_ratio": (self.total_JND > 1).mean(axis=0).tolist(),
@@ -162,13 +162,13 @@ def with_vibrations(
         replace(
             c,
             ripple_cN=_ripple_cN(model, c, silent),
-            vibration=rendered_vibration(model, c.stroke, c.velocity_mm_s, silent, vibrating, c.jnds),
+            vibration=judge_vibration(model, c.stroke, c.velocity_mm_s, silent, vibrating, c.jnds),
         )
         for c in curves
     ]
 
 
-def judged_curves(
+def judge_curves(
     model: FDVVModel, velocity_mm_s: float, presses: Sequence[Press], jnds: Jnds = LITERATURE
 ) -> list[ProbeCurve]:
     """Judge the force of both strokes of the presses of one velocity; jnds : what a finger notices."""
@@ -179,7 +179,7 @@ def judged_curves(
     spans = [split_strokes(press.displacement_mm, model.travel_mm) for press in presses]
     for i, stroke in enumerate(Stroke):
         forces, resting, speeds = [], [], []
-        served = _served(model, stroke)
+        served = _stroke_of_model(model, stroke)
         target = model.force_cN(x, velocity_mm_s, served)
         for press, strokes in zip(presses, spans, strict=True):
             rows = strokes[i]
@@ -216,7 +216,7 @@ def _resting_cN(rendered_cN: FloatArray, target_cN: FloatArray, rests_cN: float)
     return np.where(above, np.clip(rests_cN, 0.0, target_cN), rendered_cN)
 
 
-def _served(model: FDVVModel, stroke: Stroke) -> Stroke:
+def _stroke_of_model(model: FDVVModel, stroke: Stroke) -> Stroke:
     """Return the stroke whose curve is rendered: without a release curve the press serves for both."""
     return stroke if model.of(stroke) else Stroke.PRESS
 
@@ -225,15 +225,15 @@ def _ripple_cN(model: FDVVModel, curve: ProbeCurve, presses: Sequence[Press]) ->
     """Return the median over presses of what shakes in the force; None if a record is too coarse for that."""
     if not all(map(shows_vibration, presses)):
         return None
-    found = []
+    ripples = []
     for press in presses:
         rows = split_strokes(press.displacement_mm, model.travel_mm)[list(Stroke).index(curve.stroke)]
         t_s, x_mm = press.t_s[rows], press.displacement_mm[rows]
         judged = (x_mm >= FROM_mm) & (x_mm <= model.travel_mm - STOP_GUARD_mm)
         if judged.sum() < FEWEST_rows:
             return None
-        target_cN = model.force_cN(x_mm[judged], curve.velocity_mm_s, _served(model, curve.stroke))
+        target_cN = model.force_cN(x_mm[judged], curve.velocity_mm_s, _stroke_of_model(model, curve.stroke))
         even_s = np.arange(t_s[judged][0], t_s[judged][-1], 1 / RATE_Hz)
         error_cN = press.force_cN[rows][judged] - target_cN
-        found.append(ripple_rms(np.interp(even_s, t_s[judged], error_cN)))
-    return float(np.median(found))
+        ripples.append(ripple_rms(np.interp(even_s, t_s[judged], error_cN)))
+    return float(np.median(ripples))

@@ -27,7 +27,7 @@ FAINTEST_m_s2 = 0.01
 """Bands below it are drawn there."""
 
 
-def rendered_curves(methods: Mapping[str, Sequence[ProbeCurve]], simulated: bool) -> list[RenderedCurve]:
+def method_curves(methods: Mapping[str, Sequence[ProbeCurve]], simulated: bool) -> list[RenderedCurve]:
     """Return what several methods rendered of the same curves, in one order, for plot_rendering.
 
     A line is the median of the presses, its band the quartiles.
@@ -46,13 +46,13 @@ def _band(method: str, curve: ProbeCurve) -> RenderedBand:
     return RenderedBand(method, middle, low, high, (curve.total_JND > 1).mean(axis=0))
 
 
-def shown_vibrations(curves: Sequence[ProbeCurve]) -> list[ProbeCurve]:
+def worst_vibrations(curves: Sequence[ProbeCurve]) -> list[ProbeCurve]:
     """Return of each stroke the curve whose vibration is noticed most; none where nothing was compared."""
-    found = []
+    worst = []
     for stroke in Stroke:
         mine = [c for c in curves if c.stroke is stroke and c.vibration.error]
-        found += [max(mine, key=lambda c: c.vibration.total_JND)] if mine else []
-    return found
+        worst += [max(mine, key=lambda c: c.vibration.total_JND)] if mine else []
+    return worst
 
 
 @style.in_house_style
@@ -62,7 +62,7 @@ def plot_vibrations(curves: Sequence[ProbeCurve], simulated: bool = False) -> An
     Of each stroke the speed is drawn at which it is noticed most. Returns the (strokes, 2) array of axes.
     Raises ModelError if no curve has a vibration that was compared.
     """
-    shown = shown_vibrations(curves)
+    shown = worst_vibrations(curves)
     if not shown:
         raise ModelError("a figure of vibrations needs one that was compared, got none")
     fig = style.new_figure(2 * CELL_in, ROW_in * len(shown) + 0.7)

@@ -8,9 +8,9 @@ from typing import Any
 from fdvv._version import __version__
 from fdvv.force_text import force_number, force_unit
 from fdvv.model.noticeable import Jnds, JndSource
-from fdvv.rendering.evaluation.noticed import Noticed, noticed
+from fdvv.rendering.evaluation.noticed import Noticed, summarize
 from fdvv.rendering.evaluation.probe_curve import ENTRY_mm, ProbeCurve
-from fdvv.rendering.evaluation.probe_figures import plot_vibrations, rendered_curves, shown_vibrations
+from fdvv.rendering.evaluation.probe_figures import method_curves, plot_vibrations, worst_vibrations
 from fdvv.rendering.evaluation.vibration_presses import NOT_ASKED
 from fdvv.rendering.figures import plot_rendering
 from fdvv.rendering.probe import ProbeResult
@@ -20,7 +20,7 @@ from fdvv.report.svg import figure_svg
 
 def probe_report(result: ProbeResult) -> str:
     """Write the report as HTML. Needs matplotlib (BuildError without it)."""
-    found = result.to_dict()
+    record = result.to_dict()
     simulated = f"the {result.device_name}; no hardware was used" if result.simulated else None
     sections = [
         _force(result),
@@ -29,7 +29,7 @@ def probe_report(result: ProbeResult) -> str:
     ]
     more = f", {result.vibration_presses} more with the vibration" if result.vibration_presses else ""
     footer = f"fdvv {__version__}; {result.presses} presses{more}; method: {result.method}"
-    summary = f"{found['verdict']} {found['next_step']}"
+    summary = f"{record['verdict']} {record['next_step']}"
     return render_html(f"{result.model_name} as rendered", summary, sections, footer, simulated=simulated)
 
 
@@ -39,12 +39,12 @@ def _force(result: ProbeResult) -> Section:
         f"Judged from {low:g} to {high:g} mm of true displacement. The grey band is one JND of force around "
         "the target. A bar marks where most presses would be noticed, vibration included.",
     )
-    grid = plot_rendering(rendered_curves({"rendered": result.curves}, result.simulated))
+    grid = plot_rendering(method_curves({"rendered": result.curves}, result.simulated))
     figure = figure_svg(grid, "Target and rendered force per velocity and stroke, and what is noticed")
-    return Section("Force", text, (figure,), (noticed_table(result.curves),))
+    return Section("Force", text, (figure,), (errors_table(result.curves),))
 
 
-def noticed_table(curves: Sequence[ProbeCurve]) -> Table:
+def errors_table(curves: Sequence[ProbeCurve]) -> Table:
     """Return errors of force and shares of the stroke above one JND."""
     columns = (
         "curve", *(f"{name} ({force_unit()})" for name in ("mean", "max", "ripple")), "above 1 JND (%)",
@@ -56,17 +56,17 @@ def noticed_table(curves: Sequence[ProbeCurve]) -> Table:
         "speed that each press had. Excess: mean of what exceeds one JND, force and vibration. Ripple: rms "
         "of the force's error from 40 to 800 Hz."
     )
-    return Table(columns, tuple(map(_noticed_row, curves)), caption)
+    return Table(columns, tuple(map(_error_row, curves)), caption)
 
 
-def _noticed_row(curve: ProbeCurve) -> tuple[str, ...]:
-    entry = noticed(curve.force_JND[:, curve.displacement_mm <= ENTRY_mm + 1e-9])
-    shares = (noticed(curve.force_JND), noticed(curve.achieved_JND), entry, curve.total)
-    found = curve.outcome
+def _error_row(curve: ProbeCurve) -> tuple[str, ...]:
+    entry = summarize(curve.force_JND[:, curve.displacement_mm <= ENTRY_mm + 1e-9])
+    shares = (summarize(curve.force_JND), summarize(curve.own_speed_JND), entry, curve.total)
+    outcome = curve.outcome
     return (
         _name(curve),
-        force_number(found.mean_error_cN, ".2f"),
-        force_number(found.max_error_cN, ".1f"),
+        force_number(outcome.mean_error_cN, ".2f"),
+        force_number(outcome.max_error_cN, ".1f"),
         "–" if curve.ripple_cN is None else force_number(curve.ripple_cN, ".1f"),
         *(_percent(share) for share in shares),
         f"{curve.total.excess_JND:.2f}",
@@ -77,8 +77,8 @@ def _name(curve: ProbeCurve) -> str:
     return f"{curve.stroke}, {curve.velocity_mm_s:g} mm/s"
 
 
-def _percent(found: Noticed) -> str:
-    return f"{100 * found.above_ratio:.0f}"
+def _percent(share: Noticed) -> str:
+    return f"{100 * share.above_ratio:.0f}"
 
 
 def vibration_section(curves: Sequence[ProbeCurve], simulated: bool) -> Section:
@@ -91,7 +91,7 @@ def vibration_section(curves: Sequence[ProbeCurve], simulated: bool) -> Section:
         "moves the cap too; what playing adds is the difference to presses without. Of each stroke the speed "
         "is drawn at which the vibration is noticed most.",
     )
-    shown = shown_vibrations(curves)
+    shown = worst_vibrations(curves)
     figures = (
         (
             figure_svg(
@@ -113,11 +113,11 @@ def vibration_section(curves: Sequence[ProbeCurve], simulated: bool) -> Section:
 
 
 def _vibration_row(curve: ProbeCurve) -> tuple[str, ...]:
-    found = curve.vibration.to_dict()
+    record = curve.vibration.to_dict()
     keys = {"onset_ms": 1, "onset_mm": 2, "level_dB": 1, "own_dB": 1, "likeness": 2}
     keys |= {"frequency_ratio": 2, "total_JND": 2}
-    cells = (_cell(found.get(key), digits) for key, digits in keys.items())
-    return (_name(curve), str(found["outcome"]), *cells)
+    cells = (_cell(record.get(key), digits) for key, digits in keys.items())
+    return (_name(curve), str(record["outcome"]), *cells)
 
 
 def _cell(value: Any, digits: int) -> str:
@@ -134,6 +134,6 @@ def sources_section(jnds: Jnds) -> Section:
     return Section("Just noticeable differences", (*text, *map(_source_text, jnds.sources)))
 
 
-def _source_text(one: JndSource) -> str:
-    measured = f" Measured: {one.source}." if one.source else ""
-    return f"{one.of.capitalize()}: {one.value}.{measured} Assumed: {one.assumed}."
+def _source_text(source: JndSource) -> str:
+    measured = f" Measured: {source.source}." if source.source else ""
+    return f"{source.of.capitalize()}: {source.value}.{measured} Assumed: {source.assumed}."

@@ -69,13 +69,13 @@ class StateError:
         return {"stroke": str(self.stroke), **{name: getattr(self, name) for name in names}}
 
 
-def intended_cN(program: Program, trace: Trace, velocity_mm_s: float, release: BoolArray) -> FloatArray:
+def program_force_cN(program: Program, trace: Trace, velocity_mm_s: float, release: BoolArray) -> FloatArray:
     """Return the force that the program intends at the true displacement of every row, (n,).
 
     velocity_mm_s : asked for, which chooses the row of surfaces unless a state looks at every instant's.
     release : rows of the release, (n,). A pull is felt as no force: a finger cannot be pulled.
     """
-    found = np.zeros(trace.t_s.size)
+    force_cN = np.zeros(trace.t_s.size)
     edges = [0, *(1 + np.flatnonzero(np.diff(trace.state.astype(int)))), trace.t_s.size]
     last_cN = 0.0
     for first, end in pairwise(edges):
@@ -84,9 +84,9 @@ def intended_cN(program: Program, trace: Trace, velocity_mm_s: float, release: B
         spent_ms = 1000.0 * (trace.t_s[rows] - trace.t_s[first])
         whole = _state_cN(program, state, trace, rows, velocity_mm_s, release) + _bias_cN(state, spent_ms)
         part = np.clip(spent_ms / state.fade_ms, 0.0, 1.0) if state.fade_ms and first else 1.0
-        found[rows] = last_cN + part * (whole - last_cN)
-        last_cN = float(found[end - 1])
-    return np.maximum(found, 0.0)
+        force_cN[rows] = last_cN + part * (whole - last_cN)
+        last_cN = float(force_cN[end - 1])
+    return np.maximum(force_cN, 0.0)
 
 
 def _state_cN(
@@ -115,7 +115,7 @@ def _bias_cN(state: State, spent_ms: FloatArray) -> FloatArray:
     return state.bias_cN + part * (state.bias_end_cN - state.bias_cN)
 
 
-def judged_states(
+def judge_states(
     program: Program, traces: Sequence[Trace], velocity_mm_s: float, jnds: Jnds = LITERATURE
 ) -> list[StateError]:
     """Return the errors of every state and stroke that the presses at one speed went through.
@@ -123,10 +123,10 @@ def judged_states(
     Judged from 0.3 mm to 0.1 mm before the stop, between the guards of each stroke, as fdvv probe does;
     rows are averaged over bins of 0.05 mm. jnds : what a finger notices.
     """
-    found: dict[tuple[int, Stroke], list[_Errors]] = {}
+    groups: dict[tuple[int, Stroke], list[_Errors]] = {}
     for trace in traces:
         for key, errors in _press_errors(program, trace, velocity_mm_s, jnds):
-            found.setdefault(key, []).append(errors)
+            groups.setdefault(key, []).append(errors)
     return [
         StateError(
             program.states[number].name,
@@ -136,7 +136,7 @@ def judged_states(
             np.concatenate([part.JND for part in parts]),
             max(part.impact_cN for part in parts),
         )
-        for (number, stroke), parts in sorted(found.items(), key=lambda one: (one[0][0], str(one[0][1])))
+        for (number, stroke), parts in sorted(groups.items(), key=lambda item: (item[0][0], str(item[0][1])))
     ]
 
 
@@ -154,7 +154,7 @@ def _press_errors(
     x_mm = trace.displacement_mm
     spans = split_strokes(x_mm, program.travel_mm)
     release = np.arange(x_mm.size) >= spans[1].start
-    intended = intended_cN(program, trace, velocity_mm_s, release)
+    intended = program_force_cN(program, trace, velocity_mm_s, release)
     free, landing = _flights(trace, intended)
     near = (trace.force_cN > 0) | (x_mm - trace.finger_mm < AWAY_mm)
     judged = near & ~free & ~landing & (x_mm >= FROM_mm) & (x_mm <= program.travel_mm - STOP_GUARD_mm)
@@ -165,8 +165,8 @@ def _press_errors(
         for number in np.unique(trace.state[span]):
             here = inside & (trace.state == number)
             places = x_mm[here & judged]
-            off_cN = np.abs(_binned(places, (trace.force_cN - intended)[here & judged]))
-            jnd_cN = jnds.force_cN(_binned(places, intended[here & judged]))
+            off_cN = np.abs(_bin_means(places, (trace.force_cN - intended)[here & judged]))
+            jnd_cN = jnds.force_cN(_bin_means(places, intended[here & judged]))
             impact_cN = float(trace.force_cN[here & landing].max(initial=0.0))
             rows.append(((int(number), stroke), _Errors(off_cN, off_cN / jnd_cN, impact_cN)))
     return rows
@@ -187,7 +187,7 @@ def _flights(trace: Trace, intended: FloatArray) -> tuple[BoolArray, BoolArray]:
     return free, landing & ~free
 
 
-def _binned(x_mm: FloatArray, off_cN: FloatArray) -> FloatArray:
+def _bin_means(x_mm: FloatArray, off_cN: FloatArray) -> FloatArray:
     if not x_mm.size:
         return x_mm
     at = np.floor(x_mm / BIN_mm).astype(int)

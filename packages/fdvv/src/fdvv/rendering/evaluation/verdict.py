@@ -9,7 +9,7 @@ import numpy as np
 
 from fdvv.force_text import force_number, force_unit
 from fdvv.model.curve import Stroke
-from fdvv.rendering.evaluation.noticed import noticed
+from fdvv.rendering.evaluation.noticed import summarize
 from fdvv.rendering.evaluation.probe_curve import ProbeCurve
 from fdvv.rendering.evaluation.vibration_presses import NOT_ASKED, RenderedVibration, principal_Hz
 
@@ -66,7 +66,7 @@ def headline(curves: Sequence[ProbeCurve], before: Sequence[ProbeCurve] = (), pr
     parts = (_fell(_mean_cN(before), _mean_cN(curves)), _fell(_largest_cN(before), _largest_cN(curves)))
     where = f" on {presses}" if presses else ""
     mean, largest = (f"{part} {force_unit()}" for part in parts)
-    judged = f"{_noticed_where(curves)}, by {curves[0].jnds.origin}"
+    judged = f"{_where_noticed(curves)}, by {curves[0].jnds.origin}"
     return f"Mean error {mean}{where}, largest {largest}; {judged}"
 
 
@@ -81,21 +81,21 @@ def headline_figures(
         (f"{_fell(_mean_cN(before), _mean_cN(curves))} {force_unit()}", "mean error of force"),
         (f"{_fell(_largest_cN(before), _largest_cN(curves))} {force_unit()}", "largest error"),
         (
-            f"{_percents(_noticed_percent(before), _noticed_percent(curves))} %",
+            f"{_percents(_percent_noticed(before), _percent_noticed(curves))} %",
             "of the strokes a finger would notice",
         ),
     )
 
 
-def _noticed_percent(curves: Sequence[ProbeCurve]) -> float | None:
-    return 100 * float(np.mean([noticed(c.force_JND).above_ratio for c in curves])) if curves else None
+def _percent_noticed(curves: Sequence[ProbeCurve]) -> float | None:
+    return 100 * float(np.mean([summarize(c.force_JND).above_ratio for c in curves])) if curves else None
 
 
 def next_step(curves: Sequence[ProbeCurve], means: RenderingMeans) -> str:
     """Return what improves the rendering most, judged by the worst that was found; empty without a curve."""
     if not curves:
         return ""
-    worst = max(noticed(curve.force_JND).above_ratio for curve in curves)
+    worst = max(summarize(curve.force_JND).above_ratio for curve in curves)
     if min(curve.reached_ratio for curve in curves) < RETURNED_ratio:
         return STEPS["stuck"]
     if worst > FEW_ratio and not means.learned:
@@ -106,12 +106,12 @@ def next_step(curves: Sequence[ProbeCurve], means: RenderingMeans) -> str:
         return STEPS["people"]
     if not means.force_loop:
         return STEPS["rig"]
-    return STEPS["pace" if _missed_speed(curves) else "more"]
+    return STEPS["pace" if _misses_speed(curves) else "more"]
 
 
-def _missed_speed(curves: Sequence[ProbeCurve]) -> bool:
+def _misses_speed(curves: Sequence[ProbeCurve]) -> bool:
     """Return whether the speed achieved explains much of what is noticed."""
-    pairs = [(noticed(c.force_JND).above_ratio, noticed(c.achieved_JND).above_ratio) for c in curves]
+    pairs = [(summarize(c.force_JND).above_ratio, summarize(c.own_speed_JND).above_ratio) for c in curves]
     return float(np.mean([asked - achieved for asked, achieved in pairs])) > FEW_ratio / 2
 
 
@@ -139,34 +139,34 @@ def _fell(before_cN: float | None, after_cN: float | None) -> str:
 
 
 def _percents(*percents: float | None) -> str:
-    return " → ".join(f"{one:.{0 if one >= 10 else 1}f}" for one in percents if one is not None)
+    return " → ".join(f"{p:.{0 if p >= 10 else 1}f}" for p in percents if p is not None)
 
 
-def _noticed_where(curves: Sequence[ProbeCurve]) -> str:
+def _where_noticed(curves: Sequence[ProbeCurve]) -> str:
     speeds = list(dict.fromkeys(sorted(c.velocity_mm_s for c in curves)))
-    found = [
+    noticed_mm_s = [
         v
         for v in speeds
-        if any(noticed(c.force_JND).above_ratio > FEW_ratio for c in curves if c.velocity_mm_s == v)
+        if any(summarize(c.force_JND).above_ratio > FEW_ratio for c in curves if c.velocity_mm_s == v)
     ]
-    if not found:
+    if not noticed_mm_s:
         return "a finger would not notice it"
-    if len(found) == len(speeds):
+    if len(noticed_mm_s) == len(speeds):
         return "a finger would notice it" + (" at every speed" if len(speeds) > 1 else "")
-    *first, last = (f"{v:g}" for v in found)
+    *first, last = (f"{v:g}" for v in noticed_mm_s)
     return f"a finger would notice it at {', '.join(first)}{' and ' if first else ''}{last} mm/s only"
 
 
 def _force(curves: Sequence[ProbeCurve]) -> str:
-    found = {c: 1 - noticed(c.force_JND).above_ratio for c in curves}
+    unnoticed = {c: 1 - summarize(c.force_JND).above_ratio for c in curves}
     strokes = [s for s in Stroke if any(c.stroke is s for c in curves)]
     parts = [
-        f"{_percent(float(np.mean([v for c, v in found.items() if c.stroke is s])))} of the {s}"
+        f"{_percent(float(np.mean([v for c, v in unnoticed.items() if c.stroke is s])))} of the {s}"
         for s in strokes
     ]
-    least = min(found, key=lambda c: found[c])
+    least = min(unnoticed, key=lambda c: unnoticed[c])
     where = f"{least.stroke} at {least.velocity_mm_s:g} mm/s"
-    worst = f" (least: {_percent(found[least])}, {where})" if len(curves) > len(strokes) else ""
+    worst = f" (least: {_percent(unnoticed[least])}, {where})" if len(curves) > len(strokes) else ""
     return f"a finger would not notice the force on {' and '.join(parts)}{worst}"
 
 

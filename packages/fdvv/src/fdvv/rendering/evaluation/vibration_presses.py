@@ -105,9 +105,9 @@ class RenderedVibration:
         }
         if self.error is None:
             return {"outcome": self.reason, **about}
-        found = asdict(self.error) | {"bands_Hz": [list(band) for band in BANDS_Hz]}
+        error = asdict(self.error) | {"bands_Hz": [list(band) for band in BANDS_Hz]}
         outcome = "played" if self.error.played else "not played"
-        return {"outcome": outcome, **about, **found, "total_JND": self.error.total_JND}
+        return {"outcome": outcome, **about, **error, "total_JND": self.error.total_JND}
 
 
 NONE_ASKED = RenderedVibration(None)
@@ -156,8 +156,8 @@ def vibrating_image(model: FDVVModel, trial: Trial, exciter: KnownExciter | None
         )
         for event in events
     ]
-    waves = [one.slot.wave for one in made]
-    slots = [_slot_record(one) for one in made]
+    waves = [sound.slot.wave for sound in made]
+    slots = [_slot_record(sound) for sound in made]
     return image_of(trial.surface, model.travel_mm, played, slots, trial.tuning.paced, waves).image
 
 
@@ -174,7 +174,7 @@ def _slot_record(made: ConvertedVibration) -> tables.Slot:
     )
 
 
-def rendered_vibration(
+def judge_vibration(
     model: FDVVModel,
     stroke: Stroke,
     velocity_mm_s: float,
@@ -195,12 +195,12 @@ def rendered_vibration(
     cuts = [_Cut.of(press, asked, model.travel_mm) for press in (*silent, *played)]
     if any(cut is None for cut in cuts):
         return RenderedVibration(asked, "not measured: the cap did not reach its place in every press")
-    found = [cut for cut in cuts if cut is not None]
-    first_s = max(-AROUND_s, *(cut.first_s for cut in found))
-    last_s = min(asked.duration_s + AROUND_s, *(cut.last_s for cut in found))
+    complete = [cut for cut in cuts if cut is not None]
+    first_s = max(-AROUND_s, *(cut.first_s for cut in complete))
+    last_s = min(asked.duration_s + AROUND_s, *(cut.last_s for cut in complete))
     if last_s < least_s(asked):
         return RenderedVibration(asked, "not measured: the stroke ends within one period of it")
-    return _compared(asked, found[: len(silent)], found[len(silent) :], (first_s, last_s), jnds)
+    return _compare(asked, complete[: len(silent)], complete[len(silent) :], (first_s, last_s), jnds)
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,7 +231,7 @@ class _Cut:
             return None
         speed = np.gradient(press.displacement_mm, press.t_s)
         onset_s = float(
-            np.interp(0.0, *_sorted(x_mm[at - 1 : at + 1] - vibration.onset_mm, t_s[at - 1 : at + 1]))
+            np.interp(0.0, *_sort_pairs(x_mm[at - 1 : at + 1] - vibration.onset_mm, t_s[at - 1 : at + 1]))
         )
         row = (rows.start or 0) + at
         return cls(
@@ -245,12 +245,12 @@ class _Cut:
         )
 
 
-def _sorted(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _sort_pairs(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     order = np.argsort(x)
     return x[order], y[order]
 
 
-def _compared(
+def _compare(
     asked: Vibration,
     silent: Sequence[_Cut],
     played: Sequence[_Cut],

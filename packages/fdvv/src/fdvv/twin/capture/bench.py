@@ -11,7 +11,7 @@ from fdvv.recording.types import Bench, Mark, Quantity, Stage, Stream, Take
 from fdvv.twin.button import ButtonPhysics
 from fdvv.twin.capture.participant import Intent, Participant, Presser, draw_intent
 from fdvv.twin.capture.rig import CaptureRig
-from fdvv.twin.capture.streams import FORCE_ZERO, Instruments, Setup, converted, draw_setup
+from fdvv.twin.capture.streams import FORCE_ZERO, Instruments, Setup, draw_setup, quantize
 from fdvv.twin.finger import Finger
 from fdvv.twin.noise import lsb_of
 from fdvv.twin.pace import solve_button_pace
@@ -44,8 +44,8 @@ def record_probe(
     read_cN = cN_from_N(read_force_N(sensor, N_from_cN(force_cN), noise_N))
     lsb_cN = float(cN_from_N(lsb_of(sensor.full_scale_N, sensor.converter_bits)))
     streams = (
-        converted("force", Quantity.FORCE, STAND, t_s, read_cN, lsb_cN, FORCE_ZERO),
-        converted("displacement", Quantity.DISPLACEMENT, STAND, t_s, down_mm + place_mm, COUNT_mm, 0),
+        quantize("force", Quantity.FORCE, STAND, t_s, read_cN, lsb_cN, FORCE_ZERO),
+        quantize("displacement", Quantity.DISPLACEMENT, STAND, t_s, down_mm + place_mm, COUNT_mm, 0),
     )
     leaf = button.curve.kind == "leaf"
     close_mm, open_mm = (float(mm_from_m(m)) for m in (button.curve.close_m, button.curve.open_m))
@@ -170,8 +170,8 @@ class CaptureBench:
 
     def _stroke_s(self, velocity_mm_s: float) -> float:
         if velocity_mm_s not in self._pace_s:
-            found_s = solve_button_pace(self.button, self.finger, velocity_mm_s, self._instruments.sensor)
-            self._pace_s[velocity_mm_s] = found_s
+            stroke_s = solve_button_pace(self.button, self.finger, velocity_mm_s, self._instruments.sensor)
+            self._pace_s[velocity_mm_s] = stroke_s
         return self._pace_s[velocity_mm_s]
 
 

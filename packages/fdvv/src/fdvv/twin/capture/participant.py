@@ -136,7 +136,7 @@ class Presser:
             gesture = replace(gesture, **times)
         if intent.outcome == "incomplete":
             return self._incomplete(gesture, intent.amount, random)
-        detoured = {"double tap": _tapped_twice, "hesitation": _halted}.get(intent.kind)
+        detoured = {"double tap": _tap_twice, "hesitation": _pause_on_the_way}.get(intent.kind)
         gesture, detour = detoured(gesture, intent) if detoured else (gesture, None)
         return self._simulate(gesture, self._noise(gesture, random), detour)
 
@@ -168,7 +168,7 @@ class Presser:
             aim = replace(aim, end_m=aim.start_m + 0.93 * (aim.end_m - aim.start_m))
 
 
-def _halted(gesture: Gesture, intent: Intent) -> tuple[Gesture, FloatArray]:
+def _pause_on_the_way(gesture: Gesture, intent: Intent) -> tuple[Gesture, FloatArray]:
     """Go down in two moves with a pause between them; the gesture is the second, the detour the first."""
     first_s, second_s = intent.part * gesture.press_s, (1 - intent.part) * gesture.press_s
     later = replace(gesture, onset_s=gesture.onset_s + first_s + intent.amount, press_s=second_s)
@@ -177,7 +177,7 @@ def _halted(gesture: Gesture, intent: Intent) -> tuple[Gesture, FloatArray]:
     return later, intent.part * (gesture.end_m - gesture.start_m) * moves
 
 
-def _tapped_twice(gesture: Gesture, intent: Intent) -> tuple[Gesture, FloatArray]:
+def _tap_twice(gesture: Gesture, intent: Intent) -> tuple[Gesture, FloatArray]:
     """Press again after a short gap; the gesture is the first press, the detour the second."""
     before_s = gesture.onset_s + gesture.press_s + gesture.dwell_s + gesture.release_s + intent.amount
     again_s = gesture.press_s + gesture.dwell_s + gesture.release_s

@@ -104,7 +104,7 @@ class Instruments:
         if intent.kind == "sensor slipped":
             sensed_cN = np.where(t_s < event_s, 1.0, intent.amount) * sensed_cN
         lsb_cN = float(cN_from_N(lsb_of(self.sensor.full_scale_N, self.sensor.converter_bits)))
-        return converted("force", Quantity.FORCE, BOARD, begin_s + t_s, sensed_cN, lsb_cN, FORCE_ZERO)
+        return quantize("force", Quantity.FORCE, BOARD, begin_s + t_s, sensed_cN, lsb_cN, FORCE_ZERO)
 
     def _sound(self, trace: ButtonTrace, begin_s: float, random: np.random.Generator) -> Stream:
         """Hear cap and plate in the near field, without a filter against aliases but the RC."""
@@ -122,7 +122,7 @@ class Instruments:
         lsb_V = lsb_of(rig.sound_range_V, rig.sound_bits)
         middle = 2 ** (rig.sound_bits - 1) if rig.sound_bits else 0
         volts = np.clip(volts, -half, half - lsb_V)
-        return converted("sound", Quantity.SOUND, BOARD, begin_s + t_s, volts, lsb_V, middle)
+        return quantize("sound", Quantity.SOUND, BOARD, begin_s + t_s, volts, lsb_V, middle)
 
     def _shake(self, trace: ButtonTrace, begin_s: float, random: np.random.Generator) -> tuple[Stream, ...]:
         """Feel the housing shake, if the bench has an accelerometer on it."""
@@ -134,9 +134,7 @@ class Instruments:
         shaken = np.interp(t_s, trace.t_s, shaken_m_s2) + rig.shake_noise_m_s2 * random.standard_normal(
             t_s.size
         )
-        shake = converted(
-            "shake", Quantity.ACCELERATION, BOARD, begin_s + t_s, shaken, rig.shake_step_m_s2, 0
-        )
+        shake = quantize("shake", Quantity.ACCELERATION, BOARD, begin_s + t_s, shaken, rig.shake_step_m_s2, 0)
         return (shake,)
 
     # -- on the cameras' clock --
@@ -174,7 +172,7 @@ class Instruments:
     def _places_mm(self, trace: ButtonTrace, at_s: FloatArray, random: np.random.Generator) -> FloatArray:
         """See the two markers, (2, frames, 3): exposure, rocking, play, bias, noise."""
         rig = self.rig
-        down_m = m_from_mm(_exposed(trace.t_s, trace.displacement_mm, at_s, rig.exposure_s))
+        down_m = m_from_mm(_average_exposure(trace.t_s, trace.displacement_mm, at_s, rig.exposure_s))
         part = np.clip(down_m / max(float(down_m.max()), 1e-4), 0.0, 1.0)
         tilt = rig.rocking_rad * float(random.uniform(-1.0, 1.0)) * part
         angle = float(random.uniform(0.0, 2 * math.pi))
@@ -188,7 +186,7 @@ class Instruments:
         return self.setup.places_mm[:, None, :] + mm_from_m(moved_m)
 
 
-def converted(
+def quantize(
     name: str, quantity: Quantity, clock: str, t_s: FloatArray, values: FloatArray, lsb: float, zero: int
 ) -> Stream:
     """Write values as counts of a converter, or as they are where it is continuous (lsb 0)."""
@@ -210,7 +208,7 @@ def _switching(trace: ButtonTrace, begin_s: float) -> list[Mark]:
     return [Mark("closed" if sampled[i] else "open", BOARD, float(t_s[i])) for i in turns]
 
 
-def _exposed(t_s: FloatArray, values: FloatArray, at_s: FloatArray, exposure_s: float) -> FloatArray:
+def _average_exposure(t_s: FloatArray, values: FloatArray, at_s: FloatArray, exposure_s: float) -> FloatArray:
     if exposure_s == 0:
         return np.interp(at_s, t_s, values)
     area = np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(t_s)))

@@ -18,7 +18,7 @@ CHECKED = 500
 """Places between which a valley is looked for."""
 
 
-def grown(
+def magnify(
     model: FDVVModel, force_ratio: float = 1.0, snap_ratio: float = 1.0, vibration_ratio: float = 1.0
 ) -> FDVVModel:
     """Multiply all forces of a model, the fall of force of its snap, and its vibrations; 1 changes nothing.
@@ -34,8 +34,8 @@ def grown(
         model = replace(model, curves=_with_snap(model, snap_ratio))
     if force_ratio != 1.0:
         curves = (
-            replace(one, control_points_cN=force_ratio * one.control_points_cN, spread=None)
-            for one in model.curves
+            replace(curve, control_points_cN=force_ratio * curve.control_points_cN, spread=None)
+            for curve in model.curves
         )
         model = replace(model, curves=tuple(curves))
     if vibration_ratio == 1.0:
@@ -44,11 +44,11 @@ def grown(
         raise ModelError(f"{model.name} has no vibration to make stronger")
     vibrations = (
         replace(
-            one,
-            modes=tuple(replace(m, amplitude_m_s2=vibration_ratio * m.amplitude_m_s2) for m in one.modes),
+            curve,
+            modes=tuple(replace(m, amplitude_m_s2=vibration_ratio * m.amplitude_m_s2) for m in curve.modes),
             spread=None,
         )
-        for one in model.vibrations
+        for curve in model.vibrations
     )
     return replace(model, vibrations=tuple(vibrations))
 
@@ -56,21 +56,21 @@ def grown(
 def has_snap(model: FDVVModel) -> bool:
     """Return whether the force of every press falls by a bump."""
     presses = model.of(Stroke.PRESS)
-    return bool(presses) and all(_bump_of(one, model.travel_mm) is not None for one in presses)
+    return bool(presses) and all(_bump_of(curve, model.travel_mm) is not None for curve in presses)
 
 
 def _with_snap(model: FDVVModel, ratio: float) -> tuple[ForceCurve, ...]:
     if not has_snap(model):
         raise ModelError(f"{model.name} has no snap to make stronger")
-    return tuple(_curve_with_snap(one, model, ratio) for one in model.curves)
+    return tuple(_curve_with_snap(curve, model, ratio) for curve in model.curves)
 
 
 def _curve_with_snap(curve: ForceCurve, model: FDVVModel, ratio: float) -> ForceCurve:
     """Multiply the snap of a curve; one without a bump, as of a release that is even, stays."""
-    found = _bump_of(curve, model.travel_mm)
-    if found is None:
+    bump = _bump_of(curve, model.travel_mm)
+    if bump is None:
         return curve
-    middle_cN, ends_mm = found
+    middle_cN, ends_mm = bump
     t, c = _with_joints(curve, ends_mm)
     place = bspline.greville(t, curve.degree)
     inside = (place >= ends_mm[0]) & (place <= ends_mm[1])
