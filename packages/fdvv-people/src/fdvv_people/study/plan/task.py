@@ -91,14 +91,13 @@ class StudyTask:
         del settings
         return 0.0
 
-    def simulate(
-        self, people: SimulatedPeople, between_JND: float, random: np.random.Generator
-    ) -> str | None:
-        """Return one of `choices` as a simulated person answers; None: which label seems more, or closer.
+    def simulate(self, people: SimulatedPeople, between_JND: float, random: np.random.Generator) -> str:
+        """Return one of `choices` as a simulated person answers; empty: which label seems more, or closer.
 
         people : with the one person. between_JND : how far the two stimuli that were felt are apart.
         """
         del people, between_JND, random
+        return ""
 
     def distances(self, right: bool, counts: FloatArray, people: Share | None) -> tuple[DPrime, ...]:
         """Return d' by every rule that fits the task.
