@@ -42,7 +42,7 @@ def test_the_shipped_realism_study_is_the_papers() -> None:
     [
         (("kind =", "kind"), "line 3", "not valid TOML"),
         (('name = "small"\n', ""), "whole file", "missing required field `name`"),
-        (('"preference"', '"taste"'), "kind", "Invalid enum value 'taste'"),
+        (('"preference"', '"taste"'), "kind", "'taste' is no task"),
         (('title.en = "Small"', 'title = "Small"'), "title", "by language, as title.en"),
         (('button = "mx-brown"', "button = 7"), "items[1] ('Red'), stimuli[2] ('two'), button", "got `int`"),
         (('"mx-red" }', '"mx-red", renderd = "FD" }'), "stimuli[1] ('one')", "did you mean rendered?"),

@@ -8,7 +8,7 @@ import pytest
 from fdvv.errors import ModelError
 from fdvv_people.study.plan.answers import Answers
 from fdvv_people.study.plan.claim import claim_p, claim_scores
-from fdvv_people.study.plan.plan import Claim, StudyKind
+from fdvv_people.study.plan.plan import Claim
 from fdvv_people.study.simulation.people import draw_people
 from fdvv_people.study.simulation.power import (
     ItemEffect,
@@ -21,7 +21,7 @@ from fdvv_people.study.simulation.power import (
 from tests.support.campaign import campaign
 
 
-def design(difference_JND: float, kind: StudyKind = "realism", points: int | None = None) -> PowerDesign:
+def design(difference_JND: float, kind: str = "realism", points: int | None = None) -> PowerDesign:
     effects = tuple(ItemEffect.of_size(name, difference_JND) for name in ("soft", "hard"))
     return PowerDesign(kind, effects, rounds=6, ties=True, alpha=0.05, points=points)
 
@@ -86,7 +86,7 @@ def test_the_table_tells_from_how_many_people_on_the_power_is_enough() -> None:
 
 
 @pytest.mark.parametrize("kind", ["realism", "abx", "2afc", "2ac", "preference"])
-def test_planning_scores_a_study_as_its_analysis_does(kind: StudyKind) -> None:
+def test_planning_scores_a_study_as_its_analysis_does(kind: str) -> None:
     of = design(1.2, kind)
     people = 7
     planned = simulate_scores(of, people, studies=1, seed=3).scores[0]

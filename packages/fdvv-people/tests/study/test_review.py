@@ -11,7 +11,7 @@ from fdvv.errors import InputError
 from fdvv.model.file import load_builtin, save_model
 from fdvv_people.study.admin.preview import preview_dict, preview_html, preview_sections
 from fdvv_people.study.admin.review import device_problems, review_study, twin_problems
-from fdvv_people.study.plan.plan import ADAPTIVE, Item, Staircase, Stimulus, StudyPlan
+from fdvv_people.study.plan.plan import Item, Staircase, Stimulus, StudyPlan
 from fdvv_people.study.plan.plan_file import template_names, write_template
 from tests.support.buttons import line_model
 
@@ -43,7 +43,7 @@ def test_a_shipped_study_can_be_run_and_its_renderings_differ(name: str, tmp_pat
     look = review_study(write_template(name, tmp_path).parent)
     assert look.problems == look.notes == ()
     assert all(apart > 2.0 for apart in look.differences_cN.values())
-    assert len(look.differences_cN) == (0 if name in ADAPTIVE else len(look.plan.items))
+    assert len(look.differences_cN) == (0 if name in ("staircase", "thresholds") else len(look.plan.items))
 
 
 def test_fd_and_fdvv_of_a_model_with_one_speed_are_refused_as_the_same(tmp_path: Path) -> None:

@@ -20,15 +20,16 @@ Kind = Literal[
     "devices",
     "rigs",
     "presenters",
+    "tasks",
     "exchange_formats",
     "kinds",
     "pages",
 ]
 """What a package can add: a click command of ``fdvv`` or of ``fdvv device``, the first lines of its commands'
-help by their names, an engine of ``fdvv optimize``, a way for
-``fdvv compensate`` to learn a rig, a board in lockstep or a device, the physics of a rig of
-one's own, what presents the rounds of ``fdvv optimize`` to a person, a format of ``fdvv export``, a kind of
-journal that ``fdvv check`` knows, a module with calls and channels of the studio."""
+help by their names, an engine of ``fdvv optimize``, a way for ``fdvv compensate`` to learn a rig, a board in
+lockstep or a device, the physics of a rig of one's own, what presents the rounds of ``fdvv optimize`` to a
+person, a task of studies, a format of ``fdvv export``, a kind of journal that ``fdvv check`` knows, a module
+with calls and channels of the studio."""
 
 KNOWN = MappingProxyType(
     {

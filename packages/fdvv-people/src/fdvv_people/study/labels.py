@@ -13,6 +13,7 @@ from fdvv_people.study.kind import Account, StudyKind
 from fdvv_people.study.plan.events import SessionStarted, face_of
 from fdvv_people.study.plan.plan import StudyPlan
 from fdvv_people.study.plan.plan_check import plan_problems
+from fdvv_people.study.plan.plan_file import read_plan_text
 from fdvv_people.study.plan.schedule import draw_schedule
 from fdvv_people.study.plan.session import SessionState
 from fdvv_people.study.plan.sitting import SittingState
@@ -38,6 +39,9 @@ class LabelledStudies(StudyKind[StudyPlan]):
     proxy_data: ClassVar[str] = "answers of the proxies"
     feels: ClassVar[bool] = True
     state: ClassVar[type[SittingState[Any]]] = SessionState
+
+    def read_plan(self, text: str | bytes, source: object) -> StudyPlan:
+        return read_plan_text(text, source)
 
     def problems(self, plan: StudyPlan) -> tuple[str, ...]:
         return plan_problems(plan)

@@ -125,8 +125,10 @@ def _show_power(found: StudyPower) -> None:
 
 
 def _show_items(report: dict[str, Any], more: str, less: str) -> None:
+    from fdvv_people.study.plan.tasks import task_of
+
     keys = ("total_JND", "force_JND", "speed_JND", "vibration_JND")
-    words = ("right", "wrong") if report["kind"] == "abx" else (more, less)
+    words = (more, less) if task_of(report["kind"]).names_stimulus else ("right", "wrong")
     headings = {"for": f"% {words[0]}", "equal": "% equal", "against": f"% {words[1]}"}
     shares = [key for key in headings if report["items"][0][key] is not None]
     ui.print_table(

@@ -18,23 +18,9 @@ from fdvv_people.stats.orders import williams_orders
 from fdvv_people.study.admin.review import StudyReview
 from fdvv_people.study.kind import Account
 from fdvv_people.study.plan import plan_words
-from fdvv_people.study.plan.plan import ADAPTIVE, StudyPlan
+from fdvv_people.study.plan.plan import StudyPlan
 from fdvv_people.study.plan.schedule import item_orders
-
-TRIAL_s = {
-    # the paper's: 60 minutes, less two breaks and about 8 minutes around, over 36 trials
-    "realism": 75.0,
-    "abx": 45.0,
-    "2afc": 25.0,
-    "2ac": 25.0,
-    "preference": 30.0,
-    "staircase": 15.0,
-    "thresholds": 15.0,
-}
-"""What a trial takes; all but the paper's assumed."""
-
-RATED_s = 30.0
-"""What each stimulus of a MUSHRA trial takes (assumed)."""
+from fdvv_people.study.plan.tasks import task_of
 
 PAGE_s, QUESTION_s = 60.0, 10.0
 """What a page and each question on it takes (assumed)."""
@@ -81,7 +67,8 @@ class PlanSummary:
 
 def summarise_plan(plan: StudyPlan) -> PlanSummary:
     """Work out what a checked plan comes to."""
-    trial_s = RATED_s * len(plan.items[0].stimuli) if plan.kind == "mushra" else TRIAL_s[plan.kind]
+    task = task_of(plan.kind)
+    trial_s = task.trial_s + task.stimulus_s * len(plan.items[0].stimuli)
     breaks = _breaks(plan, trial_s)
     page_s = sum(PAGE_s + QUESTION_s * len(page.questions) for page in plan.pages)
     whole_s = page_s + (plan.trials + plan.practice) * trial_s + 60.0 * breaks * plan.break_min
@@ -119,16 +106,16 @@ def _notes(plan: StudyPlan, places: tuple[int, int] | None) -> Iterator[str]:
         )
     if not any(page.when == "consent" for page in plan.pages):
         yield "there is no consent page"
-    if plan.claim is None and plan.kind not in ADAPTIVE:
+    task = task_of(plan.kind)
+    if plan.claim is None and not task.adaptive:
         yield "there is no claim: what is tested is then chosen after the answers are seen"
-    if plan.rounds == 2 and plan.kind not in ("mushra", *ADAPTIVE):
+    if plan.rounds == 2 and task.choices and not task.adaptive:
         yield "with two rounds, who sees through a label of the first knows that of the second"
     if plan.practice == 0:
         yield "there is no practice: first trials differ from later ones"
     if plan.switch_s == 0:
         yield "switch_s = 0: how long a change of what is rendered takes may tell which it is"
-    if not plan.ties and plan.kind == "realism":
-        yield 'without "equal" this is a 2-AFC, not the paper\'s task'
+    yield from task.doubts(plan)
 
 
 def planned_power(plan: StudyPlan) -> float | None:
@@ -141,7 +128,8 @@ def planned_power(plan: StudyPlan) -> float | None:
 
     from fdvv_people.stats.share import binomial_p
 
-    if plan.claim is None or plan.claim.measure != "choice" or plan.kind in ("mushra", *ADAPTIVE):
+    task = task_of(plan.kind)
+    if plan.claim is None or plan.claim.measure != "choice" or task.adaptive or not task.choices:
         return None
     n = max(2, round(plan.people * plan.trials / (1 + (plan.trials - 1) * ALIKE)))
     counts = np.arange(math.floor(n / 2) + 1, n + 1)

@@ -17,10 +17,11 @@ from fdvv.model.curve import Stroke
 from fdvv.model.model import FDVVModel
 from fdvv.program.surface import Limits
 from fdvv_people.study.files.layout import BUTTONS, kept_path, named_files
-from fdvv_people.study.plan.plan import ADAPTIVE, Item, Stimulus, StudyPlan
+from fdvv_people.study.plan.plan import Item, Stimulus, StudyPlan
 from fdvv_people.study.plan.plan_check import plan_problems
 from fdvv_people.study.plan.plan_file import read_plan
 from fdvv_people.study.plan.staircase import LARGEST_ratio
+from fdvv_people.study.plan.tasks import task_of
 from fdvv_people.study.plan.threshold_trials import grown_stimulus, largest_change
 from fdvv_people.study.stimulus.program import trial_program
 from fdvv_people.study.stimulus.renderer import prepare_stimulus, stimulus_actuation, stimulus_model
@@ -83,7 +84,7 @@ def review_plan(plan: StudyPlan, folder: Path) -> StudyReview:
             problems.append(f"items ({item.name!r}): {error}")
             continue
         opened |= models
-        if plan.kind not in ADAPTIVE:
+        if not task_of(plan.kind).adaptive:
             problems += _alike(item, models)
             differences[item.name] = least_difference_cN([models[s] for s in item.stimuli])
         notes += _doubts(item, differences.get(item.name))
@@ -92,7 +93,7 @@ def review_plan(plan: StudyPlan, folder: Path) -> StudyReview:
 
 def _check_growth(plan: StudyPlan, item: Item, folder: Path) -> None:
     """Raise InputError on a button that cannot grow as far as thresholds may ask of it."""
-    if plan.kind == "thresholds":
+    if plan.thresholds:
         for stimulus in _strongest(plan, item):
             stimulus_model(stimulus, folder)
 
@@ -195,9 +196,9 @@ def device_problems(plan: StudyPlan, folder: Path, limits: Limits | None = None)
 def _strongest(plan: StudyPlan, item: Item) -> tuple[Stimulus, ...]:
     rendered = item.rendered
     # the second stimulus grows, up to this: then it must still be renderable
-    if plan.kind == "thresholds" and plan.thresholds and len(item.stimuli) > 1:
+    if plan.thresholds and len(item.stimuli) > 1:
         return (rendered[0], grown_stimulus(rendered[1], largest_change(plan.thresholds)), *rendered[2:])
-    if plan.kind == "staircase" and len(item.stimuli) > 1:
+    if plan.staircase and len(item.stimuli) > 1:
         force_ratio = rendered[1].force_ratio * (1.0 + LARGEST_ratio)
         rendered = (rendered[0], structs.replace(rendered[1], force_ratio=force_ratio), *rendered[2:])
     return rendered

@@ -27,6 +27,7 @@ from fdvv_people.study.plan.claim import (
     usual_claim,
 )
 from fdvv_people.study.plan.plan import Claim, StudyPlan
+from fdvv_people.study.plan.tasks import task_behind
 
 FEW_PEOPLE = 6
 """People below which the exact signed-rank test cannot be significant at .05, whatever they say."""
@@ -66,7 +67,7 @@ def analyse(
         claim=_claim(found, claim, registered, notes),
         tests=button_tests(found, claim, notes) if claim and _two_rated(found, claim) else (),
         scales=scale_results(found, claim, notes) if claim and _two_rated(found, claim) else (),
-        rated=rated_results(found, notes) if found.kind == "mushra" else (),
+        rated=rated_results(found, notes) if task_behind(found.kind).hides_reference else (),
         preference=choices[0] if choices else None,
         by_button=choices[1:],
         thresholds=thresholds,

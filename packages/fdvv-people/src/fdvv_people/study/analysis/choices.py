@@ -9,14 +9,13 @@ import numpy as np
 from fdvv.units import FloatArray
 from fdvv_people.stats.post_hoc import holm
 from fdvv_people.stats.rank_tests import SignedRank, signed_rank
-from fdvv_people.stats.share import Share, clustered_share, share, sign_test
-from fdvv_people.stats.thurstone import DPrime, d_prime_2afc, d_prime_abx, d_prime_of_people
-from fdvv_people.stats.two_ac import two_ac, two_ac_people
+from fdvv_people.stats.share import clustered_share, share, sign_test
 from fdvv_people.study.analysis.ratings import names_of
 from fdvv_people.study.analysis.records import ALL_BUTTONS, ChoiceResult
 from fdvv_people.study.plan.answers import Answers, means_by
 from fdvv_people.study.plan.claim import choice_claim, claim_values
 from fdvv_people.study.plan.plan import Claim
+from fdvv_people.study.plan.tasks import task_behind
 
 RIGHT, WRONG = "right", "wrong"
 
@@ -70,18 +69,5 @@ def _result(
         test=test,
         sign=sign_test(tested),
         p_holm=None,
-        d=_distances(answers.kind, right, counts, people_share),
+        d=task_behind(answers.kind).distances(right, counts, people_share),
     )
-
-
-def _distances(kind: str, right: bool, counts: FloatArray, people: Share | None) -> tuple[DPrime, ...]:
-    """Return d' by every rule that fits the task, people counted as people first. counts : (people, 3)."""
-    less, equal, more = (int(one) for one in counts.sum(axis=0))
-    n = less + equal + more
-    if right and kind == "abx":
-        rules = tuple(d_prime_abx(more, n, rule) for rule in ("differencing", "independent"))
-        return (*((d_prime_of_people(people, "abx"),) if people else ()), *rules)
-    if equal:
-        each = (two_ac_people(counts).all,) if people and n > equal else ()
-        return (*each, two_ac(less, equal, more))
-    return (*((d_prime_of_people(people, "2afc"),) if people else ()), d_prime_2afc(more, n))

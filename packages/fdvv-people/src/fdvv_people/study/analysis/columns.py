@@ -5,20 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import get_args
 
 import numpy as np
 
 from fdvv.errors import InputError
 from fdvv.model.noticeable import DIMENSIONS
 from fdvv_people.study.analysis.code_book import CodeBook, rating_column
-from fdvv_people.study.plan.plan import StudyKind
+from fdvv_people.study.plan.tasks import task_names
 from fdvv_people.study.plan.trial import EQUAL
 
 TIMING = "timing"
 """A kind of answers that no plan declares: scores in a unit of time, by button and level, for an ANOVA."""
 
-KINDS = (*get_args(StudyKind), TIMING)
 TEXTS = ("person", "item", "choice", "excluded", "stimulus", "is_chosen")
 CHANGES = tuple(f"{one}_ratio" for one in DIMENSIONS)
 NUMBERS = ("round", "correct", "ratio", "time_s", "simulated", *CHANGES)
@@ -53,9 +51,10 @@ class ColumnMap:
     simulated: bool = False
 
     def __post_init__(self) -> None:
-        if self.kind and self.kind not in KINDS:
+        kinds = (*task_names(), TIMING)
+        if self.kind and self.kind not in kinds:
             raise InputError(
-                "kind", repr(self.kind), "no such kind of study", f"use one of {', '.join(KINDS)}"
+                "kind", repr(self.kind), "no such kind of study", f"use one of {', '.join(kinds)}"
             )
 
 

@@ -26,6 +26,7 @@ from fdvv_people.study.analysis.records import JndResult, StudyAnalysis, Thresho
 from fdvv_people.study.analysis.sentences import name_rows
 from fdvv_people.study.analysis.words import button_name
 from fdvv_people.study.plan.answers import Answers
+from fdvv_people.study.plan.tasks import task_behind
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,7 +38,7 @@ MOST_TRACKS = 12
 def draw_ratings(found: StudyAnalysis, rating: str, scale: tuple[float, float]) -> Any:
     """Draw mean ratings by button, marks of Holm's correction above where two renderings are compared."""
     answers, shown = found.screening.answers, found.stimuli
-    if found.claim is not None and found.kind != "mushra":
+    if found.claim is not None and not task_behind(found.kind).hides_reference:
         shown = found.claim.claim.less, found.claim.claim.more
     columns = answers.ratings[rating][:, [answers.stimuli.index(name) for name in shown]]
     tests = () if found.rated else [one for one in found.tests if one.rating == rating and one.test.n > 1]

@@ -18,9 +18,10 @@ from fdvv_people.study.analysis.ratings import spread_of
 from fdvv_people.study.analysis.read_answers import read_answers
 from fdvv_people.study.analysis.records import StudyAnalysis
 from fdvv_people.study.plan.answers import means_by
-from fdvv_people.study.plan.plan import ADAPTIVE, Item, StudyPlan
+from fdvv_people.study.plan.plan import Item, StudyPlan
 from fdvv_people.study.plan.plan_words import JND_share, question_text
 from fdvv_people.study.plan.staircase import target_share
+from fdvv_people.study.plan.tasks import task_of
 from fdvv_people.study.stimulus.renderer import stimulus_model
 
 RATE_Hz = 8000.0
@@ -33,9 +34,9 @@ Found = tuple[str, float, float | None, float | None, int]
 def jnd_record(study: Study) -> JndRecord:
     """Return what an unsealed study measured. InputError where it measures no JND, or found none."""
     plan, folder = study.plan, study.folder
-    if plan.kind not in ADAPTIVE:
+    if not task_of(plan.kind).adaptive:
         reason = f"a study of kind {plan.kind} measures no JND"
-        raise InputError(folder, "study", reason, f"name one of kind {' or '.join(ADAPTIVE)}")
+        raise InputError(folder, "study", reason, "name one of kind staircase or thresholds")
     share = _share_correct(plan, folder)
     found = analyse(read_answers(folder), plan)
     jnds = [
@@ -63,7 +64,7 @@ def jnd_record(study: Study) -> JndRecord:
 
 
 def _share_correct(plan: StudyPlan, folder: Path) -> float:
-    if plan.kind == "thresholds" or plan.staircase is None:
+    if plan.staircase is None:
         return JND_share
     if plan.staircase.down == 1:
         reason = "1 down settles where answers are right by chance, which is no JND"

@@ -78,7 +78,7 @@ def standards_of(plan: StudyPlan, folder: Path) -> dict[str, dict[Dimension, flo
     folder : of the study.
     """
     found = {}
-    for item in plan.items if plan.kind == "thresholds" else ():
+    for item in plan.items if plan.thresholds else ():
         try:
             found[item.name] = standard_sizes(stimulus_model(item.stimuli[0], folder))
         except InputError:

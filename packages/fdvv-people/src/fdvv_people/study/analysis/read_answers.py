@@ -28,6 +28,8 @@ from fdvv_people.study.analysis.columns import (
 )
 from fdvv_people.study.analysis.infer_columns import Inferred, RepeatedTrial, infer
 from fdvv_people.study.plan.answers import Answers
+from fdvv_people.study.plan.task import LABELS
+from fdvv_people.study.plan.tasks import task_behind
 from fdvv_people.study.plan.trial import EQUAL
 
 LARGEST_bytes = 200_000_000
@@ -230,7 +232,8 @@ def _reason(word: str) -> str:
 
 def _stimuli(path: Path, column_map: ColumnMap, layout: Layout, trials: Sequence[_Trial]) -> tuple[str, ...]:
     rated = dict.fromkeys(key[1] for trial in trials for key in trial.ratings)
-    chosen = sorted({trial.choice for trial in trials} - {"", EQUAL})
+    words = set(task_behind(column_map.kind).choices) - set(LABELS)
+    chosen = sorted({trial.choice for trial in trials} - {"", EQUAL} - words)
     found = tuple(sorted(rated) if layout.long else rated) or tuple(chosen)
     stimuli = column_map.stimuli or found
     strange = [one for one in (*chosen, *rated) if one not in stimuli]

@@ -177,6 +177,8 @@ def _choices(found: StudyAnalysis) -> list[Section]:
         (figure_svg(plot_choices(name_rows(found), found.simulated), "What was chosen, by button"),),
         (tables.choices_table(found),),
     )
+    if not whole.d:  # its task has no rule for d'
+        return [choices]
     distances = Section(
         "How far apart it feels",
         sentences.distance_sentences(whole),

@@ -81,9 +81,9 @@ class UnsealedTrial:
 
     @property
     def choice(self) -> str:
-        """What was chosen: a stimulus's name, "equal", or "" where nothing was."""
+        """What was chosen: a stimulus's name, "equal" or another word, or "" where nothing was."""
         label = self.answer.choice if self.answer else ""
-        return label if label in ("", EQUAL) else self.trial.labels[label]
+        return self.trial.labels.get(label, label)
 
     @property
     def correct(self) -> float:
@@ -120,7 +120,7 @@ def _person(plan: StudyPlan, one: OpenedPerson) -> UnsealedPerson:
 
 def _row(plan: StudyPlan, one: OpenedPerson, trial: StudyTrial, answer: TrialAnswer | None) -> UnsealedTrial:
     sealed = one.rendered.get(trial.number)
-    ratio = (sealed.ratio if sealed else trial.ratio) if plan.kind == "staircase" else math.nan
+    ratio = (sealed.ratio if sealed else trial.ratio) if plan.staircase else math.nan
     change = sealed.change if sealed else ()
     if answer is None:
         return UnsealedTrial(one.person.name, trial, ratio, None)

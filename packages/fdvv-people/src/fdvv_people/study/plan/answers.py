@@ -11,6 +11,7 @@ import numpy as np
 from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 from fdvv_people.study.plan.plan import Exclusion
+from fdvv_people.study.plan.tasks import task_behind
 
 REFERENCE_SHARE = 0.15
 """Part of the trials in which the hidden reference may be rated too low (ITU-R BS.1534-3, 4.1.2)."""
@@ -25,7 +26,7 @@ class Answers:
 
     Attributes
     ----------
-    kind : of the study, see StudyKind. stimuli : names, in the order of rating columns; of two the second is
+    kind : of the study, see `tasks`. stimuli : names, in the order of rating columns; of two the second is
         the one that a preference counts for.
     person, item : names, (n,) of str. round : (n,) of int.
     choice : (n,) of str: a stimulus's name, "equal", or "" where missing or not asked.
@@ -157,7 +158,8 @@ def _reason(answers: Answers, rows: np.ndarray, valid: np.ndarray, rule: Exclusi
     missing = 1.0 - valid[rows].mean()
     if missing > rule.share_missing:
         return f"more than {100 * rule.share_missing:.0f} % of the person's trials are missing"
-    if answers.kind == "mushra" and _misses_reference(answers, rows & valid, rule.reference_points):
+    rates = task_behind(answers.kind).hides_reference
+    if rates and _misses_reference(answers, rows & valid, rule.reference_points):
         return "the person did not find the hidden reference"
     return ""
 

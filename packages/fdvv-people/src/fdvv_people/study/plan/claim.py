@@ -9,7 +9,8 @@ from fdvv.errors import ModelError
 from fdvv.units import FloatArray
 from fdvv_people.stats.rank_tests import signed_ranks
 from fdvv_people.study.plan.answers import Answers, means_by
-from fdvv_people.study.plan.plan import ADAPTIVE, Claim
+from fdvv_people.study.plan.plan import Claim
+from fdvv_people.study.plan.tasks import task_behind
 from fdvv_people.study.plan.trial import EQUAL
 
 CHOICE, CORRECT = "choice", "correct"
@@ -21,8 +22,7 @@ SMALLEST_p = 0.1
 
 def is_about_right(answers: Answers) -> bool:
     """Return whether the answers of a study are right or wrong rather than a liking."""
-    forced = answers.kind in ("abx", "2afc", *ADAPTIVE)
-    return forced and bool(np.isfinite(answers.correct).any())
+    return task_behind(answers.kind).right_or_wrong and bool(np.isfinite(answers.correct).any())
 
 
 def usual_claim(answers: Answers) -> Claim | None:
@@ -30,10 +30,11 @@ def usual_claim(answers: Answers) -> Claim | None:
 
     None where nothing was compared in that way: staircases, thresholds, timing, or more than two stimuli.
     """
-    if is_about_right(answers) and answers.kind not in ADAPTIVE:
+    adaptive = task_behind(answers.kind).adaptive
+    if is_about_right(answers) and not adaptive:
         first, second = (*answers.stimuli, "", "")[:2]
         return Claim(more=second or "right", less=first or "wrong", measure=CORRECT)
-    if len(answers.stimuli) != 2 or answers.kind in (*ADAPTIVE, "timing"):
+    if len(answers.stimuli) != 2 or adaptive or answers.kind == "timing":
         return None
     measures = [CHOICE] if np.any(answers.choice != "") else list(answers.ratings)
     return Claim(more=answers.stimuli[1], less=answers.stimuli[0], measure=measures[0]) if measures else None
@@ -44,13 +45,14 @@ def measured_by(claim: Claim, measure: str) -> Claim:
 
 
 def measure_of(answers: Answers, claim: Claim) -> str:
-    """Return the claim's measure: in ABX a choice names no stimulus, and counts as right or wrong."""
-    return CORRECT if claim.measure == CHOICE and answers.kind == "abx" else claim.measure
+    """Return the claim's measure; a choice that names no stimulus, as in ABX, counts as right or wrong."""
+    named = task_behind(answers.kind).names_stimulus
+    return CORRECT if claim.measure == CHOICE and not named else claim.measure
 
 
 def choice_claim(answers: Answers, claim: Claim) -> Claim:
     """Return the same claim about what was chosen, or was right."""
-    if claim.measure == CORRECT or answers.kind == "abx":
+    if claim.measure == CORRECT or not task_behind(answers.kind).names_stimulus:
         return measured_by(claim, CORRECT)
     return measured_by(claim, CHOICE)
 

@@ -15,7 +15,8 @@ from msgspec import Struct
 
 from fdvv.errors import InputError
 from fdvv_people.study.plan.plan import Page, Question, Rating, StudyPlan
-from fdvv_people.study.plan.plan_words import asks_choice, offers_equal
+from fdvv_people.study.plan.plan_words import offers_equal
+from fdvv_people.study.plan.tasks import task_of
 from fdvv_people.study.plan.trial import EQUAL, StudyTrial, TrialAnswer
 
 Value = str | float | None
@@ -143,8 +144,8 @@ def record_of(event: SessionEvent) -> dict[str, Any]:
 
 
 def face_of(plan: StudyPlan, trial: StudyTrial) -> TrialFace:
-    labels = set(trial.labels)
-    if plan.kind == "mushra" or any(one.name == trial.item and one.reference for one in plan.items):
+    labels, task = set(trial.labels), task_of(plan.kind)
+    if any(one.name == trial.item and task.shown_reference(one) for one in plan.items):
         labels.add("X")
     ordered = tuple(sorted(labels, key=lambda label: (label != "X", label)))
     return TrialFace(trial.number, trial.item, trial.round, ordered, trial.practice)
@@ -152,9 +153,8 @@ def face_of(plan: StudyPlan, trial: StudyTrial) -> TrialFace:
 
 def choices_of(plan: StudyPlan) -> tuple[str, ...]:
     """Return the answers that a trial offers; none where only ratings are asked."""
-    if not asks_choice(plan):
-        return ()
-    return ("A", EQUAL, "B") if offers_equal(plan) else ("A", "B")
+    first, *others = task_of(plan.kind).choices or ("",)
+    return (*filter(None, (first, EQUAL if offers_equal(plan) else "")), *others)
 
 
 def rated_labels(trial: TrialFace) -> tuple[str, ...]:

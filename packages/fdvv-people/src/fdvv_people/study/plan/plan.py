@@ -9,16 +9,6 @@ from msgspec import Meta, Struct, structs
 from fdvv.model.noticeable import DIMENSIONS, Dimension
 from fdvv_people.thresholds.prior import ThresholdPrior
 
-StudyKind = Literal["realism", "abx", "2afc", "2ac", "preference", "mushra", "staircase", "thresholds"]
-"""realism: the paper's task. A reference X is named; which of A and B is closer to it, or neither? abx: X
-*is* A or B. 2afc: which of two holds what is asked for? 2ac: the same, or no difference. preference: which of
-two is liked better. mushra: every rendering is rated beside a named reference, itself and the anchors hidden
-among them. staircase: 2afc whose comparison approaches the standard down to the discrimination threshold.
-thresholds: 2afc whose comparison has more force, snap or vibration, by what is expected to say most."""
-
-ADAPTIVE: tuple[StudyKind, ...] = ("staircase", "thresholds")
-"""Kinds that find a threshold: a comparison follows the answers, and nothing is claimed."""
-
 Count = Annotated[int, Meta(ge=0, le=10_000)]
 Name = Annotated[str, Meta(min_length=1, max_length=60)]
 
@@ -249,7 +239,7 @@ class StudyPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     Attributes
     ----------
-    name, title : of the study; title by language. kind : of the trials.
+    name, title : of the study; title by language. kind : the name of the task, see `tasks`.
     question : what is asked in a trial, by language; {}: the kind's own words.
     items : buttons, in an order that means nothing. rounds : trials of each item and person.
     practice : trials before, on the first items, never analysed. people : that are planned.
@@ -264,7 +254,7 @@ class StudyPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     version: Literal[1] = 1
     name: Name
     title: dict[str, str]
-    kind: StudyKind
+    kind: str
     items: tuple[Item, ...]
     question: dict[str, str] = {}
     rounds: Annotated[int, Meta(ge=1, le=100)] = 6
@@ -297,6 +287,5 @@ class StudyPlan(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     @property
     def block(self) -> int:
         """How many trials an item has in each round, at most."""
-        if self.kind == "thresholds":
-            return (self.thresholds or Thresholds()).trials
-        return (self.staircase or Staircase()).trials if self.kind == "staircase" else 1
+        rule = self.thresholds or self.staircase
+        return rule.trials if rule else 1

@@ -8,9 +8,10 @@ from pathlib import PurePosixPath
 import msgspec
 
 from fdvv.model.file import MODEL_SUFFIX, builtin_names
-from fdvv_people.study.plan.plan import ADAPTIVE, Item, Stimulus, StudyPlan
+from fdvv_people.study.plan.plan import Item, Stimulus, StudyPlan
 from fdvv_people.study.plan.plan_words import word_languages
-from fdvv_people.study.plan.schedule import LABELS
+from fdvv_people.study.plan.task import LABELS
+from fdvv_people.study.plan.tasks import task_of
 from fdvv_people.study.plan.text_check import (
     LANGUAGE,
     Text,
@@ -21,7 +22,6 @@ from fdvv_people.study.plan.text_check import (
     page_problems,
     page_texts,
     text_problems,
-    twice_problems,
 )
 from fdvv_people.study.plan.trial import EQUAL
 
@@ -31,79 +31,27 @@ MOST_TRIALS = 2000  # the paper's 36 take an hour: so many are a slip in the pla
 
 def _kind(plan: StudyPlan) -> Iterator[str]:
     """List where a plan does not fit its kind."""
-    low, high = (3, len(LABELS)) if plan.kind == "mushra" else (2, 2)
-    wanted = "exactly 2" if high == 2 else f"{low} to {high}, the reference among them"
+    task = task_of(plan.kind)
+    low, high = task.stimuli
+    wanted = f"exactly {low}" if high == low else f"{low} to {high}, the reference among them"
     for item in plan.items:
         if not low <= len(item.stimuli) <= high:
             yield f"items ({item.name!r}): {plan.kind} needs {wanted} stimuli, got {len(item.stimuli)}"
-    reasons = {
-        "abx": "X is one of the two stimuli",
-        "mushra": "the first stimulus is the reference, named and hidden",
-    }
     for item in plan.items:
-        if item.reference and plan.kind != "realism":
-            reason = reasons.get(plan.kind, "nothing is compared with a third")
-            yield f"items ({item.name!r}), reference: {plan.kind} has none: {reason}"
-    if plan.kind == "mushra" and not plan.ratings:
-        yield "ratings: mushra only rates; write [[ratings]], with points = 101 for a slider"
-    yield from _staircase(plan)
-    yield from _thresholds(plan)
-    if plan.kind in ADAPTIVE:
-        yield from _adaptive(plan)
-    if plan.kind == "2ac" and not plan.ties:
-        yield 'ties: 2ac asks "or no difference"; without ties it is kind = "2afc"'
-
-
-def _staircase(plan: StudyPlan) -> Iterator[str]:
-    if plan.kind != "staircase":
-        if plan.staircase:
-            yield f"staircase: {plan.kind} has none"
-        return
-    if plan.staircase is None:
-        yield "staircase: there is none; write [staircase]"
-    elif plan.staircase.dropped > plan.staircase.reversals - 2:
-        yield "staircase: dropped must leave at least 2 of the reversals"
-
-
-def _thresholds(plan: StudyPlan) -> Iterator[str]:
-    rule = plan.thresholds
-    if plan.kind != "thresholds":
-        if rule:
-            yield f"thresholds: {plan.kind} has none"
-        return
-    if rule is None:
-        yield "thresholds: there is none; write [thresholds]"
-        return
-    if not rule.dimensions:
-        yield "thresholds, dimensions: there is none; name force, snap or vibration"
-    yield from twice_problems("thresholds, dimensions", rule.dimensions)
-    for name in rule.dimensions:
-        expected, largest = getattr(rule.expected_ratio, name), getattr(rule.largest_ratio, name)
-        if largest < expected:
-            yield f"thresholds, largest_ratio: {name} {largest:g} is below the expected JND of {expected:g}"
-    if plan.rounds != 1:
-        yield "rounds: thresholds have one; ask for more trials instead"
-
-
-def _adaptive(plan: StudyPlan) -> Iterator[str]:
-    article = "a staircase" if plan.kind == "staircase" else "a study of thresholds"
-    if plan.ratings:
-        yield f"ratings: {article} asks which one is stronger and nothing else"
-    if plan.claim:
-        yield f"claim: {article} finds a threshold and decides nothing; leave it out"
-    for item in plan.items:
-        same = {msgspec.structs.replace(s.unchanged, name="same") for s in item.stimuli}
-        if len(same) > 1 or any(s != s.unchanged for s in item.stimuli):
-            reason = f"both stimuli must be the same rendering; {article} makes the second one stronger"
-            yield f"items ({item.name!r}): {reason}"
+        if item.reference and task.no_reference:
+            yield f"items ({item.name!r}), reference: {plan.kind} has none: {task.no_reference}"
+    for name, rule in (("staircase", plan.staircase), ("thresholds", plan.thresholds)):
+        if rule and plan.kind != name:
+            yield f"{name}: {plan.kind} has none"
+    yield from task.problems(plan)
 
 
 def _languages(plan: StudyPlan) -> Iterator[str]:
     """List text that is missing in a language, or there in one that is not declared."""
     yield from language_problems(plan.languages)
     for language in filter(LANGUAGE.fullmatch, plan.languages):
-        if language not in word_languages() and language not in plan.question:
-            known = ", ".join(word_languages())
+        if language not in word_languages(plan.kind) and language not in plan.question:
+            known = ", ".join(word_languages(plan.kind))
             yield f"question: fdvv has no words in {language!r} (it has {known}); write question.{language}"
     yield from text_problems(_texts(plan), plan.languages)
 
@@ -164,7 +112,7 @@ def _item(plan: StudyPlan, item: Item) -> Iterator[str]:
     for stimulus in item.rendered:
         yield from _stimulus(f"{place}, {stimulus.name!r}", stimulus)
     seen: dict[Stimulus, str] = {}
-    for stimulus in () if plan.kind in ADAPTIVE else item.stimuli:
+    for stimulus in () if task_of(plan.kind).adaptive else item.stimuli:
         same = msgspec.structs.replace(stimulus, name="same")
         if same in seen:
             yield f"{place}: {seen[same]!r} and {stimulus.name!r} are one and the same rendering"
@@ -204,7 +152,10 @@ def _claim(plan: StudyPlan) -> Iterator[str]:
             yield f"claim: {name!r} is not one of the stimuli ({', '.join(names)})"
     if plan.claim.more == plan.claim.less:
         yield "claim: more and less are the same stimulus"
-    measures = [*([] if plan.kind == "mushra" else ["choice"]), *(rating.name for rating in plan.ratings)]
+    measures = [
+        *(["choice"] if task_of(plan.kind).choices else []),
+        *(rating.name for rating in plan.ratings),
+    ]
     if plan.claim.measure not in measures:
         yield f"claim: measure {plan.claim.measure!r} is not asked (asked is {', '.join(measures)})"
 

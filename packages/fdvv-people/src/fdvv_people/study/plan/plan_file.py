@@ -17,6 +17,7 @@ from fdvv.io.documents import read_toml
 from fdvv.io.files import read_limited, write_atomic
 from fdvv_people.study.plan.plan import StudyPlan
 from fdvv_people.study.plan.plan_check import plan_problems
+from fdvv_people.study.plan.tasks import task_of
 
 REMEDY = "see docs/reference/study-file.md, or begin with fdvv study new"
 LIMIT_bytes = 1_000_000
@@ -48,7 +49,9 @@ def read_plan_text(text: str | bytes, source: object) -> StudyPlan:
     InputError names source, the place in it, and what to do: what is no TOML, an unknown or missing field, a
     value of the wrong kind or outside its range.
     """
-    return read_declared(text, source, StudyPlan, "fdvv-study")
+    plan = read_declared(text, source, StudyPlan, "fdvv-study")
+    task_of(plan.kind, source)
+    return plan
 
 
 def read_declared(text: str | bytes, source: object, kind: type[Plan], format_: str) -> Plan:

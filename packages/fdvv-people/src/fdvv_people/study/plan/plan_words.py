@@ -10,25 +10,12 @@ from importlib import resources
 from fdvv.force_text import force_text
 from fdvv.model.noticeable import DIMENSIONS
 from fdvv_people.study.plan.plan import Item, Question, Rating, Stimulus, StudyPlan
-from fdvv_people.study.plan.schedule import LABELS
 from fdvv_people.study.plan.staircase import target_share
-
-KINDS_WITH_TIES = ("realism", "2ac", "preference")
-"""In which "equal" may be answered; in the others one must be named, or only ratings are given."""
+from fdvv_people.study.plan.task import LABELS
+from fdvv_people.study.plan.tasks import task_of
 
 JND_share = 0.75
 """Of the comparisons that notice one just noticeable difference."""
-
-TASKS = {
-    "realism": "X is {x}. A and B hide {names}; which is closer to X?",
-    "abx": "X, A and B hide {names}; X is the same as A or as B, and must be named.",
-    "2afc": "A and B hide {names}; one must be named, and {last} is right.",
-    "2ac": "A and B hide {names}; {last} is right, and no difference may be answered.",
-    "preference": "A and B hide {names}; neither is right.",
-    "mushra": "X is {first}, openly. {labels} hide {names}, and each is rated.",
-    "staircase": "A and B hide {names}; {last} has more force, and must be named.",
-    "thresholds": "A and B hide {names}; {last} has more of something, and must be named.",
-}
 
 
 @functools.cache
@@ -38,9 +25,9 @@ def _words() -> dict[str, dict[str, dict[str, str]]]:
     return found
 
 
-def word_languages() -> tuple[str, ...]:
-    """Return the languages that have words for every kind."""
-    return tuple(sorted(_words()["question"]["realism"]))
+def word_languages(kind: str = "realism") -> tuple[str, ...]:
+    """Return the languages that have words for the question of a kind."""
+    return tuple(sorted(task_of(kind).question or _words()["question"]["realism"]))
 
 
 def question_text(plan: StudyPlan, language: str) -> str:
@@ -57,16 +44,17 @@ def equal_text(plan: StudyPlan, language: str) -> str:
 
 
 def offers_equal(plan: StudyPlan) -> bool:
-    return plan.kind == "2ac" or (plan.ties and plan.kind in KINDS_WITH_TIES)
+    return task_of(plan.kind).offers_equal(plan.ties)
 
 
 def asks_choice(plan: StudyPlan) -> bool:
     """Return whether a label is chosen in a trial; MUSHRA only rates."""
-    return plan.kind != "mushra"
+    return bool(task_of(plan.kind).choices)
 
 
 def _said(part: str, kind: str, language: str) -> str:
-    words = _words()[part].get(kind, _words()[part].get("realism", {}))
+    own = task_of(kind).question if part == "question" else {}
+    words = own or _words()[part].get(kind, _words()[part].get("realism", {}))
     return words.get(language) or words["en"]
 
 
@@ -74,7 +62,7 @@ def task_text(plan: StudyPlan) -> str:
     names = [stimulus.name for stimulus in plan.items[0].stimuli]
     rendered = [item.reference is not None for item in plan.items]
     x = "rendered too" if all(rendered) else "rendered for some buttons" if any(rendered) else "a real button"
-    return TASKS[plan.kind].format(
+    return task_of(plan.kind).sentence.format(
         x=x,
         names=", ".join(names[:-1]) + f" and {names[-1]}",
         first=names[0],
@@ -84,7 +72,7 @@ def task_text(plan: StudyPlan) -> str:
 
 
 def asked_texts(plan: StudyPlan, language: str) -> tuple[str, ...]:
-    answers = " / ".join(filter(None, ("A", "B", equal_text(plan, language))))
+    answers = " / ".join(filter(None, (*task_of(plan.kind).choices, equal_text(plan, language))))
     questions = [f"{question_text(plan, language)}" + (f" {answers}" if asks_choice(plan) else "")]
     return (*questions, *(rating_text(rating, language) for rating in plan.ratings))
 
@@ -122,8 +110,9 @@ def reference_text(plan: StudyPlan, item: Item) -> str:
     """Return what X is for an item; "" where there is none."""
     if item.reference:
         return stimulus_text(item.reference)
-    real = {"realism": "the real button", "abx": "one of the two", "mushra": item.stimuli[0].name}
-    return real.get(plan.kind, "")
+    task = task_of(plan.kind)
+    shown = task.shown_reference(item)
+    return shown.name if shown else task.real_reference
 
 
 def exclusion_texts(plan: StudyPlan) -> tuple[str, ...]:
@@ -156,7 +145,7 @@ def claim_text(plan: StudyPlan) -> str:
         return f"None{found}."
     if claim.measure != "choice":
         text = f"{claim.more} is rated above {claim.less} in {claim.measure}"
-    elif plan.kind == "abx":
+    elif not task_of(plan.kind).names_stimulus:
         text = f"{claim.more} and {claim.less} can be discriminated"
     else:
         text = f"{claim.more} is chosen above {claim.less}"

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import msgspec
 import numpy as np
 
 from fdvv_people.stats.orders import williams_orders
-from fdvv_people.study.plan.plan import Item, Staircase, StudyPlan
+from fdvv_people.study.plan.plan import Item, StudyPlan
+from fdvv_people.study.plan.task import Assignment
+from fdvv_people.study.plan.tasks import task_of
 from fdvv_people.study.plan.threshold_trials import practice_change
 from fdvv_people.study.plan.trial import StudyTrial
-
-LABELS = "ABCDEFGHIJKLMNOPQRSTUVW"
-"""Of hidden renderings; X is always the reference."""
-
-Assignment = tuple[dict[str, str], str]
-"""What each label hides, and the label that is right."""
 
 
 def draw_schedule(plan: StudyPlan, person_index: int, random: np.random.Generator) -> tuple[StudyTrial, ...]:
@@ -94,40 +89,8 @@ def _assignments(plan: StudyPlan, item: Item, random: np.random.Generator) -> li
     size = plan.block
     count = size * plan.rounds
     names = [stimulus.name for stimulus in item.stimuli]
-    if len(names) != 2:
-        flat = [_permuted(names, random) for _ in range(count)]
-    else:
-        flat = _pairs(plan, names, count, random)
+    flat = task_of(plan.kind).draw(names, count, random)
     return [flat[i : i + size] for i in range(0, count, size)]
-
-
-def _permuted(names: Sequence[str], random: np.random.Generator) -> Assignment:
-    order = random.permutation(len(names))
-    return {label: names[i] for label, i in zip(LABELS, order, strict=False)}, ""
-
-
-def _pairs(
-    plan: StudyPlan, names: Sequence[str], count: int, random: np.random.Generator
-) -> list[Assignment]:
-    """Draw pairs: of two stimuli, what A and B hide; in ABX, what X is, and which of A and B is the same."""
-    first, second = names
-    sides = balanced(count, random)  # where the second stimulus, or in ABX what X is, hides
-    right = plan.kind in ("2afc", "2ac", "staircase", "thresholds")
-    if plan.kind != "abx":
-        hides = [{"A": second, "B": first}, {"A": first, "B": second}]
-        return [(hides[side], "AB"[side] if right else "") for side in sides]
-    found: list[Assignment] = []
-    for x, side in zip(balanced(count, random), sides, strict=True):
-        same, other = names[x], names[1 - x]
-        hidden = {"A": other, "B": same} if side else {"A": same, "B": other}
-        found.append(({**hidden, "X": same}, "AB"[side]))
-    return found
-
-
-def balanced(count: int, random: np.random.Generator) -> list[int]:
-    """Draw zeros and ones, equally many but for one by lot if count is odd; all such sequences as likely."""
-    odd = [int(random.integers(2))] if count % 2 else []
-    return [int(side) for side in random.permutation([0, 1] * (count // 2) + odd)]
 
 
 def _practice(plan: StudyPlan, random: np.random.Generator) -> list[StudyTrial]:
@@ -135,8 +98,8 @@ def _practice(plan: StudyPlan, random: np.random.Generator) -> list[StudyTrial]:
     for i in range(plan.practice):
         item = plan.items[i % len(plan.items)]
         names = [stimulus.name for stimulus in item.stimuli]
-        labels, right = _pairs(plan, names, 1, random)[0] if len(names) == 2 else _permuted(names, random)
-        ratio = (plan.staircase or Staircase()).start_ratio if plan.kind == "staircase" else 0.0
+        ((labels, right),) = task_of(plan.kind).draw(names, 1, random)
+        ratio = plan.staircase.start_ratio if plan.staircase else 0.0
         change = practice_change(plan.thresholds, i) if plan.thresholds else ()
         found.append(StudyTrial(i, item.name, 0, labels, True, right, ratio, change))
     return found

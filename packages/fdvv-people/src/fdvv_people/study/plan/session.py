@@ -52,7 +52,7 @@ class SessionState(SittingState[TrialFace]):
 
     def trial_step(self, face: TrialFace) -> Step[TrialFace]:
         alike = [one for one in self.started.trials if one.practice == face.practice]
-        sure = face.practice or self.plan.kind != "staircase"
+        sure = face.practice or self.plan.staircase is None
         return Step(
             kind="practice" if face.practice else "trial",
             face=face,

@@ -15,6 +15,7 @@ from fdvv_people.study.files.people import SealedTrial
 from fdvv_people.study.plan.plan import Stimulus, StudyPlan, Thresholds
 from fdvv_people.study.plan.session import SessionState
 from fdvv_people.study.plan.staircase import staircase_state
+from fdvv_people.study.plan.tasks import task_of
 from fdvv_people.study.plan.threshold_trials import grown_stimulus, replayed_change
 from fdvv_people.study.plan.trial import Rendered, StudyTrial, TrialAnswer
 from fdvv_people.study.stimulus.renderer import StimulusRenderer
@@ -43,14 +44,14 @@ def trial_stimuli(plan: StudyPlan, trial: StudyTrial) -> dict[str, Stimulus]:
     if item is None:
         raise ModelError(f"the plan has no item {trial.item}")
     named = {stimulus.name: stimulus for stimulus in item.stimuli}
-    if plan.kind == "staircase":
+    if plan.staircase:
         second = item.stimuli[1]
         ratio = second.force_ratio * (1.0 + trial.ratio)
         named[second.name] = msgspec.structs.replace(second, force_ratio=ratio)
-    if plan.kind == "thresholds":
+    if plan.thresholds:
         named[item.stimuli[1].name] = grown_stimulus(item.stimuli[1], trial.change)
     found = {label: named[name] for label, name in trial.labels.items()}
-    reference = item.reference or (item.stimuli[0] if plan.kind == "mushra" else None)
+    reference = task_of(plan.kind).shown_reference(item)
     if reference and "X" not in found:
         found["X"] = reference
     return dict(sorted(found.items()))
@@ -65,7 +66,7 @@ def staircase_ratio(
     the answers.
     """
     trial = schedule[number]
-    if plan.kind != "staircase" or plan.staircase is None or trial.practice:
+    if plan.staircase is None or trial.practice:
         return trial.ratio
     history: list[tuple[float, bool]] = []
     for one in schedule:
@@ -82,7 +83,7 @@ def trial_due(
 ) -> StudyTrial | None:
     """Return a trial with what the answers so far make of it; None where its staircase has ended."""
     trial = schedule[number]
-    if plan.kind == "thresholds" and plan.thresholds and not trial.practice:
+    if plan.thresholds and not trial.practice:
         return msgspec.structs.replace(trial, change=_change(plan.thresholds, schedule, state, trial))
     ratio = staircase_ratio(plan, schedule, state, number)
     return None if ratio is None else msgspec.structs.replace(trial, ratio=ratio)
@@ -90,7 +91,7 @@ def trial_due(
 
 def has_ended(plan: StudyPlan, schedule: Sequence[StudyTrial], state: SessionState, number: int) -> bool:
     """Return whether a trial's staircase has ended."""
-    return plan.kind == "staircase" and staircase_ratio(plan, schedule, state, number) is None
+    return plan.staircase is not None and staircase_ratio(plan, schedule, state, number) is None
 
 
 def _change(

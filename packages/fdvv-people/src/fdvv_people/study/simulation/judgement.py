@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fdvv.units import FloatArray
-from fdvv_people.study.plan.plan import ADAPTIVE, StudyKind
+from fdvv_people.study.plan.task import StudyTask
+from fdvv_people.study.plan.tasks import task_of
 from fdvv_people.study.simulation.people import SimulatedPeople
 
 EQUAL_INDEX = -1
@@ -16,18 +17,9 @@ EQUAL_INDEX = -1
 SLIDER = 101
 """Points of a scale from 0 to 100; others begin at 1."""
 
-NO_REFERENCE: tuple[StudyKind, ...] = ("2afc", "2ac", "preference", *ADAPTIVE)
-"""Kinds whose renderings are held against each other alone."""
-
-FORCED: tuple[StudyKind, ...] = ("abx", "2afc", *ADAPTIVE)
-"""Kinds in which "equal" is no answer."""
-
-PREFERENCE_TASTE_ratio = 1.0
-"""Of liking: people's tastes differ as much as they agree. Assumed."""
-
 
 def _seeming(
-    kind: StudyKind,
+    task: StudyTask,
     people: SimulatedPeople,
     between_JND: FloatArray,
     to_reference_JND: FloatArray,
@@ -40,7 +32,7 @@ def _seeming(
     part of how far the first two are apart.
     """
     noise = people.settings.noise_JND
-    if kind in NO_REFERENCE:
+    if not task.has_reference:
         both = np.stack([between_JND, np.zeros_like(between_JND)], axis=-1)
         seeming = both + noise * random.standard_normal(both.shape)
     else:
@@ -48,9 +40,8 @@ def _seeming(
         reference = random.standard_normal((*to_reference_JND.shape[:-1], 1))
         seeming = -np.abs(to_reference_JND + noise * (own - reference))
     # in the other kinds something is right, and what X is, or hides, does not hang on taste
-    tastes_ratio = {"realism": people.settings.taste_ratio, "preference": PREFERENCE_TASTE_ratio}
     apart_JND = np.abs(between_JND)
-    seeming[..., 0] += tastes_ratio.get(kind, 0.0) * _over(people.taste, apart_JND) * apart_JND
+    seeming[..., 0] += task.taste_ratio(people.settings) * _over(people.taste, apart_JND) * apart_JND
     return np.asarray(seeming)
 
 
@@ -71,7 +62,7 @@ def _choices(
 
 
 def _ratings(
-    kind: StudyKind,
+    task: StudyTask,
     people: SimulatedPeople,
     seeming_JND: FloatArray,
     points: int,
@@ -79,14 +70,14 @@ def _ratings(
 ) -> FloatArray:
     """Rate how strong, or how close to the reference, each stimulus seems, on a scale of so many points."""
     drop_JND = people.settings.rating_drop_JND
-    if kind in NO_REFERENCE:
+    if not task.has_reference:
         # the middle of the scale for strength 0
         return _on_scale(people, 0.5 + 0.5 * np.tanh(seeming_JND / drop_JND), points, random)
     apart = -seeming_JND
-    if kind == "mushra":
+    if task.hides_reference:
         apart = apart - apart.min(axis=-1, keepdims=True)
     rated = _on_scale(people, np.exp(-np.clip(apart, 0.0, None) / drop_JND), points, random)
-    if kind != "mushra":
+    if not task.hides_reference:
         return rated
     # one of them is the reference, so what seems closest is given the top
     return np.where(apart == 0.0, float(points if points != SLIDER else SLIDER - 1), rated)
@@ -124,7 +115,7 @@ class ProxyTrials:
 
 
 def proxy_trials(
-    kind: StudyKind,
+    kind: str,
     people: SimulatedPeople,
     between_JND: FloatArray,
     to_reference_JND: FloatArray,
@@ -141,10 +132,11 @@ def proxy_trials(
     points : of each rating scale. hidden : abx: the place of what X is, (people..., trials...).
     """
     right = np.zeros(between_JND.shape, dtype=np.int64) if hidden is None else hidden
-    if kind == "abx":
+    task = task_of(kind)
+    if task.hides_x:
         places = np.arange(to_reference_JND.shape[-1])
         to_reference_JND = np.abs(between_JND)[..., None] * (places != right[..., None])
-    seeming = _seeming(kind, people, between_JND, to_reference_JND, random)
-    ratings = tuple(_ratings(kind, people, seeming, one, random) for one in points)
-    chosen = _choices(people, seeming, ties and kind not in FORCED, random)
+    seeming = _seeming(task, people, between_JND, to_reference_JND, random)
+    ratings = tuple(_ratings(task, people, seeming, one, random) for one in points)
+    chosen = _choices(people, seeming, task.offers_equal(ties), random)
     return ProxyTrials(chosen, chosen == right, ratings)

@@ -12,6 +12,7 @@ from fdvv_people.study.admin.study import Study
 from fdvv_people.study.plan.events import TrialFace, Value
 from fdvv_people.study.plan.plan import Item, Page, Question, Stimulus, StudyPlan
 from fdvv_people.study.plan.sitting import Step
+from fdvv_people.study.plan.tasks import task_of
 from fdvv_people.study.plan.trial import EQUAL, Rendered, TrialAnswer
 from fdvv_people.study.session.participant import Participant
 from fdvv_people.study.simulation.judgement import proxy_trials
@@ -144,10 +145,11 @@ class SimulatedParticipant:
             tuple(rating.points for rating in self._plan.ratings),
             np.asarray([[int(shown[first].name != reference.name)]]),
         )
-        chosen = int(trials.chosen[0, 0])
-        has_choice = self._plan.kind != "mushra"
+        chosen, task = int(trials.chosen[0, 0]), task_of(self._plan.kind)
+        between_JND = float(self._apart(shown[first], shown[second])[0])
+        own = task.simulate(self._people, between_JND, self._random)
         return TrialAnswer(
-            choice=(EQUAL if chosen < 0 else places[chosen]) if has_choice else "",
+            choice=own or (EQUAL if chosen < 0 else places[chosen]) if task.choices else "",
             ratings={
                 rating.name: dict(zip(places, points[0, 0].tolist(), strict=True))
                 for rating, points in zip(self._plan.ratings, trials.ratings, strict=True)

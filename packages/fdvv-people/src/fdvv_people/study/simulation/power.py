@@ -13,7 +13,7 @@ from fdvv.units import FloatArray
 from fdvv_people.stats.effect_size import Estimate
 from fdvv_people.stats.share import wilson
 from fdvv_people.study.plan.claim import claim_holds
-from fdvv_people.study.plan.plan import StudyKind
+from fdvv_people.study.plan.tasks import task_of
 from fdvv_people.study.simulation.judgement import EQUAL_INDEX, ProxyTrials, proxy_trials
 from fdvv_people.study.simulation.people import ProxySettings, SimulatedPeople, draw_people
 from fdvv_people.study.simulation.perception import PerceivedDifference
@@ -59,7 +59,7 @@ class PowerDesign:
     points : of the rating that the claim is about; None: it is about choices.
     """
 
-    kind: StudyKind
+    kind: str
     effects: tuple[ItemEffect, ...]
     rounds: int
     ties: bool
@@ -120,7 +120,7 @@ def _answered(design: PowerDesign, people: SimulatedPeople, random: np.random.Ge
         * np.ones(rounds)
         for part in ("between", "more", "less")
     )
-    hidden = random.integers(0, 2, size=between.shape) if design.kind == "abx" else None
+    hidden = random.integers(0, 2, size=between.shape) if task_of(design.kind).hides_x else None
     points = () if design.points is None else (design.points,)
     to_reference = np.stack([more, less], axis=-1)
     return proxy_trials(design.kind, people, between, to_reference, random, design.ties, points, hidden)
@@ -138,7 +138,7 @@ def _spoken(trials: ProxyTrials) -> FloatArray:
 
 def _shared(design: PowerDesign, trials: ProxyTrials) -> FloatArray:
     """Return parts of the answers, (items, 3)."""
-    if design.kind == "mushra":
+    if not task_of(design.kind).choices:
         return np.full((len(design.effects), 3), np.nan)
     spoken = _spoken(trials)
     return np.stack([(spoken == one).mean(axis=(0, 2)) for one in (1.0, 0.0, -1.0)], axis=1)

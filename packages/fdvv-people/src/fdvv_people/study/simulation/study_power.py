@@ -11,8 +11,9 @@ from typing import Any
 import msgspec
 
 from fdvv.errors import InputError
-from fdvv_people.study.plan.plan import ADAPTIVE, Claim, Item, Stimulus, StudyPlan
+from fdvv_people.study.plan.plan import Claim, Item, Stimulus, StudyPlan
 from fdvv_people.study.plan.plan_file import check_plan, read_plan
+from fdvv_people.study.plan.tasks import task_of
 from fdvv_people.study.simulation.people import ProxySettings
 from fdvv_people.study.simulation.perception import (
     HapticFeatures,
@@ -42,9 +43,7 @@ def reference_of(plan: StudyPlan, item: Item, first: Stimulus) -> Stimulus:
 
     first : whose button that is. In MUSHRA the first stimulus is the reference.
     """
-    if plan.kind == "mushra":
-        return item.stimuli[0]
-    return item.reference or Stimulus(name="X", button=first.button)
+    return task_of(plan.kind).shown_reference(item) or Stimulus(name="X", button=first.button)
 
 
 def claim_of(plan: StudyPlan) -> Claim:
@@ -52,17 +51,16 @@ def claim_of(plan: StudyPlan) -> Claim:
 
     Raises InputError where there is no claim, or none that can be upheld.
     """
-    if plan.kind in ADAPTIVE:
-        what = "a staircase" if plan.kind == "staircase" else "a study of thresholds"
-        reason = f"{what} finds a threshold and claims nothing"
-        raise InputError(plan.name, "claim", reason, "try it out with fdvv study simulate")
-    if plan.claim is None and plan.kind == "abx":
+    task = task_of(plan.kind)
+    if task.no_power:
+        raise InputError(plan.name, "claim", task.no_power, "try it out with fdvv study simulate")
+    if plan.claim is None and task.hides_x:
         less, more = plan.items[0].stimuli
         return Claim(more=more.name, less=less.name)
     if plan.claim is None:
         reason = "there is none, so there is nothing to find"
         raise InputError(plan.name, "claim", reason, "add [claim] with more, less and measure")
-    if plan.kind in ("2afc", "2ac") and plan.claim.more != plan.items[0].stimuli[1].name:
+    if task.asks_second and plan.claim.more != plan.items[0].stimuli[1].name:
         reason = f"what {plan.kind} asks for is the second stimulus, so more must be that one"
         raise InputError(plan.name, "claim", reason, "exchange more and less, or the stimuli")
     return plan.claim
