@@ -53,7 +53,8 @@ def test_a_study_task_is_one_file_that_runs_from_plan_to_report(run: Run, tmp_pa
     folder, passphrase = tmp_path / "s", tmp_path / "secret.txt"
     folder.mkdir()
     plan = plan.replace('"preference"', '"same-different"').replace(asked, "")
-    (folder / "study.toml").write_text(plan.replace("people = 12", "people = 8"))
+    plan = plan.replace("people = 12", "people = 8").replace("= 0.85", "= 0.6")
+    (folder / "study.toml").write_text(plan)
     passphrase.write_text("a long passphrase of a test")
     assert "A and B hide as made and lighter, or one of them twice" in run("study preview s")
     run("study freeze s --passphrase-file secret.txt")
@@ -61,9 +62,10 @@ def test_a_study_task_is_one_file_that_runs_from_plan_to_report(run: Run, tmp_pa
     run("study unseal s --who somebody --why test --passphrase-file secret.txt")
     found = json.loads(run("study analyse s --report report.html --json"))
     choices = found["preference"]
+    right, wrong = choices["more"], choices["less"]
     assert found["kind"] == "same-different"
-    assert choices["more"] == "right"
-    assert choices["d"] == []
-    assert choices["more_count"] + choices["less_count"] == 8 * 2 * 6
-    assert choices["more_count"] > choices["less_count"]  # a change of force that is felt
+    assert right["name"] == "right"
+    assert right["count"] + wrong["count"] == choices["answers"] == found["screening"]["counted"] > 0
+    assert right["count"] > wrong["count"]  # a change of force that everybody feels
+    assert choices["d_prime"] == []
     assert "same-different" in (tmp_path / "report.html").read_text()

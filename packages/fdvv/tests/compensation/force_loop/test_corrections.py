@@ -43,7 +43,7 @@ def test_an_even_error_is_corrected_by_its_size_where_the_loop_holds_the_force()
     x = motion()
     one = stroke(bump())
     step = one.step_cN(x, np.interp(x, GRID_mm, bump()) - 3.0)
-    low_mm, high_mm = one.held_mm
+    low_mm, high_mm = one.holding_range_mm
     assert step[(GRID_mm > 0.6) & (GRID_mm < 3.6)] == pytest.approx(3.0, abs=0.4)
     assert np.abs(step[(GRID_mm < low_mm - 0.2) | (GRID_mm > high_mm + 0.2)]).max(initial=0.0) < 0.1
 
@@ -54,7 +54,7 @@ def test_a_wild_stroke_is_learned_in_steps() -> None:
 
 
 def test_at_higher_speed_the_loop_holds_the_force_later() -> None:
-    assert stroke(bump(), 200.0).held_mm[0] > stroke(bump(), 50.0).held_mm[0]
+    assert stroke(bump(), 200.0).holding_range_mm[0] > stroke(bump(), 50.0).holding_range_mm[0]
 
 
 def test_a_stroke_that_was_not_recorded_is_refused() -> None:

@@ -64,7 +64,7 @@ class StudyTask:
         """Draw what labels hide in so many trials of an item. **Secret.** names : of its stimuli."""
         first, second = names
         hides = [{"A": second, "B": first}, {"A": first, "B": second}]
-        sides = balanced(count, random)  # where the second stimulus hides
+        sides = draw_sides(count, random)  # where the second stimulus hides
         return [(hides[side], "AB"[side] if self.asks_second else "") for side in sides]
 
     def problems(self, plan: StudyPlan) -> Iterator[str]:
@@ -116,7 +116,7 @@ class StudyTask:
         return (*((d_prime_of_people(people, "2afc"),) if people else ()), d_prime_2afc(more, n))
 
 
-def balanced(count: int, random: np.random.Generator) -> list[int]:
+def draw_sides(count: int, random: np.random.Generator) -> list[int]:
     """Draw zeros and ones, equally many but for one by lot if count is odd; all such sequences as likely."""
     odd = [int(random.integers(2))] if count % 2 else []
     return [int(side) for side in random.permutation([0, 1] * (count // 2) + odd)]

@@ -13,7 +13,7 @@ from fdvv import extras
 from fdvv.errors import InputError, did_you_mean
 from fdvv.units import FloatArray
 from fdvv_people.study.plan.plan import Item, Stimulus, StudyPlan
-from fdvv_people.study.plan.task import LABELS, Assignment, StudyTask, balanced
+from fdvv_people.study.plan.task import LABELS, Assignment, StudyTask, draw_sides
 from fdvv_people.study.plan.text_check import twice_problems
 
 if TYPE_CHECKING:
@@ -62,8 +62,8 @@ class Abx(StudyTask):
 
     def draw(self, names: Sequence[str], count: int, random: np.random.Generator) -> list[Assignment]:
         drawn: list[Assignment] = []
-        sides = balanced(count, random)  # where what X is hides
-        for x, side in zip(balanced(count, random), sides, strict=True):
+        sides = draw_sides(count, random)  # where what X is hides
+        for x, side in zip(draw_sides(count, random), sides, strict=True):
             same, other = names[x], names[1 - x]
             hidden = {"A": other, "B": same} if side else {"A": same, "B": other}
             drawn.append(({**hidden, "X": same}, "AB"[side]))
