@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import pytest
 from playwright.sync_api import expect
 
 from fdvv_people.optimize.run.session import Optimization
 from fdvv_people.optimize.run.verdict import verdict_sentence
 from tests.browser.counted import CountedPerson
 from tests.studio.running import RunningStudio
+from tests.support.campaign import campaign
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 MOST = 4
 
 
-@pytest.mark.parametrize("keyboard", [False, True], ids=["mouse", "keyboard"])
+@campaign("keyboard", [False, True], part=1)
 def test_an_optimisation_with_its_verdict_takes_four_clicks_at_most(
     page: Page, studio: RunningStudio, keyboard: bool
 ) -> None:

@@ -24,6 +24,7 @@ from tests.browser.study_screens import (
 )
 from tests.browser.test_timing import kill_and_start_again
 from tests.studio.running import RunningStudio
+from tests.support.campaign import campaign
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
@@ -77,7 +78,7 @@ class Wire:
 
 
 @pytest.mark.parametrize("study", [{"items": 6, "rounds": 6, "reference": True}], indirect=True)
-@pytest.mark.parametrize("input_method", ["mouse", "touch"])
+@campaign("input_method", ["mouse", "touch"], part=1)
 def test_36_trials_are_answered_and_kept_and_no_message_names_what_a_label_hides(
     study: Study, page: Page, browser: Browser, studio: RunningStudio, input_method: InputMethod
 ) -> None:

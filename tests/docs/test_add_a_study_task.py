@@ -15,8 +15,6 @@ import pytest
 from tests.docs.pages import DOCS, blocks_of
 
 PAGE = DOCS / "how-to" / "add-a-study-task.md"
-WHOLE_lines = 150
-"""Of a task, most."""
 Run = Callable[[str], str]
 
 
@@ -25,7 +23,7 @@ def run(tmp_path: Path) -> Run:
     """Return what runs an fdvv command beside the page's package, and returns what it prints."""
     (source,) = (block.text for block in blocks_of(PAGE) if block.language == "python")
     entry_points = [block.text for block in blocks_of(PAGE) if "entry-points" in block.text]
-    assert source.count("\n") <= WHOLE_lines
+    assert source.count("\n") <= 150
     package, about = tmp_path / "my_package", tmp_path / "my_package-1.dist-info"
     package.mkdir()
     about.mkdir()
