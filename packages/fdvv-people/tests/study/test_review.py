@@ -163,4 +163,4 @@ def test_a_staircase_is_judged_at_the_strongest_comparison_that_it_may_come_to(t
         staircase=Staircase(),
     )
     assert "440" in device_problems(one, tmp_path)[0]
-    assert device_problems(structs.replace(one, kind="2afc"), tmp_path) == ()
+    assert device_problems(structs.replace(one, kind="2afc", staircase=None), tmp_path) == ()

@@ -29,7 +29,7 @@ from fdvv_people.study.plan.events import (
     face_of,
     record_of,
 )
-from fdvv_people.study.plan.plan import Item, Page, Question, Rating, Stimulus, StudyPlan
+from fdvv_people.study.plan.plan import Item, Page, Question, Rating, Staircase, Stimulus, StudyPlan
 from fdvv_people.study.plan.session import SessionState
 from fdvv_people.study.plan.sitting import Step
 from fdvv_people.study.plan.trial import EQUAL, StudyTrial, TrialAnswer
@@ -238,7 +238,7 @@ def test_a_session_begins_with_its_trials() -> None:
 
 def test_a_trial_of_a_staircase_that_has_ended_is_not_met() -> None:
     trials = tuple(TrialFace(i, "Clear", i // 3, ("A", "B")) for i in range(6))
-    plan = plan_of(kind="staircase", pages=(), break_every_min=1.0, break_min=1.0)
+    plan = plan_of(kind="staircase", staircase=Staircase(), pages=(), break_every_min=1.0, break_min=1.0)
     state = (
         started_session(plan, trials)
         .after(TrialShown(0.0, 0, 1))

@@ -96,7 +96,7 @@ def test_nothing_but_the_pages_files_is_served(client: TestClient, path: str) ->
 
 def test_the_studio_tells_its_version_and_no_path(client: TestClient, own_studio: Studio) -> None:
     answer = client.post("/api/studio.about", json={}).json()
-    assert answer == {"version": __version__, "project": own_studio.project.name, "sources": []}
+    assert answer == {"version": __version__, "project": own_studio.project.name, "sources": [], "absent": {}}
 
 
 @pytest.mark.parametrize(
