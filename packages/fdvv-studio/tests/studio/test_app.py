@@ -11,6 +11,7 @@ import msgspec
 import pytest
 from starlette.testclient import TestClient
 
+from fdvv import extras
 from fdvv._version import __version__
 from fdvv.errors import InputError
 from fdvv_studio.studio.contract import Call
@@ -96,7 +97,8 @@ def test_nothing_but_the_pages_files_is_served(client: TestClient, path: str) ->
 
 def test_the_studio_tells_its_version_and_no_path(client: TestClient, own_studio: Studio) -> None:
     answer = client.post("/api/studio.about", json={}).json()
-    assert answer == {"version": __version__, "project": own_studio.project.name, "sources": [], "absent": {}}
+    named = {"version": __version__, "project": own_studio.project.name}
+    assert answer == {**named, "sources": [], "absent": extras.absent("pages")}
 
 
 @pytest.mark.parametrize(

@@ -48,7 +48,12 @@ def call(name: str) -> Call:
 
 @pytest.fixture
 def _own_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name, *calls in (("first", call("a.a")), ("second", call("b.b")), ("third", call("a.a"))):
+    for name, *calls in (
+        ("first", call("a.a")),
+        ("second", call("b.b")),
+        ("third", call("a.a")),
+        ("package.fourth", call("d.d")),
+    ):
         module = types.ModuleType(name)
         module.__dict__.update({one.name: one for one in calls})
         monkeypatch.setitem(sys.modules, module.__name__, module)
@@ -82,6 +87,16 @@ def test_a_part_that_cannot_be_loaded_fails_for_all_that_wait(
     with pytest.raises(fault):
         loader.call("c.c")
     assert loader.call("a.a") is not None
+
+
+@pytest.mark.usefixtures("_own_parts")
+def test_the_parts_of_another_package_are_there_together() -> None:
+    """Else a call prepares records while the loader does, and the process crashes now and then."""
+    loader = PartLoader(("first", "package.fourth", "package.not_there"))
+    loader.load()
+    assert loader.call("a.a") is not None
+    with pytest.raises(ModuleNotFoundError):
+        loader.call("d.d")
 
 
 def test_the_page_hears_which_of_its_pages_are_not_installed(

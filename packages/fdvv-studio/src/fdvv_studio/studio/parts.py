@@ -6,6 +6,7 @@ import importlib
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import groupby
 from threading import Condition
 from types import ModuleType
 from typing import Any
@@ -60,11 +61,12 @@ class PartLoader:
         """Import all parts, in one thread: see prepare_records."""
         prepared: set[type[msgspec.Struct]] = set()
         try:
-            for name in part_modules() if self._modules is None else self._modules:
-                module = importlib.import_module(name)
+            for _, names in groupby(part_modules() if self._modules is None else self._modules, _package):
+                modules = [importlib.import_module(name) for name in names]
                 prepare_records(prepared)
-                getattr(module, "prepare", lambda: None)()
-                self._take(module)
+                for module in modules:
+                    getattr(module, "prepare", lambda: None)()
+                    self._take(module)
         except BaseException as error:
             self._fault = error
         finally:
@@ -96,6 +98,15 @@ class PartLoader:
                     if known.setdefault(offer.name, offer) is not offer:
                         raise ValueError(f"two parts of the studio offer {offer.name}")
             self._changed.notify_all()
+
+
+def _package(name: str) -> str:
+    """Return what is served together: an own part alone, and all of another package.
+
+    A call of a part may import what only a later part of its package would: a study of any kind, say. Its
+    records would then be prepared in two threads.
+    """
+    return name if name in PARTS else name.partition(".")[0]
 
 
 def load_parts() -> Parts:
