@@ -45,7 +45,7 @@ class Parts:
 
 
 class PartLoader:
-    """Imports the parts one after the other; what is asked for is there as soon as its own part is.
+    """Imports the parts in turn; what is asked for is there as soon as its own part, or its package, is.
 
     Names are unique, else this installation is wrong (ValueError, of all that waits).
     """

@@ -15,7 +15,7 @@ def taught(presses: int = 4) -> PartGuard:
     return guard
 
 
-def looked(guard: PartGuard, *presses: Scripted) -> list[Diagnosis | None]:
+def look(guard: PartGuard, *presses: Scripted) -> list[Diagnosis | None]:
     return [guard.look(one.press(), used=True) for one in presses]
 
 
@@ -31,7 +31,7 @@ def test_the_balance_finds_the_numbers_that_the_presses_were_made_with() -> None
 
 
 def test_sound_presses_name_nothing() -> None:
-    assert looked(taught(2), *(Scripted(seed=seed) for seed in range(10, 20))) == [None] * 10
+    assert look(taught(2), *(Scripted(seed=seed) for seed in range(10, 20))) == [None] * 10
 
 
 def test_a_coil_that_is_weak_from_the_start_shows_in_the_first_press() -> None:
@@ -50,7 +50,7 @@ def test_a_reversed_coil_shows_in_the_sign() -> None:
 
 @pytest.mark.parametrize(("gain", "remedy"), [(0.75, "let it cool"), (0.5, "shorted winding")])
 def test_a_coil_that_loses_force_is_named_at_the_second_press(gain: float, remedy: str) -> None:
-    first, second = looked(taught(), Scripted(gain=gain, seed=8), Scripted(gain=gain, seed=9))
+    first, second = look(taught(), Scripted(gain=gain, seed=8), Scripted(gain=gain, seed=9))
     assert first is None
     assert second is not None
     assert (second.fault.part, second.presses) == ("coil", 2)
@@ -59,14 +59,14 @@ def test_a_coil_that_loses_force_is_named_at_the_second_press(gain: float, remed
 
 def test_one_press_that_differs_is_chance_unless_the_board_says_that_something_is_wrong() -> None:
     weak = Scripted(gain=0.75, seed=8)
-    assert looked(taught(), weak, Scripted(seed=9), weak, Scripted(seed=10)) == [None] * 4
+    assert look(taught(), weak, Scripted(seed=9), weak, Scripted(seed=10)) == [None] * 4
     found = taught().look(weak.press(), used=False, sure=True)
     assert found is not None
     assert found.presses == 1
 
 
 def test_the_lowest_reading_distinguishes_a_zero_that_wanders_from_a_weak_coil() -> None:
-    first, second = looked(taught(), Scripted(zero_cN=20, seed=8), Scripted(zero_cN=40, seed=9))
+    first, second = look(taught(), Scripted(zero_cN=20, seed=8), Scripted(zero_cN=40, seed=9))
     assert first is None
     assert second is not None
     assert (second.fault.part, second.presses) == ("force sensor", 2)

@@ -132,22 +132,22 @@ class SimulatedParticipant:
     def answer(self, item_name: str) -> TrialAnswer:
         item = next(item for item in self._plan.items if item.name == item_name)
         places, shown = self._ranked(item), self.renderer.shown
-        first, second = places[0], places[1]
+        first, second, task = places[0], places[1], task_of(self._plan.kind)
+        between_JND = self._apart(shown[first], shown[second])
         reference = shown.get("X") or reference_of(self._plan, item, shown[first])
         to_reference = [self._apart(shown[label], reference) for label in places]
         trials = proxy_trials(
             self._plan.kind,
             self._people,
-            self._apart(shown[first], shown[second])[..., None],
+            between_JND[..., None],
             np.stack(to_reference, axis=-1)[:, None, :],
             self._random,
             self._plan.ties,
             tuple(rating.points for rating in self._plan.ratings),
             np.asarray([[int(shown[first].name != reference.name)]]),
         )
-        chosen, task = int(trials.chosen[0, 0]), task_of(self._plan.kind)
-        between_JND = float(self._apart(shown[first], shown[second])[0])
-        own = task.simulate(self._people, between_JND, self._random)
+        chosen = int(trials.chosen[0, 0])
+        own = task.simulate(self._people, float(between_JND[0]), self._random)
         return TrialAnswer(
             choice=own or (EQUAL if chosen < 0 else places[chosen]) if task.choices else "",
             ratings={
