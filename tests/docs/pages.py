@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +24,8 @@ MILLISECONDS = re.compile(r"\s+\d+\.\d$")
 LEARNED = ("compensate", "probe", "feasible")
 """Commands whose figures depend on rounding; they are compared within the tolerances below."""
 LEARNED_ratio, LEARNED_absolute = 0.35, 2.5
+EXAMPLE_lines = 150
+"""Of a task or a method of one's own, most."""
 
 
 @dataclass(frozen=True)
@@ -118,6 +122,23 @@ def run(command: list[str], folder: Path, environment: Mapping[str, str]) -> sub
     return subprocess.run(
         command, cwd=folder, env=environment, capture_output=True, text=True, encoding="utf-8", check=False
     )
+
+
+def install_example(folder: Path, file: str, source: str, toml: str) -> dict[str, str]:
+    """Install a page's file as `my_package` below a folder; return the environment that finds it.
+
+    toml : its entry points, as its pyproject.toml declares them.
+    """
+    assert source.count("\n") <= EXAMPLE_lines
+    package, about = folder / "my_package", folder / "my_package-1.dist-info"
+    package.mkdir()
+    about.mkdir()
+    (package / file).write_text(source)
+    ((group, entries),) = tomllib.loads(toml)["project"]["entry-points"].items()
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: my-package\nVersion: 1\n")
+    lines = [f"[{group}]", *(f"{name} = {place}" for name, place in entries.items())]
+    (about / "entry_points.txt").write_text("\n".join(lines))
+    return os.environ | {"PYTHONPATH": os.pathsep.join(map(str, (folder, *sys.path)))}
 
 
 def normalised(line: str) -> str:
